@@ -68,7 +68,7 @@ def pytest_collection_finish() -> None:
 def pytest_terminal_summary(
     terminalreporter: pytest.TerminalReporter, config: pytest.Config
 ) -> None:
-    if sample := sampling.said(config):
+    if sample := sampling.how_to_repeat(config):
         terminalreporter.write_line(sample)
 
 
@@ -93,7 +93,7 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     reporter = session.config.pluginmanager.get_plugin("terminalreporter")
     if reporter is None or not os.environ.get("CI"):  # a worker has none: its reports come to one
         return
-    skipped = [each.nodeid for each in reporter.stats.get("skipped", [])]
+    skipped = [report.nodeid for report in reporter.stats.get("skipped", [])]
     if skipped:
         reporter.write_line(f"\nskipped in CI: {', '.join(skipped)}")
         session.exitstatus = session.exitstatus or pytest.ExitCode.TESTS_FAILED

@@ -238,9 +238,9 @@ def equivalent_mutants() -> dict[tuple[str, str, str], str]:
     json_text = Path(__file__).with_name("equivalent_mutants.json").read_text("utf-8")
     rows: dict[str, list[tuple[str, str, str]]] = json.loads(json_text)
     return {
-        (file, was, becomes): why
+        (file, old, becomes): why
         for why, row_of_reason in rows.items()
-        for file, was, becomes in row_of_reason
+        for file, old, becomes in row_of_reason
     }
 
 

@@ -30,18 +30,21 @@ WHOLE_LINE_READERS = (
 
 
 def trace(text: str) -> Iterator[str]:
-    """Give lines on who reads a text, round by round, and on what is told of it."""
+    """Give lines on who reads a text, round by round, and on what is said about it."""
     kit = robot_of(text.encode(), robots.load(robots.DEFAULT)).kit
     text_left = text
     for _ in range(MOST_ROUNDS):
         diagnostics = analyze(text_left, kit).diagnostics
-        if not any(each.is_mistake for each in diagnostics):
+        if not any(diagnostic.is_mistake for diagnostic in diagnostics):
             break
         wrong_text = WrongText(
-            Source(text_left), diagnostics, lambda each: analyze(each, kit).diagnostics, kit
+            Source(text_left), diagnostics, lambda text: analyze(text, kit).diagnostics, kit
         )
         findings = ((reader, reader(wrong_text)) for reader in READERS)
-        reader, finding = next((each for each in findings if each[1].diagnostics), (None, None))
+        reader, finding = next(
+            (found_by_reader for found_by_reader in findings if found_by_reader[1].diagnostics),
+            (None, None),
+        )
         if reader is None or finding is None:
             yield f"{_line(text_left)}: no reader, so usage.py says what it knows of the mistake"
             break
@@ -66,7 +69,9 @@ def _line_changes(old_text: str, change: LineChange, kit: Kit) -> Iterator[str]:
         yield f"    by {describe_row(step, kit)}"
     tokens = change.steps[-1].new_tokens if change.steps else lexemes(old_text)
     tokens_with_ends = lexemes(change.text)
-    before, after = (each[len(setup_of(each)) :] for each in (tokens, tokens_with_ends))
+    before, after = (
+        line_lexemes[len(setup_of(line_lexemes)) :] for line_lexemes in (tokens, tokens_with_ends)
+    )
     if texts(before) != texts(after):
         yield f"  {_tokens_text(before)}  ->  {_tokens_text(after)}"
         yield "    by blocks.py, which gives each block its end"
@@ -109,8 +114,8 @@ def _tokens_text(tokens: Iterable[Lexeme]) -> str:
 
 
 def _told_text(diagnostic: Diagnostic) -> str:
-    found = diagnostic.values.get("found", "")
-    return f"{diagnostic.code.number} {found}".strip()
+    value = diagnostic.values.get("found", "")
+    return f"{diagnostic.code.number} {value}".strip()
 
 
 def _diagnostic_text(diagnostic: Diagnostic) -> str:

@@ -211,7 +211,7 @@ def _write(path: Path, text: str) -> None:
 
 def _without_end(texts: list[Forms]) -> list[Forms]:
     """Return texts without the empty ones after all others."""
-    return texts[: max((k for k, each in enumerate(texts, 1) if each), default=0)]
+    return texts[: max((k for k, text in enumerate(texts, 1) if text), default=0)]
 
 
 def format_rows(key: str, texts: list[Forms], is_list: bool) -> str:

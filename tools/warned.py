@@ -35,7 +35,7 @@ def warnings_in(program: str) -> set[str]:
     data = program.encode()
     robot = robot_of(data, robots.load(robots.DEFAULT))
     diagnostics = compile_source(data, robot, "", is_strict=False).diagnostics
-    return {each.code.number for each in diagnostics if not each.is_mistake}
+    return {diagnostic.code.number for diagnostic in diagnostics if not diagnostic.is_mistake}
 
 
 def main(arguments: Iterable[str] | None = None) -> int:
@@ -45,9 +45,9 @@ def main(arguments: Iterable[str] | None = None) -> int:
     programs = [*programs_in(folder)]
     if not programs:
         sys.exit(f"{folder} has no programs (*.ts).")
-    counts = Counter(number for each in programs for number in warnings_in(each))
-    numbers = [each.number for each in codes.CODES.values() if not each.is_mistake]
-    for number in sorted(numbers, key=lambda each: (counts[each], each)):
+    counts = Counter(number for program in programs for number in warnings_in(program))
+    numbers = [code.number for code in codes.CODES.values() if not code.is_mistake]
+    for number in sorted(numbers, key=lambda number: (counts[number], number)):
         print(f"{number} {counts[number]} of {len(programs)}")
     return 0
 

@@ -258,8 +258,8 @@ def main() -> int:
                                            "epoch": "", "changes": [change]})  # fmt: skip
 
             def has(row: str) -> bool:
-                found = classroom.teach({"do": "class"})["groups"]
-                text = classroom.teach({"do": "class_text", "group": found[0]["key"]})["text"]
+                groups = classroom.teach({"do": "class"})["groups"]
+                text = classroom.teach({"do": "class_text", "group": groups[0]["key"]})["text"]
                 return row in text
 
             step("a class", lambda: join_class(page, school.server.address, classroom.code))

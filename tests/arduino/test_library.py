@@ -73,14 +73,14 @@ def sources(folder: Path) -> list[Path]:
     return [p for p in sorted((folder / "src").rglob("*")) if p.suffix in (".cpp", ".S")]
 
 
-def elf(made: Path, example: str, board: str, folder: Path) -> Path:
+def elf(built: Path, example: str, board: str, folder: Path) -> Path:
     """Return an example as the Arduino IDE builds it: no warning, and it fits."""
     need(boards.missing())
     path = folder / f"{example}-{board}.elf"
     if path.exists():
         return path
     sketch = folder / f"{example}.cpp"
-    text = (made / "examples" / example / f"{example}.ino").read_text(encoding="utf-8")
+    text = (built / "examples" / example / f"{example}.ino").read_text(encoding="utf-8")
     sketch.write_text(PRELUDE + text, encoding="utf-8")
     flags = [
         *boards.flags_of(board, sketch_board.FLAGS),
@@ -90,7 +90,7 @@ def elf(made: Path, example: str, board: str, folder: Path) -> Path:
         "-Werror",
     ]
     boards.run(
-        "avr-g++", *flags, "-Wl,--gc-sections", f"-I{made / 'src'}", sketch, *sources(made),
+        "avr-g++", *flags, "-Wl,--gc-sections", f"-I{built / 'src'}", sketch, *sources(built),
         sketch_board.core(board), "-o", path,
     )  # fmt: skip
     return path
@@ -100,9 +100,9 @@ def elf(made: Path, example: str, board: str, folder: Path) -> Path:
 @pytest.mark.parametrize("board", ["uno", "mega"])
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_an_example_builds_and_fits(
-    made: Path, example: str, board: str, tmp_path_factory: pytest.TempPathFactory
+    path: Path, example: str, board: str, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    program = elf(made, example, board, shared(tmp_path_factory))
+    program = elf(path, example, board, shared(tmp_path_factory))
     text, data, zeros = map(int, boards.run("avr-size", program).splitlines()[1].split()[:3])
     flash, ram = (32_256, 2_048) if board == "uno" else (253_952, 8_192)
     assert text + data <= flash
@@ -111,23 +111,23 @@ def test_an_example_builds_and_fits(
 
 @pytest.mark.parametrize("name", chips.CHIPS)
 def test_library_and_examples_compile_for_a_chip_of_esp_boards(
-    made: Path, name: str, tmp_path: Path
+    built: Path, name: str, tmp_path: Path
 ) -> None:
     need(chips.why_missing(chips.CHIPS[name]))
     (tmp_path / "Arduino.h").write_text(STAND_IN, encoding="utf-8")
     (tmp_path / "string.h").write_text(STRING_H, encoding="utf-8")
     sketches = []
     for example in EXAMPLES:
-        text = (made / "examples" / example / f"{example}.ino").read_text(encoding="utf-8")
+        text = (built / "examples" / example / f"{example}.ino").read_text(encoding="utf-8")
         sketches.append(tmp_path / f"{example}.cpp")
         sketches[-1].write_text(PRELUDE + text, encoding="utf-8")
-    flags = (f"-I{made / 'src'}", f"-I{tmp_path}")
-    for path in [*(made / "src").glob("*.cpp"), *sketches]:  # the rest is built for them elsewhere
+    flags = (f"-I{built / 'src'}", f"-I{tmp_path}")
+    for path in [*(built / "src").glob("*.cpp"), *sketches]:  # the rest is built for them elsewhere
         chips.compile_one(chips.CHIPS[name], path, str(tmp_path / "one.o"), flags)
 
 
-def test_an_image_in_flash_drives(made: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
-    program = elf(made, "ImageInFlash", "uno", shared(tmp_path_factory))
+def test_an_image_in_flash_drives(path: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    program = elf(path, "ImageInFlash", "uno", shared(tmp_path_factory))
     with Uno(program, names={"left": "D5", "back": "D7"}) as uno:
         uno.run_ms(500)
         assert uno.pins.history("left")[-1].state == "pwm"
@@ -140,20 +140,20 @@ def test_an_image_in_flash_drives(made: Path, tmp_path_factory: pytest.TempPathF
 
 @pytest.mark.long
 def test_the_link_of_an_example_conforms(
-    made: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+    path: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     have_kit()
-    program = elf(made, "Link", "uno", shared(tmp_path_factory))
+    program = elf(path, "Link", "uno", shared(tmp_path_factory))
     with Uno(program, baud=115_200, tells_sleep=False) as uno:
         uno.go()
-        done = process("doctor", "--conform", "--port", uno.pty, "--baud", "115200")
-        assert done.code == 0, done.out + done.err
-        done = process("upload", "-e", "SI|SHOW(1 + 1)", "--port", uno.pty, "--baud", "115200",
+        result = process("doctor", "--conform", "--port", uno.pty, "--baud", "115200")
+        assert result.code == 0, result.out + result.err
+        result = process("upload", "-e", "SI|SHOW(1 + 1)", "--port", uno.pty, "--baud", "115200",
                        "--no-save")  # fmt: skip
-        assert "1 + 1 2" in done.out, done.out + done.err
+        assert "1 + 1 2" in result.out, result.out + result.err
 
 
-def test_platformio_packs_it(made: Path, tmp_path: Path) -> None:
+def test_platformio_packs_it(path: Path, tmp_path: Path) -> None:
     """Its list of licences comes from the internet, so one stands in for it."""
     pytest.importorskip("platformio")
     code = (
@@ -164,7 +164,7 @@ def test_platformio_packs_it(made: Path, tmp_path: Path) -> None:
         "from platformio.__main__ import main\n"
         "sys.exit(main(['pio', 'pkg', 'pack', sys.argv[1], '-o', sys.argv[2]]))\n"
     )
-    completed = subprocess.run([sys.executable, "-c", code, made, tmp_path], capture_output=True,
+    completed = subprocess.run([sys.executable, "-c", code, path, tmp_path], capture_output=True,
                           text=True, check=False)  # fmt: skip
     assert completed.returncode == 0, completed.stdout + completed.stderr
     (packed,) = tmp_path.glob("*.tar.gz")

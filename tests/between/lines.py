@@ -86,10 +86,10 @@ class Way:
             self._under_way.append((at_ms, byte))
 
     def arrived(self, now_ms: int) -> bytes:
-        found = bytearray()
+        arrived_bytes = bytearray()
         while self._under_way and self._under_way[0][0] <= now_ms:
-            found.append(self._under_way.popleft()[1])
-        return bytes(found)
+            arrived_bytes.append(self._under_way.popleft()[1])
+        return bytes(arrived_bytes)
 
 
 class BehindBadLine(PtyRobot):

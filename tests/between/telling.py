@@ -108,27 +108,27 @@ class Teller(Terminal):
 
     @property
     def text(self) -> str:
-        return ESCAPED.sub("", "".join(said for _, said in list(self.timed_output)))
+        return ESCAPED.sub("", "".join(text for _, text in list(self.timed_output)))
 
     @property
-    def kept(self) -> list[str]:
+    def shown_lines(self) -> list[str]:
         """What stays on the screen: of a line that was drawn over, its last state."""
-        found: list[str] = []
+        lines: list[str] = []
         for line in self.text.replace("\r\n", "\n").split("\n"):
             shown = [part.strip() for part in line.split("\r") if part.strip()]
-            found += shown[-1:]
-        return found
+            lines += shown[-1:]
+        return lines
 
     def repeated(self) -> list[str]:
         """Return what was said twice; what is waited for, only with nothing else in between."""
         parts = re.findall(r"([^\r\n]+)(\r*\n|\r|$)", self.text)
-        words = [(said.strip(), end) for said, end in parts
-                 if said.strip() and not said.strip().startswith(ROBOT)]  # fmt: skip
-        awaited = [each for (each, end), (after, _) in pairwise(words)
-                   if each == after and end.endswith("\n")]  # fmt: skip
-        own = [each for each in self.kept if not each.startswith((ADVICE, ROBOT))]
-        others = [each for each in own if not STANDING.search(each)]
-        return sorted({*awaited, *(each for each in others if others.count(each) > 1)})
+        words = [(text.strip(), end) for text, end in parts
+                 if text.strip() and not text.strip().startswith(ROBOT)]  # fmt: skip
+        awaited = [word for (word, end), (after, _) in pairwise(words)
+                   if word == after and end.endswith("\n")]  # fmt: skip
+        own = [line for line in self.shown_lines if not line.startswith((ADVICE, ROBOT))]
+        others = [line for line in own if not STANDING.search(line)]
+        return sorted({*awaited, *(line for line in others if others.count(line) > 1)})
 
     def longest_silence_s(self) -> float:
         """Return the longest time without a word, but for what goes on as was said.
@@ -137,10 +137,10 @@ class Teller(Terminal):
         """
         assert self.ended_s is not None
         last_s, is_standing, longest_s = self.began_s, False, 0.0
-        for at_s, said in [*self.timed_output, (self.ended_s, "")]:
-            parts = [part.strip() for part in re.split(r"[\r\n]", ESCAPED.sub("", said))]
+        for at_s, text in [*self.timed_output, (self.ended_s, "")]:
+            parts = [part.strip() for part in re.split(r"[\r\n]", ESCAPED.sub("", text))]
             parts = [part for part in parts if part]
-            if not parts and said:
+            if not parts and text:
                 continue  # a line is cleared
             if not is_standing:
                 away_s = sum(

@@ -102,7 +102,7 @@ ON_ESP32 = tuple(
 ALL = (*COMMANDS, *CLIENTS, *ON_ESP32)
 
 
-class Found(NamedTuple):
+class TriedCommand(NamedTuple):
     """What came of one command."""
 
     name: str
@@ -110,7 +110,7 @@ class Found(NamedTuple):
     silence_s: float
     took_s: float  # until its end, from Ctrl-C on where it stays
     wrong: tuple[str, ...]
-    said: str
+    output: str
 
 
 @lru_cache(maxsize=1)
@@ -125,7 +125,7 @@ def with_program() -> bytes:
             return robot._memory
 
 
-def tried(words: Words, fault: Fault, seed: int) -> Found:
+def tried(words: Words, fault: Fault, seed: int) -> TriedCommand:
     """Run a command behind a line with a fault, then another one behind the same, mended."""
     chance = Random(f"{words.name} {fault.name} {seed}")
     with ExitStack() as stack:
@@ -147,10 +147,10 @@ def tried(words: Words, fault: Fault, seed: int) -> Found:
         wrong += _contradictions(teller, line, words)
         if fault.has_end or not fault.pulls:
             wrong += _next_try(line, env, words)
-        asked_s = [at_s for at_s, said in teller.timed_output if not said]
+        asked_s = [at_s for at_s, text in teller.timed_output if not text]
         began_s = asked_s[0] if asked_s else teller.began_s
         assert teller.ended_s is not None
-        return Found(words.name, fault.name, teller.longest_silence_s(),
+        return TriedCommand(words.name, fault.name, teller.longest_silence_s(),
                      teller.ended_s - began_s, tuple(wrong), teller.text)  # fmt: skip
 
 
@@ -203,26 +203,26 @@ def _played(
 
 def _contradictions(teller: Teller, line: BehindBadLine, words: Words) -> list[str]:
     """Return what was said twice, or is not so."""
-    lines, code, fault = teller.kept, teller.process.returncode, line.fault
-    found = [f"said twice: {each}" for each in teller.repeated()]
+    lines, code, fault = teller.shown_lines, teller.process.returncode, line.fault
+    contradictions = [f"said twice: {sentence}" for sentence in teller.repeated()]
     if "Traceback" in teller.text:
-        found.append("a traceback")
+        contradictions.append("a traceback")
     is_confirmed = any(map(CONFIRMED.search, lines))
     is_unconfirmed = any(map(UNCONFIRMED.search, lines))
     if is_confirmed and is_unconfirmed:
-        found.append("a stop is both")
+        contradictions.append("a stop is both")
     if code and not lines:
-        found.append("an exit code without a word")
+        contradictions.append("an exit code without a word")
     is_heard = fault.name in ("nothing", "late", "slow", "loses")  # while a program runs, too
     if is_heard and not words.may_fail and code not in ((0, 2) if words.stays else (0,)):
-        found.append(f"exit code {code}")
+        contradictions.append(f"exit code {code}")
     if fault.pulls:
-        return found
+        return contradictions
     if not words.name.startswith("upload --detach"):
         CLOCK.wait(0 if is_confirmed or not line.moves else DRIVES_ON_S)
         if line.moves:
-            found.append("it moves")
-    return found
+            contradictions.append("it moves")
+    return contradictions
 
 
 def _next_try(line: BehindBadLine, env: dict[str, str], words: Words) -> list[str]:
@@ -231,30 +231,30 @@ def _next_try(line: BehindBadLine, env: dict[str, str], words: Words) -> list[st
     teller = Teller(["upload", "-e", SHORT, *words.robot, "--port", line.port], env)
     teller.wait(ENDS_S)
     code = teller.end()
-    return [] if code == 0 else [f"the next try: {code}, {teller.kept}"]
+    return [] if code == 0 else [f"the next try: {code}, {teller.shown_lines}"]
 
 
-def judged(found: Found, room_s: float = ROOM_S) -> list[str]:
-    silent = found.silence_s > SILENT_S + room_s
-    return [*found.wrong, *([f"silent for {found.silence_s:.1f} s"] if silent else [])]
+def judged(command: TriedCommand, room_s: float = ROOM_S) -> list[str]:
+    silent = command.silence_s > SILENT_S + room_s
+    return [*command.wrong, *([f"silent for {command.silence_s:.1f} s"] if silent else [])]
 
 
-def all_tried(rows: Sequence[tuple[Words, Fault, int]]) -> list[Found]:
+def all_tried(rows: Sequence[tuple[Words, Fault, int]]) -> list[TriedCommand]:
     with_program()
     with ThreadPoolExecutor(WORKERS) as pool:
         return list(pool.map(lambda row: tried(*row), rows))
 
 
-def printed(found: Sequence[Found]) -> None:
+def printed(commands: Sequence[TriedCommand]) -> None:
     """Print the table: of each command the worst of each figure, and in which fault it was."""
-    rows: dict[str, list[Found]] = defaultdict(list)
-    for each in found:
-        rows[each.name].append(each)
+    rows: dict[str, list[TriedCommand]] = defaultdict(list)
+    for tried_command in commands:
+        rows[tried_command.name].append(tried_command)
     print("| command | tries | longest silence, s | to its end, s |\n|---|---:|---:|---:|")
     for command in ALL:
         if mine := rows[command.name]:
-            quiet = max(mine, key=lambda each: each.silence_s)
-            late = max(mine, key=lambda each: each.took_s)
+            quiet = max(mine, key=lambda tried_command: tried_command.silence_s)
+            late = max(mine, key=lambda tried_command: tried_command.took_s)
             print(f"| `{command.name}` | {len(mine)} | {quiet.silence_s:.1f} ({quiet.fault}) |"
                   f" {late.took_s:.1f} ({late.fault}) |")  # fmt: skip
 
@@ -278,8 +278,14 @@ def test_a_sample_of_commands_keeps_the_laws_behind_bad_lines(
     from tests.support import sampling
 
     seed = Random(sampling.seed(request.config)).randrange(10**6)
-    found = all_tried(drawn(SAMPLE, seed, is_whole=False))
-    wrong = {f"{each.name}, {each.fault}": (judged(each, ROOM_CI_S), each.said) for each in found}
+    commands = all_tried(drawn(SAMPLE, seed, is_whole=False))
+    wrong = {
+        f"{tried_command.name}, {tried_command.fault}": (
+            judged(tried_command, ROOM_CI_S),
+            tried_command.output,
+        )
+        for tried_command in commands
+    }
     assert not {name: why for name, why in wrong.items() if why[0]}
 
 
@@ -304,7 +310,9 @@ def test_a_second_ctrl_c_ends_the_wait_and_is_no_second_word(
         teller.interrupt()
         assert teller.wait(STOPS_S)
         outcomes = [
-            each for each in teller.kept if CONFIRMED.search(each) or UNCONFIRMED.search(each)
+            line
+            for line in teller.shown_lines
+            if CONFIRMED.search(line) or UNCONFIRMED.search(line)
         ]
         assert len(outcomes) == 1 and not teller.repeated(), teller.text
         line.until(lambda: not line.moves, "it stands")
@@ -318,13 +326,16 @@ if __name__ == "__main__":
     given = wanted(100, 1, "whole", "clients", "esp32")
     among = CLIENTS if given.clients else ON_ESP32 if given.esp32 else ALL
     began_s = CLOCK.now_s
-    found = all_tried(drawn(given.count, given.seed, given.whole, among))
-    printed(found)
-    wrong = [(each, judged(each)) for each in found]
-    for each, why in wrong:
+    commands = all_tried(drawn(given.count, given.seed, given.whole, among))
+    printed(commands)
+    wrong = [(tried_command, judged(tried_command)) for tried_command in commands]
+    for tried_command, why in wrong:
         if why:
-            print(f"\n{each.name}, {each.fault}: {'; '.join(why)}\n{each.said}")
+            print(
+                f"\n{tried_command.name}, {tried_command.fault}: {'; '.join(why)}\n"
+                f"{tried_command.output}"
+            )
     took = os.times()
-    print(f"\n{len(found)} tried, {sum(bool(why) for _, why in wrong)} wrong; "
+    print(f"\n{len(commands)} tried, {sum(bool(why) for _, why in wrong)} wrong; "
           f"{CLOCK.now_s - began_s:.0f} s, {sum(took[:4]):.0f} s of a processor")  # fmt: skip
     sys.exit(any(why for _, why in wrong))

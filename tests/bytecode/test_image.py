@@ -106,13 +106,13 @@ def test_an_image_of_version_1_says_which_it_is() -> None:
 
 def test_it_has_the_lowest_version_that_has_all_of_it() -> None:
     texts = [case.parts["tiniscript"] for case in all_cases() if "tiniscript" in case.parts]
-    found = set()
+    versions = set()
     for compiled in (compile_text(text, KIT) for text in texts):
         if compiled.verdict is not None:
             version = second_reader.version(compiled.code, compiled.verdict.needs)
             assert (*compiled.image[2:4],) == version
-            found.add(version)
-    assert found == {*second_reader.VERSIONS}
+            versions.add(version)
+    assert versions == {*second_reader.VERSIONS}
 
 
 def test_each_instruction_counts_for_the_version(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -124,7 +124,7 @@ def test_each_instruction_counts_for_the_version(monkeypatch: pytest.MonkeyPatch
         code = others + op.opcode + bytes(op.size - 1) + others
         assert pack("SI", 0, code)[3] == op.since
         with monkeypatch.context() as patch:
-            later = [op._replace(since=9) if each == op else each for each in BY_CODE]
+            later = [op._replace(since=9) if other == op else other for other in BY_CODE]
             patch.setattr(opcodes, "BY_CODE", later)
             assert pack("SI", 0, code)[3] == 9
 
@@ -191,8 +191,8 @@ def test_the_polynomial_is_primitive() -> None:
     one = kit.hash_of_used([("actuator", 0)])
     period_later = kit.hash_of_used([("actuator", 0)] * 65_536)
     assert one == period_later
-    found = {kit.hash_of_used([("actuator", 0)] * uses) for uses in (1, 3, 5, 15, 17, 255, 257)}
-    assert len(found) == 7
+    hashes = {kit.hash_of_used([("actuator", 0)] * uses) for uses in (1, 3, 5, 15, 17, 255, 257)}
+    assert len(hashes) == 7
     assert all(kit.hash_of_used([("actuator", 0)] * (65_535 // prime)) for prime in (3, 5, 17, 257))
 
 
@@ -230,7 +230,7 @@ def test_the_spec_promises_no_number_that_is_taken() -> None:
     later = text[text.index("### Room to grow") :]
     promised = dict(re.findall(r"(NO_PLACE|LIST_FULL|NO_ROOM)\s+\((\d+)\)", later))
     assert int(promised.pop("NO_ROOM")) not in {number for number, _ in REFUSALS.values()}
-    assert not {int(each) for each in promised.values()} & {number for number, *_ in FAULTS}
+    assert not {int(number) for number in promised.values()} & {number for number, *_ in FAULTS}
     assert len(promised) == 2
     first = re.search(r"for\s+rules,\s+these\s+start\s+at\s+(\d+)", later)
     assert first

@@ -96,11 +96,11 @@ def left_by(op: Op, value: int) -> tuple[int, str]:
 def test_stack_effects() -> None:
     for op in OPS:
         for value in (0, 1):
-            left = op.pushes
+            results = op.pushes
             if op.control_role == "join":  # what decides stays
-                left += value == ("OR" in op.name)
+                results += value == ("OR" in op.name)
             divides = op.name in ("DIV", "MOD") and value == 0
-            wanted = (1, "DIVIDE_BY_ZERO") if divides else (left, "")
+            wanted = (1, "DIVIDE_BY_ZERO") if divides else (results, "")
             if op.needs == NEEDS_GO and value:  # a way, and a power that rounds to 0
                 wanted = (0, "NO_POWER")
             assert left_by(op, value) == wanted, (op.name, value)
@@ -114,7 +114,7 @@ def faults_of(op: Op) -> set[str]:
     code = op.opcode + b"".join(
         (1).to_bytes(operand.kind.size, "little") for operand in op.operands
     )
-    found = set()
+    fault_names = set()
     for first in EDGES:
         for second in EDGES:
             machine = machine_for(op, code)
@@ -123,15 +123,15 @@ def faults_of(op: Op) -> set[str]:
             task.variables[:] = [first] * VARIABLES
             task.counters[:], task.calls[:] = [2], [0]
             machine.tick(2**31, 1)
-            found.add(machine.fault)
-    return found - {""}
+            fault_names.add(machine.fault)
+    return fault_names - {""}
 
 
 def test_the_instructions_that_can_fault_are_those_that_the_table_names() -> None:
     for op in OPS:
-        said = {fault for fault, names in opcodes.FAULTING_OPS.items() if op.name in names}
-        said -= {"STUCK", "STUCK_LEFT", "STUCK_RIGHT"}  # of a robot that measures
-        assert faults_of(op) == said, op.name
+        fault_names = {fault for fault, names in opcodes.FAULTING_OPS.items() if op.name in names}
+        fault_names -= {"STUCK", "STUCK_LEFT", "STUCK_RIGHT"}  # of a robot that measures
+        assert faults_of(op) == fault_names, op.name
 
 
 def test_operands_are_where_the_table_says() -> None:
@@ -244,10 +244,10 @@ def test_an_instruction_that_comes_after_a_release_has_a_later_version() -> None
         codes: set[int] = set()
         for first, _, last in (part.partition("-") for part in ranges.split()):
             codes.update(range(int(first, 16), int(last or first, 16) + 1))
-        found = {op.code for op in OPS if op.since == minor}
-        more = [op.name for op in OPS if op.code in found - codes]
+        newer_codes = {op.code for op in OPS if op.since == minor}
+        more = [op.name for op in OPS if op.code in newer_codes - codes]
         assert not more, f"give {more} since={max(RELEASED) + 1}: {minor} has been released"
-        assert found == codes, "a code is a promise"
+        assert newer_codes == codes, "a code is a promise"
 
 
 def test_a_version_that_is_not_released_is_in_the_changelog() -> None:

@@ -17,7 +17,7 @@ def test_every_offset_is_in_the_statement_that_begins_last_before_it(seed: int) 
     oracle_kit, kit = KITS[seed % len(KITS)]
     code = image_of(programs.program(random.Random(seed), oracle_kit), kit).code
     starts = statement_starts(code)
-    found = [statement_of(starts, offset) for offset in range(len(code))]
-    assert [found[start] for start in starts] == starts
-    assert found == sorted(found)
-    assert all(start <= offset for offset, start in enumerate(found))
+    statements = [statement_of(starts, offset) for offset in range(len(code))]
+    assert [statements[start] for start in starts] == starts
+    assert statements == sorted(statements)
+    assert all(start <= offset for offset, start in enumerate(statements))

@@ -29,13 +29,13 @@ def refusal(code: bytes) -> str:
 
 
 def test_every_rule_has_a_case() -> None:
-    said = {
+    rules = {
         case.parts["refused"].split()[1]
         for name in ("refused.md", "tasks.md")
         for case in read(ROOT / "tests/cases" / name)
         if "refused" in case.parts
     }
-    assert said | {"CODE_LENGTH"} == set(RULES)
+    assert rules | {"CODE_LENGTH"} == set(RULES)
 
 
 def test_code_may_be_as_long_as_the_limit() -> None:

@@ -44,7 +44,7 @@ def own_goals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(subprocess, "run", runs)
 
 
-def kept(name: str) -> Result:
+def result_of(name: str) -> Result:
     return results.read_results()[name]
 
 
@@ -53,11 +53,19 @@ def test_it_goes_on_where_it_was(
 ) -> None:
     interrupted_after(monkeypatch, 1)
     assert campaign.main(["done"]) == 2
-    assert (kept("done").done, kept("done").seed, kept("done").next_seed) == (10, 7, 12)
+    assert (result_of("done").done, result_of("done").seed, result_of("done").next_seed) == (
+        10,
+        7,
+        12,
+    )
     output = capsys.readouterr().out
     assert "goes on from here" in output and "10: less" in output
     assert campaign.main(["done"]) == 0
-    assert (kept("done").done, kept("done").seed, kept("done").next_seed) == (25, 7, 22)
+    assert (result_of("done").done, result_of("done").seed, result_of("done").next_seed) == (
+        25,
+        7,
+        22,
+    )
     output = capsys.readouterr().out
     assert [line.split("; ")[1] for line in output.splitlines()[:2]] == [
         f"-m {HERE} 10 --seed 12",
@@ -66,17 +74,17 @@ def test_it_goes_on_where_it_was(
     assert campaign.main(["done"]) == 0
     assert "--seed" not in capsys.readouterr().out, "nothing is left to do"
     row = results.rows()[0]
-    assert row[2:] == ("25 things", "25", "7 to 17", kept("done").date, "a" * 10)
+    assert row[2:] == ("25 things", "25", "7 to 17", result_of("done").date, "a" * 10)
     assert results.rows()[1][3] == "not run yet"
 
 
 def interrupted_after(monkeypatch: pytest.MonkeyPatch, pieces: int) -> None:
     """Have Ctrl-C come after so many pieces, once."""
-    piece, left = campaign.run_piece, [pieces]
+    piece, pieces_left = campaign.run_piece, [pieces]
 
     def interrupted(*given: Any) -> Result:
-        left[0] -= 1
-        if left[0] == -1:
+        pieces_left[0] -= 1
+        if pieces_left[0] == -1:
             raise KeyboardInterrupt
         return piece(*given)
 
@@ -86,7 +94,7 @@ def interrupted_after(monkeypatch: pytest.MonkeyPatch, pieces: int) -> None:
 def test_a_failure_is_told_with_its_seed_and_run_again(capsys: pytest.CaptureFixture[str]) -> None:
     assert campaign.main(["bad"]) == 1
     assert "this one is wrong" in capsys.readouterr().out
-    assert kept("bad").done == 0 and "seed 7" in kept("bad").wrong
+    assert result_of("bad").done == 0 and "seed 7" in result_of("bad").wrong
     assert campaign.main(["bad"]) == 1
     assert "--seed 7" in capsys.readouterr().out
 
@@ -97,7 +105,7 @@ def test_what_other_code_has_reached_does_not_count(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(results, "current_commit", lambda: "b" * 10)
     interrupted_after(monkeypatch, 1)
     campaign.main(["done"])
-    assert (kept("done").done, kept("done").commit) == (10, "b" * 10)
+    assert (result_of("done").done, result_of("done").commit) == (10, "b" * 10)
 
 
 def test_what_code_has_reached_that_is_in_no_commit_is_not_kept(
@@ -124,24 +132,24 @@ def test_a_figure_is_old_when_what_it_tried_has_changed(
     first = committed("tried", "1")
     second = committed("other", "2")
 
-    def said(commit: str) -> str:
+    def figure_in(commit: str) -> str:
         return results.figure_text(DONE, Result(25, 1, 7, 22, "", commit))
 
-    assert said(first) == said(second) == "25"
-    assert said("b" * 10) == said(f"{second}+") == "25, old"
+    assert figure_in(first) == figure_in(second) == "25"
+    assert figure_in("b" * 10) == figure_in(f"{second}+") == "25, old"
     (tmp_path / "tried").write_text("3")
-    assert said(first) == said(second) == "25, old"
+    assert figure_in(first) == figure_in(second) == "25, old"
     results.write_results({"done": Result(25, 1, 7, 22, "", first)})
     assert results.outdated_goals() == ["done"]
     third = committed("tried", "3")
-    assert (said(second), said(third)) == ("25, old", "25")
+    assert (figure_in(second), figure_in(third)) == ("25, old", "25")
     monkeypatch.setattr(results, "ROOT", tmp_path / "none")  # no repository: as the page says
     (tmp_path / "none").mkdir()
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path))
     (tmp_path / "page").write_text("| `done` | It ends. | 25 things | 25, old | 7 |\n")
-    assert said(third) == "25, old"
+    assert figure_in(third) == "25, old"
     (tmp_path / "page").write_text("| `done` | It ends. | 25 things | 25 | 7 |\n")
-    assert said(first) == "25"
+    assert figure_in(first) == "25"
 
 
 @pytest.mark.parametrize("goal", GOALS, ids=lambda goal: goal.name)

@@ -62,21 +62,21 @@ def halt_output(terminal: Terminal) -> list[str]:
 def test_without_a_terminal_it_tells_each_halt_and_goes_on(
     pty_robot: PtyRobot, program: Path
 ) -> None:
-    done = on(pty_robot, "upload", program, "--no-save", "--break", "7", "--break", "4").gives(
+    result = on(pty_robot, "upload", program, "--no-save", "--break", "7", "--break", "4").gives(
         0, ""
     )
-    assert done.out.splitlines()[1:] == [*BEFORE_4, *BEFORE_7, *END]
+    assert result.out.splitlines()[1:] == [*BEFORE_4, *BEFORE_7, *END]
     assert pty_robot.did[-1] == "FINISHED"
 
 
 def test_a_fault_after_a_halt_is_the_exit_code(pty_robot: PtyRobot) -> None:
-    done = on(pty_robot, "upload", "-e", "SI|X = 0;SHOW(1 / X)", "--break", "1").gives(1)
-    assert "Halted before line 1" in done.out
+    result = on(pty_robot, "upload", "-e", "SI|X = 0;SHOW(1 / X)", "--break", "1").gives(1)
+    assert "Halted before line 1" in result.out
 
 
 def test_json_has_the_values_in_their_types(pty_robot: PtyRobot, program: Path) -> None:
-    done = on(pty_robot, "upload", program, "--no-save", "--json", "--break", "7").gives(0, "")
-    rows = [json.loads(line) for line in done.out.splitlines()]
+    result = on(pty_robot, "upload", program, "--no-save", "--json", "--break", "7").gives(0, "")
+    rows = [json.loads(line) for line in result.out.splitlines()]
     [halted] = [row for row in rows if row["event"] == "HALTED"]
     assert (halted["line"], halted["tasks"]) == (7, [])
     assert halted["variables"] == {"N": 5.5, "FAR": True}
@@ -86,14 +86,14 @@ def test_json_has_the_values_in_their_types(pty_robot: PtyRobot, program: Path) 
 def test_a_line_without_an_instruction_halts_before_the_next_one(
     pty_robot: PtyRobot, program: Path
 ) -> None:
-    done = on(pty_robot, "upload", program, "--no-save", "--break", "5").gives(0)
-    assert done.out.splitlines()[1:] == [*BEFORE_6, *END]
+    result = on(pty_robot, "upload", program, "--no-save", "--break", "5").gives(0)
+    assert result.out.splitlines()[1:] == [*BEFORE_6, *END]
 
 
 def test_it_tells_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
-    done = on(pty_robot, "upload", "-e", TASKS, "--no-save", "--break", "5").gives(0)
-    first = done.out.splitlines()[1:6]
+    result = on(pty_robot, "upload", "-e", TASKS, "--no-save", "--break", "5").gives(0)
+    first = result.out.splitlines()[1:6]
     assert first == [
         "Halted before line 5: S",
         "  N = 3",
@@ -108,8 +108,8 @@ def test_an_instruction_that_is_joined_to_the_one_before_halts_there(pty_robot: 
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
     joined = "SI|DISTANCE\nIF(DISTANCE < 10)\nSTOP\nENDIF\nSHOW(2)\n"
     for line in (1, 2):
-        done = on(pty_robot, "upload", "-e", joined, "--no-save", "--break", str(line)).gives(0)
-        assert done.out.splitlines()[1:2] == ["Halted before line 2: IF(DISTANCE < 10)"]
+        result = on(pty_robot, "upload", "-e", joined, "--no-save", "--break", str(line)).gives(0)
+        assert result.out.splitlines()[1:2] == ["Halted before line 2: IF(DISTANCE < 10)"]
 
 
 @pytest.mark.parametrize("keys", ["s", "S", " ", "\n"])
@@ -148,14 +148,14 @@ def test_a_loop_is_stepped_one_instruction_at_a_time(pty_robot: PtyRobot, tmp_pa
     text = "SI|N = 2\nLOOP(N)\nSHOW(N * N + 1)\nN = N - 1\nEND_LOOP\n"
     path.write_text(text, encoding="utf-8")
     terminal = at_a_terminal(pty_robot, path, 3)
-    seen = []
+    halts = []
     for k in range(6):
         terminal.until(rf"(?s)(.*Ctrl-C: stop){{{k + 1}}}\n*$")
-        seen.append([line for line in terminal.lines() if line.startswith("Halted")][-1])
+        halts.append([line for line in terminal.lines() if line.startswith("Halted")][-1])
         terminal.type("s")
     halt_output(terminal)
     loop = ["line 3: SHOW(N * N + 1)", "line 4: N = N - 1", "line 2: LOOP(N)"]
-    assert seen == [f"Halted before {each}" for each in loop * 2]
+    assert halts == [f"Halted before {instruction}" for instruction in loop * 2]
 
 
 def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None:
@@ -170,7 +170,7 @@ def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None
 
 
 @pytest.mark.parametrize(
-    ("words", "code", "said"),
+    ("words", "code", "message"),
     [
         (["--break", "9"], 1, "on line 9 or after it"),
         (["--break", "0"], 2, "--break"),
@@ -181,9 +181,9 @@ def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None
     ],
 )
 def test_what_no_robot_does_is_said_before_anything_is_sent(
-    words: list[str], code: int, said: str, pty_robot: PtyRobot, program: Path
+    words: list[str], code: int, message: str, pty_robot: PtyRobot, program: Path
 ) -> None:
-    on(pty_robot, "upload", program, *words).gives(code, said)
+    on(pty_robot, "upload", program, *words).gives(code, message)
     assert pty_robot.did == [] and on(pty_robot, "start").code == 3, "it has no program"
 
 
@@ -192,8 +192,8 @@ def test_an_image_whose_text_nobody_knows_has_no_lines(
 ) -> None:
     image = tmp_path / "drive.bin"
     tsc("compile", program, "-o", image).gives(0)
-    done = on(pty_robot, "upload", image, "--no-save", "--break", "7").gives(0)
-    assert done.out.splitlines()[1:] == [*BEFORE_7, *END], "its map is in the cache"
+    result = on(pty_robot, "upload", image, "--no-save", "--break", "7").gives(0)
+    assert result.out.splitlines()[1:] == [*BEFORE_7, *END], "its map is in the cache"
     monkeypatch.setattr("tiniscript.library.source_map.recall", lambda checksum: None)
     on(pty_robot, "upload", image, "--break", "7").gives(2, "an image has no lines")
 
@@ -247,8 +247,8 @@ LINES = (
 
 def test_a_line_halts_where_it_is_told_and_nowhere_in_what_came_before(pty_robot: PtyRobot) -> None:
     """The lines that it needs are sent before it. Lines of the text that is typed count."""
-    done = on(pty_robot, "live", "-", "--break", "3", data="\n".join(LINES).encode()).gives(0, "")
-    assert done.out.splitlines() == [
+    result = on(pty_robot, "live", "-", "--break", "3", data="\n".join(LINES).encode()).gives(0, "")
+    assert result.out.splitlines() == [
         "TELL: now known.",
         "X 4",
         "Halted before line 3: X = X + 1",

@@ -40,17 +40,17 @@ def after_lines(count: int, *words: str, both: bool = False) -> tuple[int, str]:
         for _ in range(count):
             assert running.stdout.readline()
         running.stdout.close()
-        said = running.stderr.read().decode() if running.stderr else ""
-        return running.wait(HANGS_S), said
+        err_text = running.stderr.read().decode() if running.stderr else ""
+        return running.wait(HANGS_S), err_text
 
 
 @pytest.mark.parametrize(("lines", "extra"), [(0, []), (1, ["--json"]), (3, [])])
 def test_upload_into_a_pipe_that_closes_stops_the_robot(
     pty_robot: PtyRobot, lines: int, extra: list[str]
 ) -> None:
-    code, said = after_lines(lines, "upload", "-e", SHOWS, "--port", pty_robot.port, *extra)
+    code, err = after_lines(lines, "upload", "-e", SHOWS, "--port", pty_robot.port, *extra)
     assert code == EXIT_OF_CLOSED_PIPE
-    assert said.count("\n") == 1 and "stopped the robot" in said
+    assert err.count("\n") == 1 and "stopped the robot" in err
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
 
 
@@ -58,12 +58,12 @@ def test_a_program_that_prints_nothing_is_stopped_too(pty_robot: PtyRobot) -> No
     """It has no end, and tsc has nothing to write that could fail."""
     port = ("--port", pty_robot.port)
     for words in (("upload", "-e", FOREVER), ("start",)):
-        code, said = after_lines(1, *words, *port)
+        code, err = after_lines(1, *words, *port)
         assert code == EXIT_OF_CLOSED_PIPE
-        assert said.count("\n") == 1 and "stopped the robot" in said
+        assert err.count("\n") == 1 and "stopped the robot" in err
         assert not pty_robot.moves
-    code, said = after_lines(0, "live", FOREVER.removeprefix("SI|"), *port)
-    assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in said
+    code, err = after_lines(0, "live", FOREVER.removeprefix("SI|"), *port)
+    assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in err
 
 
 def test_many_robots_that_show_nothing_are_stopped() -> None:
@@ -89,8 +89,8 @@ def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
     """It drives without a pause, so nothing is saved before the stop."""
     drives = "".join(f"M({k}, 50);W(0.01);" for k in range(1, 50))
     words = ["upload", "-e", f"SI|LOOP(FOREVER);{drives}SHOW(1);END_LOOP", "--port", pty_robot.port]
-    code, said = after_lines(1, *words)
-    assert code == EXIT_OF_CLOSED_PIPE and said.count("\n") == 1 and "stopped the robot" in said
+    code, err = after_lines(1, *words)
+    assert code == EXIT_OF_CLOSED_PIPE and err.count("\n") == 1 and "stopped the robot" in err
     pty_robot.switch_off_and_on()
     on(pty_robot, "show").gives(0, out="SHOW")
 
@@ -99,23 +99,23 @@ def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
     port = ("--port", pty_robot.port)
     assert after_lines(1, "upload", "-e", SHOWS, *port, both=True) == (EXIT_OF_CLOSED_PIPE, "")
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
-    code, said = after_lines(2, "start", *port)
-    assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in said
-    code, said = after_lines(1, "live", "LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP", *port)
-    assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in said
+    code, err = after_lines(2, "start", *port)
+    assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in err
+    code, err = after_lines(1, "live", "LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP", *port)
+    assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in err
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
 
 
 def test_what_goes_on_alone_goes_on(pty_robot: PtyRobot) -> None:
     port = ("--port", pty_robot.port)
-    code, said = after_lines(0, "upload", "-e", SHOWS, "--detach", *port)
-    assert (code, said) == (EXIT_OF_CLOSED_PIPE, "")
+    code, err = after_lines(0, "upload", "-e", SHOWS, "--detach", *port)
+    assert (code, err) == (EXIT_OF_CLOSED_PIPE, "")
     assert pty_robot.moves
-    code, said = after_lines(0, "doctor", *port)
-    assert (code, said) == (EXIT_OF_CLOSED_PIPE, "")
+    code, err = after_lines(0, "doctor", *port)
+    assert (code, err) == (EXIT_OF_CLOSED_PIPE, "")
     assert pty_robot.moves
-    code, said = after_lines(2, "monitor", *port)
-    assert code == EXIT_OF_CLOSED_PIPE and "stopped" not in said
+    code, err = after_lines(2, "monitor", *port)
+    assert code == EXIT_OF_CLOSED_PIPE and "stopped" not in err
     pty_robot.until(lambda: pty_robot.moves, "it drives on")
 
 
@@ -160,9 +160,9 @@ def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
         completed = subprocess.run([*TSC, "upload", "-e", SHOWS, "--port", pty_robot.port],
                               stdout=full, stderr=subprocess.PIPE, timeout=HANGS_S)  # fmt: skip
     assert completed.returncode == 2
-    said = completed.stderr.decode()
-    assert "stopped the robot" in said and "cannot write the output" in said
-    assert "Traceback" not in said
+    err = completed.stderr.decode()
+    assert "stopped the robot" in err and "cannot write the output" in err
+    assert "Traceback" not in err
 
 
 @pytest.mark.parametrize(
@@ -203,10 +203,10 @@ def test_a_port_that_vanishes_is_no_bug(
         return real(self, make, limit_ms)
 
     monkeypatch.setattr(connect.Connection, "begin_request", do)
-    done = inside(*words, "--port", pty_robot.port)
+    result = inside(*words, "--port", pty_robot.port)
     assert len(asked) == which
-    assert done.code == 3
-    assert "is gone" in done.err
+    assert result.code == 3
+    assert "is gone" in result.err
 
 
 def test_a_robot_that_is_busy_for_too_long_is_not_lost(
@@ -220,10 +220,12 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
 
     monkeypatch.setattr("tiniscript.link.session.reply_of", busy)
     monkeypatch.setattr("tiniscript.library.client.REQUEST_TIMEOUT_MS", 600)
-    for language, said in (("en", "still saving"), ("es", "está guardando")):
+    for language, expected in (("en", "still saving"), ("es", "está guardando")):
         for words in (["upload", "-e", PROGRAM], ["start"]):
-            done = inside(*words, "--port", pty_robot.port, "--lang", language).gives(3)
-            assert said in done.err and "lost" not in done.err and "perdió" not in done.err
+            result = inside(*words, "--port", pty_robot.port, "--lang", language).gives(3)
+            assert (
+                expected in result.err and "lost" not in result.err and "perdió" not in result.err
+            )
 
 
 # -- an output that nobody reads ------------------------------------------------------------------
@@ -259,8 +261,8 @@ def test_a_fleet_whose_output_nobody_reads_ends_with_ctrl_c(extra: list[str]) ->
         assert command.process.wait(HANGS_S) == 2
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
         assert all(bytes(STOP_ZEROS) in pupil.heard for pupil in room.pupils)
-        done = command.ended()
-        assert done.out and "Traceback" not in done.err
+        result = command.ended()
+        assert result.out and "Traceback" not in result.err
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how large a pipe is")

@@ -50,17 +50,17 @@ def school(tmp_path: Path) -> Iterator[School]:
 
 def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) -> None:
     def used(*words: str) -> str:
-        done = on(school.robot, "set", "wifi", *words, "--user", "robots", data=b"a secret\n")
-        assert done.code == 0 and "a secret" not in done.out + done.err, done.err
-        return done.out
+        result = on(school.robot, "set", "wifi", *words, "--user", "robots", data=b"a secret\n")
+        assert result.code == 0 and "a secret" not in result.out + result.err, result.err
+        return result.out
 
     stranger = Authority(tmp_path, "Otra")
     assert "does not trust its certificate" in used(*school.place(stranger.file))
-    said = used(*school.place())
-    assert "is connected to the broker localhost, in the class 3b" in said
+    err = used(*school.place())
+    assert "is connected to the broker localhost, in the class 3b" in err
     later = on(school.robot, "set", "wifi").out
     assert "is connected to the broker" in later and "tsc class" not in later, "it knows no port"
-    _, *next_command = shlex.split(said.partition("To see all of them:  ")[2])
+    _, *next_command = shlex.split(err.partition("To see all of them:  ")[2])
     assert "no program; nothing is running; yours" in inside(*next_command, data=b"a secret\n").out
 
 
@@ -77,9 +77,12 @@ def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path
     for name, data in files.items():
         (tmp_path / name).write_bytes(data)
         words = ("set", "wifi", "--broker", NAME, "--tls", "--trust", str(tmp_path / name))
-        for language, said in (("en", "is not a file with one"), ("es", "no es un archivo con un")):
-            done = inside(*words, "--port", "/none", "--lang", language)
-            assert done.code == 2 and said in done.err and done.err.count("\n") == 1, name
+        for language, expected in (
+            ("en", "is not a file with one"),
+            ("es", "no es un archivo con un"),
+        ):
+            result = inside(*words, "--port", "/none", "--lang", language)
+            assert result.code == 2 and expected in result.err and result.err.count("\n") == 1, name
     for form in (authority.der, b"Certificate:\n  x\n" + text):
         (tmp_path / "good").write_bytes(form)
         words = ("set", "wifi", "--broker", NAME, "--tls", "--trust", str(tmp_path / "good"))
@@ -99,7 +102,7 @@ def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_pat
     (tmp_path / "none").write_bytes(b"hello")
     trusted, strange = "no robot of the class", "does not trust the certificate"
     try:
-        for name, trust, said in (
+        for name, trust, expected in (
             (NAME, ("--trust", authority.signed(NAME)), trusted),
             ("127.0.0.1", ("--trust", authority.signed(NAME)), trusted),
             (NAME, ("--trust", binary), trusted),
@@ -107,25 +110,25 @@ def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_pat
             (NAME, ("--trust", tmp_path / "none"), strange),
             (NAME, (), strange),
         ):
-            done = process("class", "--broker", f"{name}:{broker.port}", "--tls", *trust)
-            assert done.code == 3 and said in done.err, (name, trust, done.err)
-        done = process("class", "--broker", f"{NAME}:{broker.port}")
-        assert done.code == 3, "without TLS it is no broker"
+            result = process("class", "--broker", f"{name}:{broker.port}", "--tls", *trust)
+            assert result.code == 3 and expected in result.err, (name, trust, result.err)
+        result = process("class", "--broker", f"{NAME}:{broker.port}")
+        assert result.code == 3, "without TLS it is no broker"
     finally:
         broker.kill()
 
 
-@pytest.mark.parametrize(("words", "said"), [
+@pytest.mark.parametrize(("words", "message"), [
     (["--broker", NAME, "--tls"], "--tls --trust FILE"),
     (["--broker", NAME, "--trust", "x"], "--trust needs --tls."),
     (["--broker", NAME, "--tls", "--trust", "/none"], "cannot read the certificate file /none"),
     (["--broker", "127.0.0.1", "--tls", "--trust", "CA"], "certificate, not 127.0.0.1"),
     (["--tls"], "--broker HOST"), (["--trust", "CA"], "--broker HOST"),
 ])  # fmt: skip
-def test_options_that_make_no_sense(words: list[str], said: str, tmp_path: Path) -> None:
+def test_options_that_make_no_sense(words: list[str], message: str, tmp_path: Path) -> None:
     file = str(Authority(tmp_path).file)
     words = [file if word == "CA" else word for word in words]
-    inside("set", "wifi", *words, "--port", "/none").gives(2, said, out="")
+    inside("set", "wifi", *words, "--port", "/none").gives(2, message, out="")
 
 
 def test_every_state_of_a_broker_has_a_sentence() -> None:

@@ -31,8 +31,8 @@ def folder(working_folder: Path) -> Path:
 
 
 def test_a_folder_has_a_line_for_each_program_and_a_table(folder: Path, tsc: Tsc) -> None:
-    done = tsc("check", ".", "--lang", "es").gives(1)
-    assert done.out == (
+    result = tsc("check", ".", "--lang", "es").gives(1)
+    assert result.out == (
         "./a.ts: sin errores\n"
         "./b.ts: línea 1: Entre dos valores va una coma.   [TS017]\n"
         "./sub/c.ts: línea 1: Entre dos valores va una coma.   [TS017]\n"
@@ -47,14 +47,14 @@ def test_a_folder_has_a_line_for_each_program_and_a_table(folder: Path, tsc: Tsc
 
 def test_programs_that_are_right_give_zero_and_each_is_checked_once(folder: Path, tsc: Tsc) -> None:
     """That is one program, for which there is no table; a folder may have none."""
-    done = tsc("check", "a.ts", "./a.ts", "a.ts")
-    assert (done.code, done.out.count("no mistakes")) == (0, 1)
-    done = tsc("check", "a.ts", "--csv", "t.csv")
-    assert (done.code, (folder / "t.csv").exists()) == (2, False)
-    assert "--csv is for several programs or a folder" in done.err
+    result = tsc("check", "a.ts", "./a.ts", "a.ts")
+    assert (result.code, result.out.count("no mistakes")) == (0, 1)
+    result = tsc("check", "a.ts", "--csv", "t.csv")
+    assert (result.code, (folder / "t.csv").exists()) == (2, False)
+    assert "--csv is for several programs or a folder" in result.err
     (folder / "empty").mkdir()
-    done = tsc("check", "empty").gives(2, out="")
-    assert done.err.startswith(
+    result = tsc("check", "empty").gives(2, out="")
+    assert result.err.startswith(
         "tsc: there is no program in empty. Names of programs end in .ts or .tini."
     )
 
@@ -64,8 +64,8 @@ def test_the_table_as_data_and_for_a_spreadsheet(folder: Path, tsc: Tsc) -> None
     (folder / "=1+1.ts").write_text(RIGHT, encoding="utf-8")
     (folder / "d.ts").write_text("SI|F(2, =X)", encoding="utf-8")
     (folder / "e.ts").write_text("SI|+F(2,80)", encoding="utf-8")
-    done = tsc("check", "=1+1.ts", "b.ts", "d.ts", "e.ts", "--json", "--csv", "table.csv")
-    rows = json.loads(done.out)
+    result = tsc("check", "=1+1.ts", "b.ts", "d.ts", "e.ts", "--json", "--csv", "table.csv")
+    rows = json.loads(result.out)
     assert [(row["file"], row["mistakes"], row["problem"]) for row in rows[:2]] == [
         ("=1+1.ts", 0, ""),
         ("b.ts", 1, ""),
@@ -74,8 +74,8 @@ def test_the_table_as_data_and_for_a_spreadsheet(folder: Path, tsc: Tsc) -> None
     table = list(csv.DictReader(StringIO((folder / "table.csv").read_text("utf-8-sig"))))
     assert [row["file"] for row in table] == ["'=1+1.ts", "b.ts", "d.ts", "e.ts"]
     assert (table[1]["mistakes"], table[1]["line"], table[1]["code"]) == ("1", "1", "TS017")
-    said = [row["messages"][0]["message"] for row in rows[2:]]
-    assert [row["message"] for row in table[2:]] == [said[0], f"'{said[1]}"]
+    messages = [row["messages"][0]["message"] for row in rows[2:]]
+    assert [row["message"] for row in table[2:]] == [messages[0], f"'{messages[1]}"]
 
 
 def test_a_spreadsheet_in_spanish_has_semicolons_and_may_be_written_again(
@@ -90,11 +90,11 @@ def test_a_spreadsheet_in_spanish_has_semicolons_and_may_be_written_again(
 
 
 def test_one_that_cannot_be_read_has_its_row_and_gives_two(folder: Path, tsc: Tsc) -> None:
-    done = tsc("check", "a.ts", "none.ts", "b.ts")
-    assert done.code == 2
-    assert "none.ts: there is no file none.ts" in done.out
-    assert "none.ts          -          -   not read\n" in done.out
-    assert "b.ts: line 1" in done.out
+    result = tsc("check", "a.ts", "none.ts", "b.ts")
+    assert result.code == 2
+    assert "none.ts: there is no file none.ts" in result.out
+    assert "none.ts          -          -   not read\n" in result.out
+    assert "b.ts: line 1" in result.out
 
 
 def test_what_lies_in_a_folder_does_no_harm(folder: Path, tsc: Tsc) -> None:
@@ -104,13 +104,13 @@ def test_what_lies_in_a_folder_does_no_harm(folder: Path, tsc: Tsc) -> None:
     (folder / "loop").symlink_to(".")
     (folder / "dangling.ts").symlink_to("nowhere")
     os.mkfifo(folder / "pipe.ts")
-    done = tsc("check", ".").gives(2)
-    assert "\x1b" not in done.out
-    assert ".hidden" not in done.out
-    assert "./x??[31m.ts: no mistakes" in done.out
-    assert "./bytes.ts: line 1: This file is not text" in done.out
-    assert "./pipe.ts is not a text file" in done.out
-    assert "./dangling.ts: there is no file" in done.out
+    result = tsc("check", ".").gives(2)
+    assert "\x1b" not in result.out
+    assert ".hidden" not in result.out
+    assert "./x??[31m.ts: no mistakes" in result.out
+    assert "./bytes.ts: line 1: This file is not text" in result.out
+    assert "./pipe.ts is not a text file" in result.out
+    assert "./dangling.ts: there is no file" in result.out
 
 
 def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
@@ -119,8 +119,8 @@ def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
         deep = deep / "d"
         deep.mkdir()
         (deep / f"p{k}.ts").write_text(WRONG if k % 2 else RIGHT, encoding="utf-8")
-    done = tsc("check", "d").gives(1)
-    assert done.out.endswith("programs: 30, free of mistakes: 15\n")
+    result = tsc("check", "d").gives(1)
+    assert result.out.endswith("programs: 30, free of mistakes: 15\n")
 
 
 # -- repairs ------------------------------------------------------------------------------------
@@ -128,34 +128,34 @@ def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
 
 def test_fix_writes_the_sure_repairs_and_says_what_is_left(folder: Path, tsc: Tsc) -> None:
     """Twice is once."""
-    done = tsc("check", "--fix", "sub/c.ts", "--lang", "es").gives(1)
+    result = tsc("check", "--fix", "sub/c.ts", "--lang", "es").gives(1)
     once = (folder / "sub" / "c.ts").read_bytes()
     assert once == b"SI|F(2, 80);girar(derecha, 90)\n"
-    assert done.out == (
+    assert result.out == (
         "--- sub/c.ts\n+++ sub/c.ts\n@@ -1,2 +1,2 @@\n"
         "-SI|F(2 80);girar(derecha, 90)\n+SI|F(2, 80);girar(derecha, 90)\n \n"
     )
-    assert done.err.startswith(
+    assert result.err.startswith(
         "sub/c.ts: 1 error corregido.\n"
         "El resto, tsc no lo puede corregir con seguridad. Corrígelo tú:\n"
     )
-    assert "la palabra es R" in done.err
-    done = tsc("check", "--fix", "sub/c.ts")
-    assert ((folder / "sub" / "c.ts").read_bytes(), done.out) == (once, "")
-    assert "tsc cannot safely repair anything here." in done.err
+    assert "la palabra es R" in result.err
+    result = tsc("check", "--fix", "sub/c.ts")
+    assert ((folder / "sub" / "c.ts").read_bytes(), result.out) == (once, "")
+    assert "tsc cannot safely repair anything here." in result.err
 
 
 @pytest.mark.parametrize("option", ["--diff", "--dry-run"])
 def test_a_difference_alone_writes_nothing(folder: Path, tsc: Tsc, option: str) -> None:
     """Without a file the program is printed."""
     for options in ([option], ["--fix", option]):
-        done = tsc("check", *options, "b.ts")
+        result = tsc("check", *options, "b.ts")
         assert (folder / "b.ts").read_text("utf-8") == WRONG
-        assert done.code == 1
-        assert "-SI|F(2 80)\n+SI|F(2, 80)\n" in done.out
-        assert done.err == "b.ts: 1 mistake can be repaired. Try:  tsc check --fix\n"
-    done = tsc("check", "--fix", "-e", "F(2 80)")
-    assert (done.code, done.out) == (0, "F(2, 80)")
+        assert result.code == 1
+        assert "-SI|F(2 80)\n+SI|F(2, 80)\n" in result.out
+        assert result.err == "b.ts: 1 mistake can be repaired. Try:  tsc check --fix\n"
+    result = tsc("check", "--fix", "-e", "F(2 80)")
+    assert (result.code, result.out) == (0, "F(2, 80)")
 
 
 def test_a_file_keeps_its_line_ends_and_its_mark(folder: Path, tsc: Tsc) -> None:
@@ -173,9 +173,9 @@ def test_what_is_no_text_and_a_line_with_a_checksum_stay_as_they_are(
 ) -> None:
     for data, code in ((b"F(2 80)\xff", "TS003"), (b"SI|F(2 80);S~21FFE748\n", "TS")):
         (folder / "b.ts").write_bytes(data)
-        done = tsc("check", "--fix", "b.ts")
-        assert (done.code, (folder / "b.ts").read_bytes()) == (1, data)
-        assert code in done.err
+        result = tsc("check", "--fix", "b.ts")
+        assert (result.code, (folder / "b.ts").read_bytes()) == (1, data)
+        assert code in result.err
 
 
 def test_notepad_s_unicode_is_text_in_another_encoding(tmp_path: Path, tsc: Tsc) -> None:
@@ -195,16 +195,18 @@ def test_a_file_that_cannot_be_written_is_as_it_was(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("tiniscript.base.files.replace", full)
-    done = tsc("check", "--fix", "b.ts")
-    assert (done.code, (folder / "b.ts").read_text("utf-8")) == (2, WRONG)
-    assert "b.ts cannot be written: No space left on device. The file stays as it was." in done.err
+    result = tsc("check", "--fix", "b.ts")
+    assert (result.code, (folder / "b.ts").read_text("utf-8")) == (2, WRONG)
+    assert (
+        "b.ts cannot be written: No space left on device. The file stays as it was." in result.err
+    )
     tsc("check", "--fix", "b.ts", "a.ts").gives(2, out="a.ts: no mistakes")
 
 
 def test_a_folder_is_repaired_with_a_column_of_its_own(folder: Path, tsc: Tsc) -> None:
-    done = tsc("check", "--fix", ".")
-    assert done.code == 1
-    assert "program      mistakes   warnings   repaired   first\n" in done.out
-    assert "./b.ts              0          0          1\n" in done.out
-    assert "./sub/c.ts          1          0          1   1: TS121\n" in done.out
+    result = tsc("check", "--fix", ".")
+    assert result.code == 1
+    assert "program      mistakes   warnings   repaired   first\n" in result.out
+    assert "./b.ts              0          0          1\n" in result.out
+    assert "./sub/c.ts          1          0          1   1: TS121\n" in result.out
     assert (folder / "b.ts").read_text("utf-8") == "SI|F(2, 80)\n"

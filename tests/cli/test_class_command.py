@@ -19,7 +19,7 @@ from typing import cast
 import pytest
 
 from tests.support.claimed_robots import as_another, claimed
-from tests.support.command import FOREVER, Command, Done, inside, process
+from tests.support.command import FOREVER, Command, CommandResult, inside, process
 from tests.support.esp32_near import DRIVES, DROVE, NETWORK, PASSWORD, drove, files_with, near
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto
@@ -54,10 +54,12 @@ class Class(list[Esp32PtyRobot]):
             near(robot)
             assert claimed(robot).code == 0
             assert on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
-            done = on(
+            result = on(
                 robot, "set", "wifi", *self.place, "--user", "robots", data=SECRET + b"\n"
             ).gives(0)
-            assert "in the class 3b" in done.out and SECRET.decode() not in done.out + done.err
+            assert (
+                "in the class 3b" in result.out and SECRET.decode() not in result.out + result.err
+            )
 
     @property
     def place(self) -> list[str]:
@@ -75,9 +77,9 @@ class Class(list[Esp32PtyRobot]):
 
 @pytest.fixture
 def room(tmp_path: Path) -> Iterator[Class]:
-    found = Class(tmp_path)
-    yield found
-    found.close()
+    classroom = Class(tmp_path)
+    yield classroom
+    classroom.close()
 
 
 @pytest.fixture
@@ -88,10 +90,10 @@ def broker(tmp_path: Path) -> Iterator[Mosquitto]:
     mosquitto.kill()
 
 
-def tsc(room: Class, *words: str) -> Done:
-    done = process("class", *words, *room.access, data=SECRET + b"\n")
-    assert SECRET.decode() not in done.out + done.err
-    return done
+def tsc(room: Class, *words: str) -> CommandResult:
+    result = process("class", *words, *room.access, data=SECRET + b"\n")
+    assert SECRET.decode() not in result.out + result.err
+    return result
 
 
 def driving(room: Class) -> Command:
@@ -115,14 +117,14 @@ def pass_ms(room: Class, milliseconds: int) -> None:
 
 def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> None:
     tsc(room).gives(0, out=("12345678", "0badcafe"))
-    done = tsc(room, "upload", "-e", "SI|F(0.2, 80); SHOW(7)").gives(0)
-    assert done.out.count("SHOW 7") == 2, done
+    result = tsc(room, "upload", "-e", "SI|F(0.2, 80); SHOW(7)").gives(0)
+    assert result.out.count("SHOW 7") == 2, result
     assert all(drove(robot)[-2:] == DROVE for robot in room)
     assert files_with(tmp_path / "cache", SECRET) == []
     command = driving(room)
-    done = tsc(room, "stop")
+    result = tsc(room, "stop")
     assert not any(robot.moves for robot in room)
-    assert (done.code, done.out.count("has confirmed")) == (0, 2), done
+    assert (result.code, result.out.count("has confirmed")) == (0, 2), result
     assert command.ended().code != 0
     room[1].switch_off()
     until(
@@ -139,13 +141,13 @@ def test_who_has_no_key_sees_and_stops(
     all_drive(room)
     as_another(monkeypatch, tmp_path)
     for data in (b"wrong\n", b"\n", b""):
-        done = process("class", *room.access, data=data)
-        assert done.code in (2, 3) and done.out == "" and "assword" in done.err, data
+        result = process("class", *room.access, data=data)
+        assert result.code in (2, 3) and result.out == "" and "assword" in result.err, data
     process("class", *room.place).gives(3, "does not let this computer in")
     assert "no deja entrar" in process("class", *room.place, "--lang", "es").err
     tsc(room, "list").gives(0)
-    done = tsc(room, "upload", "-e", DRIVES).gives(3)
-    assert done.out.count("has an owner") == 2
+    result = tsc(room, "upload", "-e", DRIVES).gives(3)
+    assert result.out.count("has an owner") == 2
     assert all(robot.moves for robot in room)
     tsc(room, "stop").gives(0)
     assert not any(robot.moves for robot in room)
@@ -216,11 +218,11 @@ def test_values_are_collected(room: Class, tmp_path: Path) -> None:
     (tmp_path / "rows.csv").write_bytes(b"robot,id,ms,event,value\nan older one\n")
     for listens_s in ("3", "15", "60"):  # a busy computer hears the second robot later
         words = ("show", "--max-time", listens_s, "--json", "--csv", str(tmp_path / "rows.csv"))
-        done = tsc(room, *words).gives(0)
-        values = [json.loads(line) for line in done.out.splitlines() if '"SHOW"' in line]
+        result = tsc(room, *words).gives(0)
+        values = [json.loads(line) for line in result.out.splitlines() if '"SHOW"' in line]
         if len({value["port"] for value in values}) == 2:
             break
-    assert len({value["port"] for value in values}) == 2, done
+    assert len({value["port"] for value in values}) == 2, result
     with (tmp_path / "rows.csv").open(encoding="utf-8", newline="") as file:
         first, *rows = csv.reader(file)
     assert first == ["robot", "id", "ms", "event", "value", "name"]
@@ -252,7 +254,7 @@ def test_the_times_of_all_robots_count_from_one_start() -> None:
     times = [json.loads(line)["ms"] for line in printed]
     early_ms = times[0] - 2000
     assert 0 <= early_ms < 1000
-    assert [each - early_ms for each in times] == [2000, 2100, 7000, 7100]
+    assert [time_s - early_ms for time_s in times] == [2000, 2100, 7000, 7100]
 
 
 @pytest.mark.parametrize("code", [0, 1, 2, 3])
@@ -275,9 +277,9 @@ def test_what_became_of_the_robots_is_the_exit_code(
     program = None if code == 1 else "a program"
     monkeypatch.setattr("tiniscript.cli.images.ready_program", lambda *_, **__: program)
     monkeypatch.setattr(classroom, "upload_to_many", lambda *_: code if program else 0)
-    done = {"list": classroom.list_robots, "upload": classroom.upload, "stop": classroom.stop}
+    actions = {"list": classroom.list_robots, "upload": classroom.upload, "stop": classroom.stop}
     is_usual = verb.startswith("show") and code == 2
-    assert done.get(verb, classroom.show)(room) == (0 if is_usual else code)
+    assert actions.get(verb, classroom.show)(room) == (0 if is_usual else code)
 
 
 @pytest.mark.parametrize("is_there", [True, False])
@@ -288,10 +290,10 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
 ) -> None:  # fmt: skip
     """All of them are tried, and then each robot is asked whether it stands; where none can be,
     it is said that a message has gone, if one has."""
-    left, asked = [*gone], []
+    rest, asked = [*gone], []
 
     def stop(group: str) -> bool:
-        has_gone = left.pop(0)
+        has_gone = rest.pop(0)
         if has_gone is None:
             raise ConnectionResetError
         return has_gone
@@ -315,7 +317,7 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
     else:
         with pytest.raises(CommandError):
             classroom.stop(cast(Classroom, room))
-    assert left == []
+    assert rest == []
     has_gone = "the stop for all robots" in capsys.readouterr().err
     assert has_gone == (not is_there and any(gone))
 
@@ -331,9 +333,9 @@ def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
     for robot, data in (("00000001", b"+\x1b[2Jtsc: ok\n"), ("00000002", b"-\x9b2J\r")):
         stranger._client.publish(f"{ROOT}/class/{robot}", data, retain=True)
     stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)
-    done = process("class", *place).gives(3)
-    assert not set(done.out + done.err) & set("\x1b\x9b\r")
-    assert "is no longer connected to the broker: it is" in done.out
+    result = process("class", *place).gives(3)
+    assert not set(result.out + result.err) & set("\x1b\x9b\r")
+    assert "is no longer connected to the broker: it is" in result.out
 
 
 @each_row("words", [
@@ -346,8 +348,8 @@ def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
 ])  # fmt: skip
 def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: list[str]) -> None:
     for language in ("en", "es"):
-        done = inside("class", *words, "--lang", language)
-        assert done.code == 2 and done.err.startswith("tsc: ") and not done.out
+        result = inside("class", *words, "--lang", language)
+        assert result.code == 2 and result.err.startswith("tsc: ") and not result.out
 
 
 @each_row("words", [
@@ -355,8 +357,8 @@ def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: lis
     ["--user", "x"], ["--class", "x"], ["--broker", "no.such.host.invalid"],
 ])  # fmt: skip
 def test_a_robots_broker_is_told_in_words_that_make_sense(words: list[str]) -> None:
-    done = inside("set", "wifi", *words, "--port", "/none", data=PASSWORD)
-    assert done.code == 2 and done.err.startswith("tsc: ")
+    result = inside("set", "wifi", *words, "--port", "/none", data=PASSWORD)
+    assert result.code == 2 and result.err.startswith("tsc: ")
 
 
 def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
@@ -387,8 +389,8 @@ def test_a_large_message_that_a_broker_keeps_is_named_and_a_stop_is_told_as_sent
     place = ["--broker", f"127.0.0.1:{broker.port}", "--class", "3b"]
     keep(broker.connected(), f"{ROOT}/3b/big", bytes(5000))
     named = ("bytes under tiniscript/3b/big", "no robot of the class 3b")
-    done = process("class", "list", *place).gives(3, *named)
-    assert "no answer of a broker" not in done.err
+    result = process("class", "list", *place).gives(3, *named)
+    assert "no answer of a broker" not in result.err
     process("class", "stop", *place).gives(3, "the stop for all robots", *named)
     keep(broker.connected(), f"{ROOT}/3b/0badcafe", b"-ANA")
     process("class", "stop", *place, "--lang", "es").gives(3, "llegó al broker", "3b/big")
@@ -401,6 +403,6 @@ def test_robots_are_listed_and_stopped_beside_a_large_message(room: Class) -> No
     keep(Broker("127.0.0.1", room.broker.port, access), topic, bytes(5000))
     tsc(room).gives(0, topic, out=("12345678", "0badcafe"))
     command = driving(room)
-    done = tsc(room, "stop").gives(0, topic)
-    assert not any(robot.moves for robot in room) and done.out.count("has confirmed") == 2
+    result = tsc(room, "stop").gives(0, topic)
+    assert not any(robot.moves for robot in room) and result.out.count("has confirmed") == 2
     assert command.ended().code != 0

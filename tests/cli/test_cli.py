@@ -91,9 +91,9 @@ def test_map_says_which_line(tsc: Tsc, tmp_path: Path) -> None:
     known = json.loads(places.read_text(encoding="utf-8"))
     assert known["lines"][1] == "W(1)"
     assert [place[:3] for place in known["places"]] == [[0, 2, 1], [2, 3, 1], [4, 3, 8]]
-    done = tsc("run", tmp_path / "a.bin")
-    assert (done.code, done.out) == (1, "1000 FAULT DIVIDE_BY_ZERO\n")
-    assert "line 3:  X = 0; SHOW(1 / X)" in done.err
+    result = tsc("run", tmp_path / "a.bin")
+    assert (result.code, result.out) == (1, "1000 FAULT DIVIDE_BY_ZERO\n")
+    assert "line 3:  X = 0; SHOW(1 / X)" in result.err
 
 
 def test_each_fault_of_a_program_is_explained(tsc: Tsc) -> None:
@@ -102,17 +102,17 @@ def test_each_fault_of_a_program_is_explained(tsc: Tsc) -> None:
         ("SHOW(1 / 0)", "DIVIDE_BY_ZERO", "Check with IF"),
         ("F(20 CM, 0)", "NO_POWER", "Use more power."),
     ):
-        done = tsc("run", "-e", f"SI|{instruction}")
-        assert (done.code, done.out) == (1, f"0 FAULT {fault}\n"), instruction
-        assert f"fault {fault}: " in done.err, instruction
-        assert what in done.err, instruction
+        result = tsc("run", "-e", f"SI|{instruction}")
+        assert (result.code, result.out) == (1, f"0 FAULT {fault}\n"), instruction
+        assert f"fault {fault}: " in result.err, instruction
+        assert what in result.err, instruction
     assert all(has_text(f"fault_{name}") for _, name, _ in FAULTS)
 
 
 def test_the_board_has_less_memory_than_the_language(tsc: Tsc, tmp_path: Path) -> None:
     text = "SHOW(TIME * 1.234);" * 90
-    done = tsc("compile", "-e", text, "-o", tmp_path / "a.bin").gives(1, "389")
-    assert "151" in done.err  # by how much
+    result = tsc("compile", "-e", text, "-o", tmp_path / "a.bin").gives(1, "389")
+    assert "151" in result.err  # by how much
     for verb in ("check", "run"):
         tsc(verb, "-e", text).gives(0, "151")
     assert tsc("compile", "-e", text, "-o", tmp_path / "a.bin", "--robot", "grabber").code == 0
@@ -138,8 +138,8 @@ def test_check_says_all_mistakes_in_both_languages(tsc: Tsc) -> None:
 
 
 def test_check_json(tsc: Tsc) -> None:
-    done = tsc("check", "--json", "-e", "W(1)\n  ñ = 5; F(1,5, 80)").gives(1)
-    first, second = json.loads(done.out)
+    result = tsc("check", "--json", "-e", "W(1)\n  ñ = 5; F(1,5, 80)").gives(1)
+    first, second = json.loads(result.out)
     assert set(first) == {"code", "severity", "line", "column", "end_line", "end_column",
                           "message", "fix"}  # fmt: skip
     place = {key: first[key] for key in ("line", "column", "end_line", "end_column")}
@@ -150,17 +150,17 @@ def test_check_json(tsc: Tsc) -> None:
 
 
 def test_many_mistakes_are_cut_short(tsc: Tsc) -> None:
-    done = tsc("check", "-e", "".join(f"Q{k}(1);" for k in range(90)))
-    assert done.err.count("TS") == 20
-    assert "70" in done.err
+    result = tsc("check", "-e", "".join(f"Q{k}(1);" for k in range(90)))
+    assert result.err.count("TS") == 20
+    assert "70" in result.err
 
 
 # -- run ----------------------------------------------------------------------------------------
 
 
 def test_run_prints_the_trace_and_nothing_else(tsc: Tsc) -> None:
-    done = tsc("run", "-e", OBSTACLE, "--sensor", "distance=50,9", "--max-time", "2.5").gives(0)
-    assert done.out.splitlines() == [
+    result = tsc("run", "-e", OBSTACLE, "--sensor", "distance=50,9", "--max-time", "2.5").gives(0)
+    assert result.out.splitlines() == [
         "0 MOTORS 80 80", "1000 MOTORS 0 0", "1000 READ DISTANCE 50", "1000 MOTORS 80 80",
         "2000 MOTORS 0 0", "2000 READ DISTANCE 9", "2000 MOTORS 0 0", "2000 MOTORS 60 -60",
         "2500 LIMIT",
@@ -169,9 +169,9 @@ def test_run_prints_the_trace_and_nothing_else(tsc: Tsc) -> None:
 
 def test_run_takes_an_image_and_standard_input(tsc: Tsc, program: Path) -> None:
     tsc("compile", program)
-    done = tsc("run", program.with_suffix(".bin"))
-    assert done.out == "0 MOTORS 80 80\n5000 MOTORS 0 0\n5000 DONE\n"
-    assert inside("run", "-", data=PROGRAM.encode()).out == done.out
+    result = tsc("run", program.with_suffix(".bin"))
+    assert result.out == "0 MOTORS 80 80\n5000 MOTORS 0 0\n5000 DONE\n"
+    assert inside("run", "-", data=PROGRAM.encode()).out == result.out
     assert inside("check", "-", data=b"S = 5").code == 1
 
 
@@ -181,8 +181,8 @@ def test_max_steps_cuts_only_what_takes_no_time(tsc: Tsc) -> None:
         ("X = 0;LOOP(FOREVER);LOOP(20);X = X + 1;END_LOOP;W(0.1);END_LOOP", "100", "60000 LIMIT"),
         ("LOOP(FOREVER);W(0);END_LOOP", "100", "0 LIMIT"),
     ):
-        done = tsc("run", "-e", text, "--max-steps", steps)
-        assert (done.code, done.out.splitlines()[-1]) == (0, last), text
+        result = tsc("run", "-e", text, "--max-steps", steps)
+        assert (result.code, result.out.splitlines()[-1]) == (0, last), text
 
 
 def test_run_is_repeatable_and_seeded(tsc: Tsc) -> None:
@@ -209,8 +209,8 @@ def test_wrong_use_of_run(tsc: Tsc, arguments: list[str]) -> None:
 
 
 def test_sensor_of_another_robot(tsc: Tsc) -> None:
-    done = tsc("run", "-e", "SHOW(LINE_L)", "--robot", "LINER", "--sensor", "LINE_L=TRUE")
-    assert done.out == "0 READ LINE_L TRUE\n0 SHOW TRUE\n0 DONE\n"
+    result = tsc("run", "-e", "SHOW(LINE_L)", "--robot", "LINER", "--sensor", "LINE_L=TRUE")
+    assert result.out == "0 READ LINE_L TRUE\n0 SHOW TRUE\n0 DONE\n"
     tsc("run", "-e", "SHOW(LINE_L)", "--robot", "liner", "--sensor", "LINE_L=2").gives(2)
 
 
@@ -237,19 +237,20 @@ def test_damaged_images_are_refused_by_name(tsc: Tsc, tmp_path: Path, verb: str)
         (pack("SI", 0, b"\x39"), "25"),
     ):  # fmt: skip
         target.write_bytes(data)
-        done = tsc(verb, target)
-        assert (done.code, done.out) == (1, ""), word
-        assert word in done.err
+        result = tsc(verb, target)
+        assert (result.code, result.out) == (1, ""), word
+        assert word in result.err
 
 
 def test_an_image_of_another_robot_says_which(tsc: Tsc, tmp_path: Path) -> None:
     target = tmp_path / "a.bin"
     for text, robot in (("SHOW(LINE_L)", "liner"), ("GRIPPER(30)", "grabber")):
         assert tsc("compile", "-e", text, "-o", target, "--robot", robot).code == 0
-        done = tsc("run", target)
-        assert done.code == 1
+        result = tsc("run", target)
+        assert result.code == 1
         assert (
-            f"is for another robot, not for tinibot. Name that robot:  --robot {robot}" in done.err
+            f"is for another robot, not for tinibot. Name that robot:  --robot {robot}"
+            in result.err
         )
         assert tsc("run", target, "--robot", robot).code == 0
         assert f"for {robot}" in tsc("show", target).out
@@ -261,12 +262,12 @@ def test_an_image_of_another_robot_says_which(tsc: Tsc, tmp_path: Path) -> None:
 def test_show_lists_with_lines(tsc: Tsc, tmp_path: Path) -> None:
     target, text = tmp_path / "a.bin", "SI|\nF(5, 80)\nDISTANCE"
     tsc("compile", "-e", text, "-o", target)
-    done = tsc("show", target)
-    assert "0000  44 8c 50           MOVE8_F 140 80" in done.out
-    assert "line 2: F(5, 80)" in done.out
-    assert "READ_2" in done.out
-    assert "DISTANCE  line 3: DISTANCE" in done.out
-    assert tsc("show", "-e", text).out.split("\n", 1)[1] == done.out.split("\n", 1)[1]
+    result = tsc("show", target)
+    assert "0000  44 8c 50           MOVE8_F 140 80" in result.out
+    assert "line 2: F(5, 80)" in result.out
+    assert "READ_2" in result.out
+    assert "DISTANCE  line 3: DISTANCE" in result.out
+    assert tsc("show", "-e", text).out.split("\n", 1)[1] == result.out.split("\n", 1)[1]
 
 
 def test_show_json(tsc: Tsc, program: Path) -> None:
@@ -274,7 +275,7 @@ def test_show_json(tsc: Tsc, program: Path) -> None:
     known = json.loads(tsc("show", program.with_suffix(".bin"), "--json").out)
     assert (known["code_bytes"], known["image_bytes"], known["start"]) == (3, 18, "SI")
     assert known["robot"] is None
-    assert [each["name"] for each in known["instructions"]] == ["MOVE8_F"]
+    assert [instruction["name"] for instruction in known["instructions"]] == ["MOVE8_F"]
     known = json.loads(tsc("show", "-e", "SB|DISTANCE", "--json").out)
     assert (known["robot"], known["start"]) == ("tinibot", "SB")
 
@@ -306,8 +307,8 @@ def test_fmt_leaves_what_is_wrong_and_what_it_would_make_too_large(
 
 
 def test_explain(tsc: Tsc) -> None:
-    done = tsc("check", "--explain", "TS012").gives(0, out="TS012")
-    assert tsc("check", "--explain", "ts012", "--lang", "es").out != done.out
+    result = tsc("check", "--explain", "TS012").gives(0, out="TS012")
+    assert tsc("check", "--explain", "ts012", "--lang", "es").out != result.out
     assert tsc("check", "--explain").out.count("\nTS") > 50
     for language, vague in (("en", "another way"), ("es", "otra forma"), ("pt", "outro jeito")):
         # a title says what is wrong, not that it is said otherwise

@@ -27,8 +27,8 @@ ZSH = shutil.which("zsh") or ""
 
 def offered(tsc: Tsc, *words: str) -> set[str]:
     """Return what is offered for the last of these words."""
-    done = tsc("help", "--completion", "bash", "--", *words[:-1], f".{words[-1]}").gives(0, "")
-    return {line.partition("\t")[0] for line in done.out.splitlines()[1:]}
+    result = tsc("help", "--completion", "bash", "--", *words[:-1], f".{words[-1]}").gives(0, "")
+    return {line.partition("\t")[0] for line in result.out.splitlines()[1:]}
 
 
 def test_verbs_options_and_values(tsc: Tsc) -> None:
@@ -113,13 +113,13 @@ def test_tab_in_zsh(tmp_path: Path) -> None:
     shell.type("tsc st\t\t")
     shell.until("inicia el programa que tiene el robot")
     shell.until("detiene el robot ahora")
-    for keys, seen in (
+    for keys, expected in (
         ("\x15tsc upload --w\t", "tsc upload --world"), ("ob\t", "--world obstacles"),
         ("\x15tsc check cou\t", "tsc check course.ts"),
         ("\x15tsc set trim --exch\t", "tsc set trim --exchange"), ("y\t", "--exchange yes"),
     ):  # fmt: skip
         shell.type(keys)
-        shell.until(seen)
+        shell.until(expected)
     shell.type("\x15exit\r")
     assert shell.end() == 0
 

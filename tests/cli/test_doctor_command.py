@@ -27,7 +27,7 @@ from tiniscript.link.sharing import registry
 
 
 def causes(done_out: str) -> list[str]:
-    return [each["cause"] for each in json.loads(done_out)["findings"]]
+    return [finding["cause"] for finding in json.loads(done_out)["findings"]]
 
 
 # -- the whole firmware -------------------------------------------------------------------------
@@ -37,9 +37,9 @@ def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
     before: list[bytes] = []
     pty_robot.until(lambda: pty_robot.robot_ms > 500, "a new robot has kept its id")
     pty_robot.ask(lambda robot: before.append(robot.memory()))
-    done = on(pty_robot, "doctor").gives(0, "")
-    found, robot, ports = (part.splitlines() for part in done.out.split("\n\n"))
-    assert found == [
+    result = on(pty_robot, "doctor").gives(0, "")
+    finding_lines, robot, ports = (part.splitlines() for part in result.out.split("\n\n"))
+    assert finding_lines == [
         f"Port {pty_robot.port}",
         "1. tinibot is fine (sure)",
         "   seen: kit tinibot, id 12345678; it answered 20 messages and did not restart",
@@ -60,9 +60,9 @@ def test_a_run_goes_on(pty_robot: PtyRobot, is_others: bool) -> None:
         command = uploading(pty_robot)
     else:
         assert on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save").code == 0
-    done = on(pty_robot, "doctor", "--json")
+    result = on(pty_robot, "doctor", "--json")
     expected = ["not_saved_yet", "fine"] if is_others else ["fine"]
-    assert (done.code, causes(done.out)) == (0, expected)
+    assert (result.code, causes(result.out)) == (0, expected)
     assert pty_robot.moves
     assert "FINISHED" not in pty_robot.did
     if is_others:
@@ -81,11 +81,11 @@ def test_what_is_wrong_with_a_robot_is_said(pty_robot: PtyRobot) -> None:
     )
     pty_robot.ask(lambda robot: robot.supply(True))
     on(pty_robot, "upload", "-e", "SB|F(1, 50)")
-    done = on(pty_robot, "doctor", "--json")
-    assert (done.code, causes(done.out)) == (3, ["low_supply"])
+    result = on(pty_robot, "doctor", "--json")
+    assert (result.code, causes(result.out)) == (3, ["low_supply"])
     pty_robot.damages = 97
-    done = on(pty_robot, "doctor", "--json").gives(3)
-    assert "lossy" in causes(done.out)
+    result = on(pty_robot, "doctor", "--json").gives(3)
+    assert "lossy" in causes(result.out)
 
 
 def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
@@ -95,8 +95,8 @@ def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
     heard = len(pty_robot.heard)
     pty_robot.until(lambda: len(pty_robot.heard) > heard + 200, "it is watched")
     pty_robot.switch_off_and_on()
-    done = command.ended().gives(3)
-    (finding,) = (each for each in json.loads(done.out)["findings"] if each["is_wrong"])
+    result = command.ended().gives(3)
+    (finding,) = (finding for finding in json.loads(result.out)["findings"] if finding["is_wrong"])
     assert (finding["cause"], finding["is_sure"]) == ("motors_restart", False)
     assert finding["said"] == "Your robot restarted when the motors started: check the batteries"
     assert finding["values"]["reset"] == "POWER"
@@ -119,24 +119,24 @@ def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> No
 def test_a_port_that_another_program_has_locked() -> None:
     with PtyEnd(Firmware()) as end:
         holder = open_port(end.port, 9600)
-        done = inside("doctor", "--port", end.port)
+        result = inside("doctor", "--port", end.port)
         holder.close()
-        assert done.code == 3
-        assert "1. Another program is using this port (sure)" in done.out
-        assert "does not say by whom" in done.out
+        assert result.code == 3
+        assert "1. Another program is using this port (sure)" in result.out
+        assert "does not say by whom" in result.out
         assert inside("doctor", "--port", end.port).code == 0
 
 
 def test_what_is_no_robot_and_what_others_have_written(tsc: Tsc) -> None:
     """At a real port; the causes, each by itself, are in `tests/doctor/`."""
     with PtyEnd(Firmware(57_600)) as pty_end:
-        done = tsc("doctor", "--port", pty_end.port, "--json")
-    assert (done.code, causes(done.out)) == (3, ["wrong_baud"])
+        result = tsc("doctor", "--port", pty_end.port, "--json")
+    assert (result.code, causes(result.out)) == (3, ["wrong_baud"])
     with PtyEnd(Firmware(name=b"\x1b[2J\nANA")) as pty_end:
-        done = tsc("doctor", "--port", pty_end.port)
-    assert done.code == 0
-    assert "\x1b" not in done.out, "it cannot move the cursor"
-    assert len(done.out.split("\n\n")[0].splitlines()) == 4
+        result = tsc("doctor", "--port", pty_end.port)
+    assert result.code == 0
+    assert "\x1b" not in result.out, "it cannot move the cursor"
+    assert len(result.out.split("\n\n")[0].splitlines()) == 4
 
 
 SEVEN = [
@@ -157,29 +157,29 @@ def test_a_board_that_is_not_ours_at_a_real_port(
 ) -> None:
     """At the speed of a robot with an HC-05, which most of them do not have."""
     with PtyEnd(end) as pty_end:
-        done = tsc("doctor", "--port", pty_end.port, "--json").gives(3)
-    (finding,) = json.loads(done.out)["findings"]
+        result = tsc("doctor", "--port", pty_end.port, "--json").gives(3)
+    (finding,) = json.loads(result.out)["findings"]
     assert (finding["cause"], finding["is_sure"]) == (cause, True)
     assert what in finding["said"] and heard in finding["seen"] and finding["next"]
 
 
-@pytest.mark.parametrize(("board", "said"), [
+@pytest.mark.parametrize(("board", "sentence"), [
     (boards.BrownoutBoard, "voltage drops, and it restarts"),
     (boards.MbotBoard, "the firmware of an mBot"),
     (boards.SnekBoard, "The board runs Snek"),
     (boards.Esp32Board, "An ESP32 is starting up here"),
 ])  # fmt: skip
 def test_an_upload_says_what_is_there_instead_of_a_robot(
-    tsc: Tsc, hasty: None, board: type[boards.Board], said: str
+    tsc: Tsc, hasty: None, board: type[boards.Board], sentence: str
 ) -> None:
     """It asks nothing but HELLO, and hears what a board says when it starts."""
     with PtyEnd(board(9600)) as pty_end:
         words = ("upload", "-e", "SI|F(1, 50)", "--port", pty_end.port)
-        done = tsc(*words).gives(3, f"no TiniScript robot responds on {pty_end.port}", said)
-        assert "speed" not in done.err
+        result = tsc(*words).gives(3, f"no TiniScript robot responds on {pty_end.port}", sentence)
+        assert "speed" not in result.err
     with PtyEnd(board(9600)) as pty_end:
         rows = json.loads(tsc("doctor", "--ports", "--ask", "--port", pty_end.port, "--json").out)
-        assert said in rows[0]["said"]
+        assert sentence in rows[0]["said"]
 
 
 def test_wrong_use_and_no_such_port(tsc: Tsc) -> None:
@@ -189,9 +189,9 @@ def test_wrong_use_and_no_such_port(tsc: Tsc) -> None:
     ):  # fmt: skip
         assert tsc("doctor", "--port", "/dev/not-there", *words).code == 2, words
     for port in ("/dev/not-there", "a\u202eb", "x" * 5000, "socket://127.0.0.1:1", "foo://x"):
-        done = tsc("doctor", "--port", port)
-        assert done.code in (2, 3)
-        assert "next:" in done.out or done.code == 2
+        result = tsc("doctor", "--port", port)
+        assert result.code in (2, 3)
+        assert "next:" in result.out or result.code == 2
 
 
 @pytest.fixture
@@ -204,9 +204,9 @@ def cable(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyEnd]:
 
 
 def test_without_a_yes_a_cable_is_not_opened(tsc: Tsc, cable: PtyEnd) -> None:
-    done = tsc("doctor", "--port", cable.port)
-    assert (done.code, cable.heard) == (3, b"")
-    assert "tsc doctor --yes" in done.out
+    result = tsc("doctor", "--port", cable.port)
+    assert (result.code, cable.heard) == (3, b"")
+    assert "tsc doctor --yes" in result.out
     tsc("doctor", "--port", cable.port, "--yes").gives(0)
     assert cable.heard
 
@@ -221,9 +221,9 @@ def test_the_question_before_a_cable_is_opened(
     keys.isatty = lambda: True  # type: ignore[method-assign]
     monkeypatch.setattr("sys.stdin", keys)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    done = tsc("doctor", "--port", cable.port)
-    assert (done.code, bool(cable.heard)) == (code, code == 0)
-    assert f"open {cable.port}. That restarts a board" in done.err
+    result = tsc("doctor", "--port", cable.port)
+    assert (result.code, bool(cable.heard)) == (code, code == 0)
+    assert f"open {cable.port}. That restarts a board" in result.err
 
 
 # -- the report ---------------------------------------------------------------------------------
@@ -249,9 +249,9 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
     file = tmp_path / "drive.ts"
     for text in ("SI|F(2, 80)\n", report.REPORT_MARK + " of mine\n", "x" * 100_000):
         file.write_text(text, encoding="utf-8")
-        done = tsc("doctor", "--port", "/dev/not-there", "--report", file)
-        assert done.code == 2, text[:50]
-        assert "tsc did not write it." in done.err
+        result = tsc("doctor", "--port", "/dev/not-there", "--report", file)
+        assert result.code == 2, text[:50]
+        assert "tsc did not write it." in result.err
         assert file.read_text(encoding="utf-8") == text
     for place in (tmp_path, tmp_path / "no" / "report.txt", Path("/dev/full")):
         tsc("doctor", "--port", "/dev/not-there", "--report", place).gives(2, "cannot be written")

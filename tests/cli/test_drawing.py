@@ -66,14 +66,14 @@ def picture(lines: list[str]) -> list[str]:
 def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) -> None:
     """Which shows the way in color and the values, beside it or below; the cursor comes back."""
     terminal = ended("-e", OBSTACLES, *SEEN, "--pace", pace, size=size)
-    written, seen = terminal.written, terminal.whole()
+    written, lines = terminal.written, terminal.whole()
     if pace != "0":  # then it is drawn once
         assert written.count(HIDE) == 1 and written.rindex(REVEAL) > written.rindex(HIDE)
     trace = plain("-e", OBSTACLES, *SEEN).splitlines()
-    top = next(k for k in range(len(seen)) if seen[k].startswith("0 "))
-    assert seen[top : top + len(trace)] == trace
-    drawn = picture(seen)
-    assert seen[top + len(trace) :] == drawn and drawn[0].startswith("── TiniBot")
+    top = next(k for k in range(len(lines)) if lines[k].startswith("0 "))
+    assert lines[top : top + len(trace)] == trace
+    drawn = picture(lines)
+    assert lines[top + len(trace) :] == drawn and drawn[0].startswith("── TiniBot")
     if size[0] >= 40:
         assert b"\x1b[36m" in written
         way = drawn if size[0] == 80 else drawn[1:8]
@@ -94,35 +94,35 @@ def test_a_file_gets_the_trace_byte_for_byte(tmp_path: Path) -> None:
 
 def test_actuators_shown_values_and_yes_no_are_drawn() -> None:
     terminal = ended("-e", GRABBER, "--robot", "grabber", "--pace", "10")
-    seen = picture(terminal.whole())
-    assert row(seen, "GRIPPER") == ["GRIPPER", "90", "°", "gripper"]
-    assert row(seen, "LED") == ["LED", "TRUE", "lamp"]
-    assert row(seen, "BUTTON")[:2] == ["BUTTON", "FALSE"]
-    assert row(seen, "SHOW") == ["SHOW", "FALSE", "before:", "1.5"]
-    assert row(seen, "time")[-1] == "done"
+    lines = picture(terminal.whole())
+    assert row(lines, "GRIPPER") == ["GRIPPER", "90", "°", "gripper"]
+    assert row(lines, "LED") == ["LED", "TRUE", "lamp"]
+    assert row(lines, "BUTTON")[:2] == ["BUTTON", "FALSE"]
+    assert row(lines, "SHOW") == ["SHOW", "FALSE", "before:", "1.5"]
+    assert row(lines, "time")[-1] == "done"
     assert "♪ 440 Hz".encode() in terminal.written  # while it sounded
-    assert not any("♪" in line for line in seen)
+    assert not any("♪" in line for line in lines)
 
 
 def test_a_terminal_without_color_or_braille_gets_plain_signs_in_its_language() -> None:
     env = {"PYTHONIOENCODING": "latin-1", "NO_COLOR": "1"}
     terminal = ended("-e", OBSTACLES, *SEEN, "--pace", "10", "--lang", "es", env=env)
-    said = terminal.written.decode("latin-1")
-    assert "[36m" not in said and "\\u28" not in said and "*" in said
-    assert "en el límite" in said and "sensor de distancia" in said
+    output = terminal.written.decode("latin-1")
+    assert "[36m" not in output and "\\u28" not in output and "*" in output
+    assert "en el límite" in output and "sensor de distancia" in output
 
 
 def test_a_fault_is_in_the_picture_and_explained_below_it() -> None:
     terminal = ended("-e", "SI|F(1, 50);X = 0;Y = 1 / X", "--pace", "10", code=1)
-    seen = picture(terminal.whole())
-    assert row(seen, "time")[-1] == "fault"
-    assert any(line.startswith("fault DIVIDE_BY_ZERO") for line in seen)
+    lines = picture(terminal.whole())
+    assert row(lines, "time")[-1] == "fault"
+    assert any(line.startswith("fault DIVIDE_BY_ZERO") for line in lines)
 
 
 def test_without_a_terminal_there_is_no_picture() -> None:
-    done = inside("run", "-e", OBSTACLES, *SEEN, "--show")
-    assert (done.code, done.out) == (0, plain("-e", OBSTACLES, *SEEN))
-    assert "TiniBot" not in done.err
+    result = inside("run", "-e", OBSTACLES, *SEEN, "--show")
+    assert (result.code, result.out) == (0, plain("-e", OBSTACLES, *SEEN))
+    assert "TiniBot" not in result.err
 
 
 # ---- how it ends
@@ -137,9 +137,9 @@ def test_ctrl_c_leaves_a_clean_terminal(to_a_file: bool, tmp_path: Path) -> None
     terminal.interrupt()
     assert terminal.end() == 2
     assert terminal.written.rindex(REVEAL) > terminal.written.rindex(HIDE)
-    seen = terminal.whole()
-    assert seen[-seen[::-1].index("Stopped.") - 1 :].count("Stopped.") == 1
-    assert not any("Traceback" in line for line in seen)
+    lines = terminal.whole()
+    assert lines[-lines[::-1].index("Stopped.") - 1 :].count("Stopped.") == 1
+    assert not any("Traceback" in line for line in lines)
 
 
 # ---- in pieces, with a clock of its own
@@ -154,7 +154,7 @@ def events_of(program: str, robot_name: str = "tinibot") -> list[Event | Ending]
 
 
 def frames(events: list[Event | Ending], pace: float, monkeypatch: pytest.MonkeyPatch) -> int:
-    """Watch these events with a clock that only sleeping moves; return how often it is drawn."""
+    """Watch these events with a clock that only sleeping moves; return the number of drawings."""
     clock = SimpleNamespace(now_s=100.0)
     clock.monotonic = lambda: clock.now_s
     clock.sleep = lambda seconds: setattr(clock, "now_s", clock.now_s + seconds)
@@ -185,11 +185,11 @@ def test_every_picture_fits_its_terminal(language: str) -> None:
     robot = robots.load("grabber")
     for width in (1, 2, 5, 19, 20, 39, 40, 59, 60, 61, 80, 200):
         for height in (1, 2, 3, 4, 5, 8, 12, 18, 50):
-            seen = run_drawing.Picture(robot, language)
+            picture = run_drawing.Picture(robot, language)
             for event in events_of(GRABBER, "grabber")[:-1]:
                 assert isinstance(event, Event)
-                seen.add_event(event)
-                lines = seen.lines(width, height, event.time_ms)
+                picture.add_event(event)
+                lines = picture.lines(width, height, event.time_ms)
                 assert 1 <= len(lines) <= height
                 assert all(line.cell_len <= width for line in lines)
 

@@ -28,16 +28,16 @@ def robot() -> Iterator[Esp32PtyRobot]:
 
 def asked(robot: Esp32PtyRobot, what: str) -> str:
     """Return what the robot's radios are set to, or the address where it listens."""
-    said: list[str] = []
+    questions: list[str] = []
 
     def ask(host_firmware: HostFirmware) -> None:
         assert isinstance(host_firmware, Esp32Robot)
-        said.append(
+        questions.append(
             str(port_of(host_firmware) if what == "port" else getattr(radios(host_firmware), what))
         )
 
     robot.ask(ask)
-    return said[0]
+    return questions[0]
 
 
 @pytest.fixture
@@ -45,9 +45,9 @@ def joined(robot: Esp32PtyRobot) -> Esp32PtyRobot:
     """A robot with an owner, in a network."""
     near(robot)
     assert claimed(robot).code == 0
-    done = on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n")
-    assert done.code == 0, done.err
-    assert f"on the network {NETWORK}" in done.out and "tcp://tini-5678.local" in done.out
+    result = on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n")
+    assert result.code == 0, result.err
+    assert f"on the network {NETWORK}" in result.out and "tcp://tini-5678.local" in result.out
     return robot
 
 
@@ -68,8 +68,12 @@ def test_a_robot_without_an_owner_says_what_comes_first(robot: Esp32PtyRobot) ->
 
 def test_a_network_is_set_told_and_forgotten(joined: Esp32PtyRobot, tmp_path: Path) -> None:
     assert asked(joined, "password").encode() == PASSWORD
-    said = on(joined, "set", "wifi")
-    assert said.code == 0 and NETWORK in said.out and PASSWORD.decode() not in said.out + said.err
+    result = on(joined, "set", "wifi")
+    assert (
+        result.code == 0
+        and NETWORK in result.out
+        and PASSWORD.decode() not in result.out + result.err
+    )
     assert files_with(tmp_path, PASSWORD) == []
     near(joined, b"another password")
     joined.until(lambda: "password may be" in on(joined, "set", "wifi").out, "it is refused")
@@ -84,8 +88,8 @@ def test_a_network_of_its_own_is_said_to_be_unreliable_beside_bluetooth(
 ) -> None:
     """By the table of Espressif's page on coexistence; Bluetooth is always on."""
     assert claimed(robot).code == 0
-    done = on(robot, "set", "wifi", "Tini", "--access-point", data=PASSWORD + b"\n")
-    assert done.code == 0 and "192.168.4.1" in done.out and "unreliable" in done.out
+    result = on(robot, "set", "wifi", "Tini", "--access-point", data=PASSWORD + b"\n")
+    assert result.code == 0 and "192.168.4.1" in result.out and "unreliable" in result.out
     assert "inestable" in on(robot, "set", "wifi", "--lang", "es").out
     assert "instável" in on(robot, "set", "wifi", "--lang", "pt").out
     assert on(robot, "set", "wifi", "--forget").code == 0
@@ -95,8 +99,8 @@ def test_a_network_of_its_own_is_said_to_be_unreliable_beside_bluetooth(
 def test_what_is_no_password_changes_nothing(joined: Esp32PtyRobot) -> None:
     for data in (b"", b"\n", b"short\n", b"x" * 64 + b"\n", b"12345678\0\n",
                  b"1234567\x1b[2J\n", b"x" * 5000):  # fmt: skip
-        done = on(joined, "set", "wifi", "Other", data=data)
-        assert done.code == 2 and "8 to 63" in done.err and "\x1b" not in done.err, data
+        result = on(joined, "set", "wifi", "Other", data=data)
+        assert result.code == 2 and "8 to 63" in result.err and "\x1b" not in result.err, data
         assert asked(joined, "network") == NETWORK
 
 
@@ -108,8 +112,8 @@ def test_words_that_make_no_sense_are_said_before_any_port_is_opened(
     words: tuple[str, ...],
 ) -> None:
     for language in ("en", "es"):
-        done = inside("set", "wifi", *words, "--port", "/none", "--lang", language, data=PASSWORD)
-        assert done.code == 2 and done.err.startswith("tsc: ")
+        result = inside("set", "wifi", *words, "--port", "/none", "--lang", language, data=PASSWORD)
+        assert result.code == 2 and result.err.startswith("tsc: ")
 
 
 def test_two_computers_at_once_over_cable_and_network(

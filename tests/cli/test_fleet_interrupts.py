@@ -67,9 +67,9 @@ def stepping(
     def stepped(first: Any, *words: Any, **named: Any) -> Any:
         port = first if isinstance(first, str) else first.port
         room.at(before, port)
-        found = whole(first, *words, **named)
+        outcome = whole(first, *words, **named)
         room.at(after, port)
-        return found
+        return outcome
 
     monkeypatch.setattr(owner, name, stepped)
 
@@ -104,9 +104,9 @@ def test_after_ctrl_c_nothing_starts(
 
     monkeypatch.setattr(Fleet, "_raise_if_reader_gone", press)
     monkeypatch.setattr(Fleet, "interrupt_robots", interrupted)
-    done = inside("upload", "-e", ENDLESS, "--all").gives(2)
+    result = inside("upload", "-e", ENDLESS, "--all").gives(2)
     assert room.pressed.is_set()
-    assert room.counted() == room.starts, (room.stages, done)
+    assert room.counted() == room.starts, (room.stages, result)
     assert not any(pupil.moves for pupil in fleet.pupils)
 
 

@@ -35,22 +35,22 @@ WRITERS = [
 ]
 
 
-@pytest.mark.parametrize(("words", "option"), WRITERS, ids=lambda each: str(each))
+@pytest.mark.parametrize(("words", "option"), WRITERS, ids=lambda value: str(value))
 def test_a_foreign_file_stays_and_an_own_one_is_replaced(
     tsc: Tsc, working_folder: Path, words: tuple[str, ...], option: str
 ) -> None:
     target = working_folder / "there"
     assert tsc(*words, target).code == 0  # nothing is there
-    made = target.read_bytes()
-    assert made and not is_foreign(target)
+    bytes_before = target.read_bytes()
+    assert bytes_before and not is_foreign(target)
     assert tsc(*words, target).code == 0  # its own
     target.write_bytes(b"")
     assert tsc(*words, target).code == 0  # nothing to lose
-    assert target.read_bytes() == made
+    assert target.read_bytes() == bytes_before
     for content in FOREIGN:
         target.write_bytes(content)
-        for lang, said in (("en", "tsc did not write it."), ("es", "no lo hizo tsc")):
-            tsc(*words, target, "--lang", lang).gives(2, said, option)
+        for lang, expected in (("en", "tsc did not write it."), ("es", "no lo hizo tsc")):
+            tsc(*words, target, "--lang", lang).gives(2, expected, option)
         assert target.read_bytes() == content
 
 
@@ -61,10 +61,10 @@ def test_a_table_with_a_column_of_the_teacher_stays(tsc: Tsc, tmp_path: Path, la
     (folder / "ana.ts").write_text(PROGRAM)
     words = ("check", folder, "--lang", lang, "--csv", table)
     assert tsc(*words).code == 0
-    made = table.read_bytes()
-    table.write_bytes(made.replace(b"\n", b"\r\n"))  # a spreadsheet has kept it
-    assert tsc(*words).code == 0 and table.read_bytes() == made
-    marked = made.replace(b"\n", b";18\n")
+    bytes_before = table.read_bytes()
+    table.write_bytes(bytes_before.replace(b"\n", b"\r\n"))  # a spreadsheet has kept it
+    assert tsc(*words).code == 0 and table.read_bytes() == bytes_before
+    marked = bytes_before.replace(b"\n", b";18\n")
     table.write_bytes(marked)
     tsc(*words).gives(2, "--csv")
     assert table.read_bytes() == marked
@@ -123,9 +123,9 @@ def test_nobody_else_reads_the_programs_in_the_cache(
     maps.chmod(0o755)  # of an older tsc
     (tmp_path / "p.ts").write_text("SI|S // mine")
     assert inside("compile", tmp_path / "p.ts").code == 0
-    (kept,) = maps.iterdir()
-    assert "mine" in kept.read_text()
-    assert [stat.S_IMODE(path.stat().st_mode) for path in (maps, kept)] == [0o700, 0o600]
+    (file,) = maps.iterdir()
+    assert "mine" in file.read_text()
+    assert [stat.S_IMODE(path.stat().st_mode) for path in (maps, file)] == [0o700, 0o600]
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such pipes")

@@ -39,11 +39,11 @@ class Terminal:
         self.written.seek(0)
         self.written.truncate()
         self.frame.draw(lines, above)
-        said = self.written.getvalue()
-        self.stream.feed(said.replace("\n", "\r\n"))  # as a terminal does
-        return said
+        output = self.written.getvalue()
+        self.stream.feed(output.replace("\n", "\r\n"))  # as a terminal does
+        return output
 
-    def seen(self) -> list[str]:
+    def all_lines(self) -> list[str]:
         """All lines, with those that have scrolled away."""
         rows = [*self.screen.history.top, *(self.screen.buffer[k] for k in range(LINES))]
         wide = self.screen.columns
@@ -63,7 +63,7 @@ def test_what_is_seen_is_the_last_picture_below_all_that_was_said(seed: int) -> 
     """With lines that come, go, change in one place, and others that are printed above."""
     chance = random.Random(seed)
     terminal = Terminal()
-    said: list[str] = []
+    lines_above: list[str] = []
     lines = [line(chance) for _ in range(5)]
     for number in range(30):
         lines = [text.copy() for text in lines]
@@ -75,12 +75,12 @@ def test_what_is_seen_is_the_last_picture_below_all_that_was_said(seed: int) -> 
         if chance.random() < 0.2 and len(lines) < LINES - 4:
             lines.append(line(chance))
         above = f"said {number}" if chance.random() < 0.3 else ""
-        said += [above] if above else []
+        lines_above += [above] if above else []
         terminal.draw(lines, above)
-        expected = [*said, *(text.plain for text in lines)]
-        seen = terminal.seen()
-        assert seen[: len(expected)] == expected
-        assert not any(seen[len(expected) :])
+        expected = [*lines_above, *(text.plain for text in lines)]
+        lines_shown = terminal.all_lines()
+        assert lines_shown[: len(expected)] == expected
+        assert not any(lines_shown[len(expected) :])
 
 
 def test_nothing_is_written_where_nothing_changes() -> None:
@@ -95,10 +95,10 @@ def test_a_line_that_has_not_changed_is_not_written_again() -> None:
     lines = [Text(f"value {k}") for k in range(8)]
     terminal.draw(lines)
     lines[3] = Text("other")
-    said = terminal.draw(lines)
-    assert said.startswith(BEGIN_UPDATE) and said.endswith(END_UPDATE)
-    assert "other" in said and "value" not in said
-    assert [each for each in terminal.seen() if each] == [text.plain for text in lines]
+    output = terminal.draw(lines)
+    assert output.startswith(BEGIN_UPDATE) and output.endswith(END_UPDATE)
+    assert "other" in output and "value" not in output
+    assert [line for line in terminal.all_lines() if line] == [text.plain for text in lines]
 
 
 @pytest.mark.parametrize("rows", [1, 3, 4, 5, 30])
@@ -113,7 +113,7 @@ def test_what_is_long_or_much_is_said_whole(rows: int) -> None:
     terminal.draw(lines, "y" * (COLUMNS - 1))
     expected = [*much.split("\n"), "x" * COLUMNS, "x" * COLUMNS, "y" * (COLUMNS - 1)]
     expected += [text.plain for text in lines]
-    assert [each for each in terminal.seen() if each] == expected
+    assert [line for line in terminal.all_lines() if line] == expected
 
 
 def test_another_colour_is_a_change() -> None:
@@ -129,9 +129,9 @@ def test_a_terminal_that_becomes_wider_or_narrower_gets_all_of_it() -> None:
     for columns in (60, 34):
         terminal.console.width = columns
         terminal.screen.resize(LINES, columns)
-        said = terminal.draw([Text("a" * 30), Text("b")])
-        assert "a" * 30 in said
-        assert [each for each in terminal.seen() if each] == ["a" * 30, "b"]
+        output = terminal.draw([Text("a" * 30), Text("b")])
+        assert "a" * 30 in output
+        assert [line for line in terminal.all_lines() if line] == ["a" * 30, "b"]
 
 
 # -- the curve of tsc monitor --plot
@@ -182,14 +182,14 @@ def plain(canvas: Canvas) -> list[str]:
     return [line.plain for line in merge_layers([(canvas, "")])]
 
 
-@pytest.mark.parametrize(("dot", "seen"), [
+@pytest.mark.parametrize(("dot", "expected"), [
     ((0, 0), "⠁"), ((1, 0), "⠈"), ((0, 1), "⠂"), ((1, 1), "⠐"),
     ((0, 2), "⠄"), ((1, 2), "⠠"), ((0, 3), "⡀"), ((1, 3), "⢀"),
 ])  # fmt: skip
-def test_a_character_has_eight_dots(dot: tuple[int, int], seen: str) -> None:
+def test_a_character_has_eight_dots(dot: tuple[int, int], expected: str) -> None:
     canvas = Canvas(1, 1)
     canvas.draw_lines([dot, dot])
-    assert plain(canvas) == [seen]
+    assert plain(canvas) == [expected]
 
 
 def test_a_line_goes_from_dot_to_dot() -> None:

@@ -14,7 +14,7 @@ from tests.support.command import PROGRAM, Tsc, inside
 from tests.support.rows import each_row
 from tests.support.terminal import Terminal
 from tests.support.texts import LANGUAGES
-from tests.support.texts import said as all_said
+from tests.support.texts import catalogue_texts as all_said
 from tests.support.verbs import parsers, words_of
 from tiniscript import robots
 from tiniscript.cli import help, main
@@ -43,9 +43,9 @@ in_both = pytest.mark.parametrize("language", LANGUAGES)
 of_each = each_row("verb", COMMANDS)
 
 
-def rows_of(said: str) -> list[str]:
+def rows_of(help_text: str) -> list[str]:
     """Return what a help has in its left column: `-o FILE`, `PROGRAM`."""
-    return [found.strip() for found in re.findall(r"^  (\S.*?)(?:  |$)", said, re.M)]
+    return [row.strip() for row in re.findall(r"^  (\S.*?)(?:  |$)", help_text, re.M)]
 
 
 def flags_in_help(verb: str) -> list[str]:
@@ -65,20 +65,20 @@ def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
     """And whether it takes a value."""
     words = command_words(verb).split()
     valued = [] if words[-1] in words_of(verb) else ["x"]
-    done = tsc(*words, *valued, "--help", "--lang", language).gives(0)
-    rows = [row for row in rows_of(done.out) if not row.startswith("tsc ")]
-    said = [flag for row in rows for flag in re.findall(FLAG, row)]
-    assert sorted(said) == flags_in_help(verb)
+    result = tsc(*words, *valued, "--help", "--lang", language).gives(0)
+    rows = [row for row in rows_of(result.out) if not row.startswith("tsc ")]
+    flags = [flag for row in rows for flag in re.findall(FLAG, row)]
+    assert sorted(flags) == flags_in_help(verb)
     arguments = [row for row in rows if not row.startswith("-")]
     assert len(arguments) == sum(option.is_argument for option in shown_of(verb))
     for argument in arguments:
-        assert re.search(rf"\b{argument}\b", done.out.splitlines()[0])
+        assert re.search(rf"\b{argument}\b", result.out.splitlines()[0])
     known = {
         flag for of in PARSERS.values() for action in of._actions for flag in action.option_strings
     }
-    assert set(re.findall(FLAG, done.out)) <= known | {"-N", "-Uz"}  # a number; of zsh
+    assert set(re.findall(FLAG, result.out)) <= known | {"-N", "-Uz"}  # a number; of zsh
     for action in PARSERS[verb]._actions:
-        if set(action.option_strings) & set(said):
+        if set(action.option_strings) & set(flags):
             (row,) = (
                 row for row in rows if action.option_strings[0] in row.split(" ")[0].split(",")
             )
@@ -90,12 +90,12 @@ def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
 @in_both
 @pytest.mark.parametrize("columns", [80, 60, 40])
 def test_help_fits_a_terminal(language: str, columns: int) -> None:
-    for said in (
+    for help_text in (
         help.overview(language, columns),
         help.full_help(language, columns),
         *(help.help_of(command, language, columns) for command in COMMANDS),
     ):
-        too_long = [line for line in said.splitlines() if len(line) > columns]
+        too_long = [line for line in help_text.splitlines() if len(line) > columns]
         # a word is not broken: a name of a file, or of many fields
         assert [line for line in too_long if " " in line.strip()] == []
         assert columns < 80 or not too_long
@@ -108,15 +108,16 @@ def test_no_backticks_are_printed_and_no_texts_are_lost(language: str) -> None:
 
     everything = help.full_help(language)
     for command in COMMANDS:
-        said = help.help_of(command, language)
-        assert "`" not in said
+        help_text = help.help_of(command, language)
+        assert "`" not in help_text
         assert all(
-            words(of_verb_text(command, each, language)) in words(said) for each in ("says", "ends")
+            words(of_verb_text(command, part, language)) in words(help_text)
+            for part in ("says", "ends")
         )
         for option in shown_of(command):
-            assert words(option.help(language)) in words(said), option
+            assert words(option.help(language)) in words(help_text), option
         for step in steps_of(command):
-            assert words(of_verb_text(step, "summary", language)) in words(said)
+            assert words(of_verb_text(step, "summary", language)) in words(help_text)
         if command != "set":
             assert words(of_verb_text(command, "summary", language)) in words(everything)
     for note in NOTES:
@@ -125,9 +126,9 @@ def test_no_backticks_are_printed_and_no_texts_are_lost(language: str) -> None:
 
 @in_both
 def test_the_first_help_has_the_ten_that_most_people_need(language: str) -> None:
-    said = help.overview(language)
-    assert len(said.splitlines()) <= 30
-    assert [row.split()[1] for row in rows_of(said) if row.startswith("tsc ")] == list(
+    help_text = help.overview(language)
+    assert len(help_text.splitlines()) <= 30
+    assert [row.split()[1] for row in rows_of(help_text) if row.startswith("tsc ")] == list(
         FIRST_COMMANDS
     )
 
@@ -144,9 +145,9 @@ def test_the_first_help_has_the_ten_that_most_people_need(language: str) -> None
     ("ver los sensores", "live"), ("programar con bloques", "studio"),
 ])  # fmt: skip
 def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked: str, verb: str) -> None:
-    done = tsc("help", asked).gives(0)
-    assert re.match(rf"tsc {verb}\b", rows_of(done.out)[0])
-    assert tsc("help", *asked.split()).out == done.out
+    result = tsc("help", asked).gives(0)
+    assert re.match(rf"tsc {verb}\b", rows_of(result.out)[0])
+    assert tsc("help", *asked.split()).out == result.out
 
 
 def test_a_question_that_no_command_answers(tsc: Tsc) -> None:
@@ -156,10 +157,10 @@ def test_a_question_that_no_command_answers(tsc: Tsc) -> None:
 
 def test_an_option_that_help_does_not_show_works(tsc: Tsc) -> None:
     assert "--baud" not in help.help_of("name", "en")
-    done = tsc(
+    result = tsc(
         "set", "name", "ANA", "--port", "no_port_here", "--baud", "9600", "--robot", "tinibot"
     )
-    assert "no_port_here" in done.err and done.code == 3
+    assert "no_port_here" in result.err and result.code == 3
     for option in OPTIONS:
         assert set(option.silent_verbs.split()) <= set(option.verbs.split()), option
 
@@ -188,12 +189,12 @@ def test_every_text_of_help_is_shown() -> None:
     """The catalogue has none that no verb or option asks for."""
     known = {f"option/{option.flags}/{option.verbs.split()[0]}" for option in OPTIONS}
     known |= {f"value/{option.value}" for option in OPTIONS} | {
-        f"group/{each}" for each in VERBS.values()
+        f"group/{verb}" for verb in VERBS.values()
     }
-    known |= {f"verb/{verb}/{each}" for verb in (*COMMANDS, "--version")
-              for each in ("example", "summary", "says", "usage", "ends", "words")}  # fmt: skip
-    left = set(all_said("en", "help")) - known - set(NOTES)
-    assert {each.partition("/")[0] for each in left} == {
+    known |= {f"verb/{verb}/{part}" for verb in (*COMMANDS, "--version")
+              for part in ("example", "summary", "says", "usage", "ends", "words")}  # fmt: skip
+    unused = set(all_said("en", "help")) - known - set(NOTES)
+    assert {key.partition("/")[0] for key in unused} == {
         "title", "more", "usage", "virtual", "steps", "all", "idle", "wrong",
     }  # fmt: skip
 
@@ -237,13 +238,13 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
 @of_each
 def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) -> None:
     common, *sections = page(language, "a test", table).split("\n## ")
-    sections = [each for part in sections for each in part.split("\n### ")]
+    sections = [section for part in sections for section in part.split("\n### ")]
     (section,) = (
         section for section in sections if section.startswith(f"`tsc {command_words(verb)}`\n")
     )
-    found = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)
-    said = [flag for each in found for flag in re.findall(FLAG, each)]
-    assert sorted(said) == flags_in_help(verb)
+    rows = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)
+    flags = [flag for row in rows for flag in re.findall(FLAG, row)]
+    assert sorted(flags) == flags_in_help(verb)
 
 
 # -- a page at a time -----------------------------------------------------------------------------
@@ -304,8 +305,8 @@ def test_help_that_goes_elsewhere_is_never_paged(
 ) -> None:
     marker = tmp_path / "begun"
     monkeypatch.setenv("PAGER", f"touch {marker}")
-    done = inside("help", "upload", "--lang", "en")
-    assert (done.code, done.out, marker.exists()) == (0, help.help_of("upload", "en"), False)
+    result = inside("help", "upload", "--lang", "en")
+    assert (result.code, result.out, marker.exists()) == (0, help.help_of("upload", "en"), False)
 
 
 def test_help_is_narrow_on_a_narrow_terminal(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -329,10 +330,10 @@ time.sleep(1000)
 
 
 @pytest.mark.parametrize(
-    ("how", "said"), [("dies", ""), ("waits", "caught\r\nleft\r\n")], ids=["dies", "waits"]
+    ("how", "output"), [("dies", ""), ("waits", "caught\r\nleft\r\n")], ids=["dies", "waits"]
 )
 def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
-    tmp_path: Path, how: str, said: str
+    tmp_path: Path, how: str, output: str
 ) -> None:
     """`less` goes on after Ctrl-C, `more` ends. A shell between would miss a signal sometimes."""
     (tmp_path / "pager.py").write_text(PAGER)
@@ -342,7 +343,7 @@ def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
     terminal.type("\x03")
     assert terminal.end() == 0
     after = terminal.written.decode().partition("begun\r\n")[2]
-    assert after.replace("^C", "") == said
+    assert after.replace("^C", "") == output
 
 
 @each_row("words, english, spanish", [
@@ -353,9 +354,9 @@ def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
 def test_what_argparse_says_is_said_in_plain_words(
     tsc: Tsc, words: list[str], english: str, spanish: str
 ) -> None:
-    for language, said in (("en", english), ("es", spanish)):
-        done = tsc(words[0], "--lang", language, *words[1:]).gives(2)
-        assert done.err.startswith(f"tsc: {said}. ")
+    for language, expected in (("en", english), ("es", spanish)):
+        result = tsc(words[0], "--lang", language, *words[1:]).gives(2)
+        assert result.err.startswith(f"tsc: {expected}. ")
 
 
 @each_row("words, meant", [

@@ -77,10 +77,10 @@ def test_any_input_gets_an_answer(tsc: Tsc, tmp_path: Path, verb: str, name: str
     extra = ["--max-steps", "1000"] if verb == "run" else []
     program.write_bytes(hostile(100_000 if verb == "check" else 10_000)[name])
     # what is said of a program is the same for all verbs: one says it in the other language
-    done = tsc(verb, program, "--lang", "en" if verb == "compile" else "es", *extra)
-    assert done.code in (0, 1), done.err[-2000:]
+    result = tsc(verb, program, "--lang", "en" if verb == "compile" else "es", *extra)
+    assert result.code in (0, 1), result.err[-2000:]
     if name in ("too large", "ten megabytes", "binary", "nul", "latin-1", "utf-16"):
-        assert done.code == 1
+        assert result.code == 1
 
 
 @pytest.mark.parametrize("verb", ["compile", "check", "run", "show", "fmt"])
@@ -142,8 +142,8 @@ def test_ctrl_c_is_said() -> None:
     command = Command("run", "-e", loop, "--max-steps", "1000000000")
     command.until("SHOW 1")
     command.signal(signal.SIGINT)
-    done = command.ended()
-    assert done.code == 2 and done.err.endswith("\nStopped.\n")
+    result = command.ended()
+    assert result.code == 2 and result.err.endswith("\nStopped.\n")
 
 
 def in_encoding(name: str, data: bytes = b"") -> io.TextIOWrapper:
@@ -159,18 +159,18 @@ def test_output_that_is_not_unicode(
     monkeypatch.setattr(sys, stream, written)
     assert main(["check", "--lang", "es", "-e", "año = 5", *options]) == 1
     written.flush()
-    said = written.buffer.getvalue()  # type: ignore[attr-defined]
+    output = written.buffer.getvalue()  # type: ignore[attr-defined]
     if options:
-        assert json.loads(said)[0]["severity"] == "mistake"
+        assert json.loads(output)[0]["severity"] == "mistake"
     else:
-        assert b"l\\xednea 1:" in said
+        assert b"l\\xednea 1:" in output
 
 
 def test_input_that_is_no_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     for encoding in ("ascii", "utf-8", "cp1252"):
         monkeypatch.setattr(sys, "stdin", in_encoding(encoding, b"F(\xff\x81\n"))
-        done = tsc("live", "--virtual")
-        assert (done.code, "[TS" in done.err) == (1, True), encoding
+        result = tsc("live", "--virtual")
+        assert (result.code, "[TS" in result.err) == (1, True), encoding
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such files")
@@ -219,5 +219,5 @@ def test_a_cache_that_is_damaged_or_cannot_be_written_is_no_trouble(
     blocked.write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
     assert tsc("compile", program).code == 0
-    done = tsc("show", image).gives(0)
-    assert "line" not in done.out
+    result = tsc("show", image).gives(0)
+    assert "line" not in result.out

@@ -40,7 +40,7 @@ LINES = 8  # of each, at which a commit kills; a run of --whole at all
 
 
 class Kept(NamedTuple):
-    """`add` keeps a number, beside those before unless it `is_alone`; `all` finds them."""
+    """`add` keeps a number, with the earlier ones unless it `is_alone`; `all` returns them."""
 
     add: Callable[[int], object]
     all: Callable[[], list[int]]
@@ -145,14 +145,14 @@ def ended(number: int) -> int:
 def at_line(kept: Kept, line: int, then: Callable[[], object]) -> Callable[[], None]:
     """Return what counts the lines of the code that writes, and does something at one."""
     traced_files = {kept.module.__file__, files.__file__}
-    left = [line]
+    lines_left = [line]
 
     def trace(frame: FrameType, event: str, _: Any) -> Any:
         if frame.f_code.co_filename not in traced_files:
             return None
         if event == "line":
-            left[0] -= 1
-            if left[0] == 0:
+            lines_left[0] -= 1
+            if lines_left[0] == 0:
                 then()
         return trace
 
@@ -177,10 +177,10 @@ def lines_of(kept: Kept, number: int) -> int:
         os.write(write, count[0].to_bytes(4, "little"))
 
     assert ended(begun(does)) == 0
-    found = int.from_bytes(os.read(read, 4), "little")
+    line_count = int.from_bytes(os.read(read, 4), "little")
     os.close(read)
     os.close(write)
-    return found
+    return line_count
 
 
 def fresh(kept: Kept, tmp_path: Path) -> list[int]:
@@ -202,7 +202,7 @@ def test_a_kill_at_any_line_leaves_what_was_kept(
     fresh(kept, tmp_path)
     lines = lines_of(kept, SECOND)
     assert lines > 10
-    seen = set()
+    lines_reached = set()
     for line in some_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
         before = fresh(kept, tmp_path)
 
@@ -213,10 +213,10 @@ def test_a_kill_at_any_line_leaves_what_was_kept(
         assert ended(begun(killed)) == -signal.SIGKILL, line
         after = kept.all()
         assert sorted(after) in (before, with_more(kept, before, SECOND)), line
-        seen.add(len(after))
+        lines_reached.add(len(after))
         kept.add(THIRD)
         assert sorted(kept.all()) == with_more(kept, sorted(after), THIRD), line
-    assert seen
+    assert lines_reached
 
 
 def with_more(kept: Kept, before: list[int], number: int) -> list[int]:

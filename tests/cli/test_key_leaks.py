@@ -25,8 +25,8 @@ VERBS = (
 def forms(secret: bytes) -> list[bytes]:
     """Return what a key may look like without spaces: its bytes, in hex, in base 64, as a list."""
     texts = (secret.hex(), secret.hex().upper(), str(list(secret)), repr(secret))
-    found = [secret, base64.b64encode(secret), *(text.encode() for text in texts)]
-    return [b"".join(each.split()) for each in found]
+    forms = [secret, base64.b64encode(secret), *(text.encode() for text in texts)]
+    return [b"".join(form.split()) for form in forms]
 
 
 def has_one(secrets: list[bytes], data: bytes) -> bool:
@@ -41,26 +41,26 @@ def test_a_key_is_in_its_file_alone(
     assert claimed(pty_robot, "--teacher").code == 0
     secrets = [form for key in KeyFile().all() for form in forms(key.key)]
     assert len(secrets) == 12 and has_one(secrets, KeyFile().path.read_bytes())
-    said = ""
+    output = ""
     for verb in (*VERBS, ("doctor", "--report", str(tmp_path / "report.txt"))):
-        done = inside(*verb) if "--ports" in verb else on(pty_robot, *verb)
-        assert done.code != 2, done.err
-        said += done.out + done.err
+        result = inside(*verb) if "--ports" in verb else on(pty_robot, *verb)
+        assert result.code != 2, result.err
+        output += result.out + result.err
     with monkeypatch.context() as debugging:
         debugging.setenv("TINISCRIPT_DEBUG", "1")
-        done = on(pty_robot, "doctor", "--json")
-        said += done.out + done.err
-    said += inside("set", "owner", "--list").out + inside("set", "owner", "--list", "--json").out
+        result = on(pty_robot, "doctor", "--json")
+        output += result.out + result.err
+    output += inside("set", "owner", "--list").out + inside("set", "owner", "--list", "--json").out
     link = Command("monitor", "--hold", "--port", pty_robot.port)
     link.until("Ctrl-C")
-    said += on(pty_robot, "upload", "-e", "SI|F(0.1, 80)").out
+    output += on(pty_robot, "upload", "-e", "SI|F(0.1, 80)").out
     for name in ("cmdline", "environ"):
         path = Path("/proc") / str(link.process.pid) / name
-        said += path.read_bytes().decode("latin-1") if path.exists() else ""
+        output += path.read_bytes().decode("latin-1") if path.exists() else ""
     link.process.terminate()
-    said += link.ended().out
-    assert "tiniscript" in said
-    assert not has_one(secrets, said.encode("latin-1", "replace"))
+    output += link.ended().out
+    assert "tiniscript" in output
+    assert not has_one(secrets, output.encode("latin-1", "replace"))
     files = [path for path in tmp_path.rglob("*") if path.is_file() and path != KeyFile().path]
     assert len(files) > 3
     for path in files:

@@ -185,8 +185,8 @@ def test_a_class_list_goes_out_and_in(
     KeyFile().add([ONE])
     KeyFile().create_pending_key(7, KEY_OWNER, "not confirmed")
     listed = tmp_path / "class.json"
-    said = tsc("set", "owner", "--export", str(listed)).out
-    assert "class.json: 1." in said and f"tsc set owner --import {listed}" in said
+    output = tsc("set", "owner", "--export", str(listed)).out
+    assert "class.json: 1." in output and f"tsc set owner --import {listed}" in output
     assert stat.S_IMODE(listed.stat().st_mode) == 0o600
     tsc("set", "owner", "--export", str(listed)).gives(2, "already exists. Choose another name")
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "two"))
@@ -258,8 +258,8 @@ def test_what_a_robot_gives_up_is_one_key_of_it(key_file: KeyFile, which: int, s
     next(exchange)
     with pytest.raises(StopIteration):
         exchange.send(Reply(status, 0, EmptyReply()))
-    kept = {(key.id, key.which) for key in key_file.all()}
-    gone = {(key.id, key.which) for key in ring} - kept
+    key_ids = {(key.id, key.which) for key in key_file.all()}
+    gone = {(key.id, key.which) for key in ring} - key_ids
     assert gone == ({(ONE.id, which)} if status == OK else set())
 
 

@@ -34,16 +34,16 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_the_lessons_are_listed(tsc: Tsc) -> None:
-    done = tsc("lesson", "--lang", "es").gives(0)
-    rows = done.out.splitlines()
+    result = tsc("lesson", "--lang", "es").gives(0)
+    rows = result.out.splitlines()
     assert len(rows) == 18
     assert rows[0] == " 1  La primera línea   (tinibot)"
 
 
 def test_one_program(tsc: Tsc, folder: Path) -> None:
-    done = tsc("lesson", "check", "1", folder / "ana.ts")
-    assert done.code == 0
-    assert "done! This solves lesson 1." in done.out
+    result = tsc("lesson", "check", "1", folder / "ana.ts")
+    assert result.code == 0
+    assert "done! This solves lesson 1." in result.out
     tsc("lesson", "check", "1", folder / "beto.ts", "--lang", "es").gives(
         1, out="- El robot se quedó 18 cm antes del centro de la cochera. Haz que avance más."
     )
@@ -53,24 +53,24 @@ def test_one_program(tsc: Tsc, folder: Path) -> None:
 def test_the_world_of_a_failure_can_be_repeated(tsc: Tsc, tmp_path: Path) -> None:
     path = tmp_path / "left.ts"
     path.write_text("SI|F(2.6, 60);L(0.42, 60);IF(TRUE);F(2.4, 60);ENDIF", encoding="utf-8")
-    done = tsc("lesson", "check", "8", path).gives(1)
-    match = re.search(r"--seed (\d+)", done.out)
-    assert match and f"not yet, in world {match[1]}." in done.out
-    (sentence,) = [row for row in done.out.splitlines() if row.startswith("- ")]
+    result = tsc("lesson", "check", "8", path).gives(1)
+    match = re.search(r"--seed (\d+)", result.out)
+    assert match and f"not yet, in world {match[1]}." in result.out
+    (sentence,) = [row for row in result.out.splitlines() if row.startswith("- ")]
     tsc("lesson", "check", "8", path, "--seed", match[1]).gives(1, out=sentence)
     assert tsc("lesson", "check", "8", path, "--seed", "1").code == 0
 
 
 def test_a_folder_gets_a_table(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
     rows = tmp_path / "marks.csv"
-    done = tsc("lesson", "check", "1", folder, "--csv", rows).gives(1)
-    table = {row.split()[0]: row for row in done.out.splitlines()}
+    result = tsc("lesson", "check", "1", folder, "--csv", rows).gives(1)
+    table = {row.split()[0]: row for row in result.out.splitlines()}
     assert re.match(r"ana\.ts +done$", table["ana.ts"])
     assert "not yet" in table["beto.ts"] and "18 cm before" in table["beto.ts"]
     assert "mistakes" in table["carla.ts"] and "line 1" in table["carla.ts"]
     assert "done" in table["eva.ts.txt"]
     assert "mistakes" in table["fox.ts"]
-    assert done.out.splitlines()[-1] == "Lesson 1 done: 2 of 6."
+    assert result.out.splitlines()[-1] == "Lesson 1 done: 2 of 6."
     data = rows.read_bytes()
     assert data.startswith(b"\xef\xbb\xbf")  # spreadsheets on Windows ask for it
     cells = list(csv.reader(data.decode("utf-8-sig").splitlines()))
@@ -98,11 +98,11 @@ def test_the_table_of_a_teacher_in_lima_is_spanish_and_may_be_written_again(
 
 
 def test_json_is_a_list(tsc: Tsc, folder: Path) -> None:
-    found = json.loads(tsc("lesson", "check", "1", folder, "--json").out)
-    assert [each["verdict"] for each in found] == [
+    rows = json.loads(tsc("lesson", "check", "1", folder, "--json").out)
+    assert [row["verdict"] for row in rows] == [
         "failed", "passed", "failed", "mistakes", "passed", "mistakes"]  # fmt: skip
-    assert found[2]["findings"][0]["kind"] == "ends_in"
-    assert found[2]["seed"] == 1
+    assert rows[2]["findings"][0]["kind"] == "ends_in"
+    assert rows[2]["seed"] == 1
     (one,) = json.loads(tsc("lesson", "check", "1", "-e", RIGHT, "--json").out)
     assert one == {"file": "-e", "verdict": "passed", "seed": None, "findings": []}
 
@@ -111,10 +111,10 @@ def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path
     picture = tmp_path / "way.png"
     assert tsc("lesson", "check", "1", "-e", SHORT, "--plot", picture).code == 1
     assert picture.read_bytes().startswith(b"\x89PNG")
-    done = tsc("lesson", "show", "4", "--teacher").gives(
+    result = tsc("lesson", "show", "4", "--teacher").gives(
         0, out=("    SI|LOOP(4)\n", "Answers\n-------")
     )
-    assert "```" not in done.out
+    assert "```" not in result.out
 
 
 @pytest.mark.parametrize(
@@ -146,8 +146,8 @@ def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path
 def test_wrong_use_says_the_next_step(
     tsc: Tsc, arguments: list[str], sentence: str, working_folder: Path
 ) -> None:
-    done = tsc("lesson", *arguments).gives(2, sentence)
-    assert tsc("lesson", *arguments, "--lang", "es").err != done.err
+    result = tsc("lesson", *arguments).gives(2, sentence)
+    assert tsc("lesson", *arguments, "--lang", "es").err != result.err
 
 
 def test_what_is_no_file_has_a_row(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
@@ -159,9 +159,9 @@ def test_what_is_no_file_has_a_row(tsc: Tsc, folder: Path, tmp_path: Path) -> No
     (folder / "nothing.ts").symlink_to("gone")
     (folder / "above").symlink_to(".")
     os.mkfifo(folder / "pipe.ts")  # nobody writes into it
-    done = tsc("lesson", "check", "1", folder, "--json")
-    rows = {row["file"]: row for row in json.loads(done.out)}
-    assert (done.code, len(rows), rows["image.ts"]["verdict"]) == (1, 10, "unreadable")
+    result = tsc("lesson", "check", "1", folder, "--json")
+    rows = {row["file"]: row for row in json.loads(result.out)}
+    assert (result.code, len(rows), rows["image.ts"]["verdict"]) == (1, 10, "unreadable")
     for name in ("circle.ts", "nothing.ts", "pipe.ts"):
         assert rows[name]["verdict"] == "unreadable"
         (finding,) = rows[name]["findings"]
@@ -206,10 +206,10 @@ def test_sheets_are_whole_pages(tsc: Tsc, number: int, language: str, tmp_path: 
 
 def test_a_word_of_another_robot_gets_no_option_that_lesson_lacks(tsc: Tsc) -> None:
     for language in ("en", "es"):
-        done = tsc("lesson", "check", "1", "-e", "SI|F(1,60) UNTIL(LINE_L)", "--lang", language)
-        assert done.code == 1
-        assert "robot:" not in done.err + done.out and "--robot" not in done.err + done.out
-        assert "LINE_L" in done.err + done.out
+        result = tsc("lesson", "check", "1", "-e", "SI|F(1,60) UNTIL(LINE_L)", "--lang", language)
+        assert result.code == 1
+        assert "robot:" not in result.err + result.out and "--robot" not in result.err + result.out
+        assert "LINE_L" in result.err + result.out
     assert "// robot: liner" in tsc("check", "-e", "SI|F(1,60) UNTIL(LINE_L)").err
 
 
@@ -233,14 +233,16 @@ def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None
         (pupils / f"pupil {number}.ts").write_text(RIGHT, encoding="utf-8")
     (pupils / "folder.ts").mkdir()
     rows = tmp_path / "marks.csv"
-    done = tsc("lesson", "check", "1", pupils, "--csv", rows).gives(1)
-    assert done.out.splitlines()[-1] == "Lesson 1 done: 23 of 30."
-    assert "\x1b" not in done.out
+    result = tsc("lesson", "check", "1", pupils, "--csv", rows).gives(1)
+    assert result.out.splitlines()[-1] == "Lesson 1 done: 23 of 30."
+    assert "\x1b" not in result.out
     assert b"\x1b" not in rows.read_bytes()
     verdicts = {"done": "passed", "not yet": "failed", "mistakes": "mistakes"}
-    found = {row[0]: row[1] for row in csv.reader(rows.read_text("utf-8-sig").splitlines())}
+    verdict_by_name = {
+        row[0]: row[1] for row in csv.reader(rows.read_text("utf-8-sig").splitlines())
+    }
     for name, (_, verdict) in odd.items():
-        assert found[name.replace("\x1b", "?")] == verdicts[verdict], name
+        assert verdict_by_name[name.replace("\x1b", "?")] == verdicts[verdict], name
 
 
 def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Path) -> None:
@@ -262,9 +264,11 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
     (pupils / ".hidden").mkdir()
     (pupils / ".hidden" / "old.ts").write_text(RIGHT, encoding="utf-8")
     rows = tmp_path / "marks.csv"
-    done = tsc("lesson", "check", "1", pupils, "--json", "--csv", rows).gives(1)
-    found = {row["file"].replace(os.sep, "/"): row["verdict"] for row in json.loads(done.out)}
-    assert found == {
+    result = tsc("lesson", "check", "1", pupils, "--json", "--csv", rows).gives(1)
+    verdict_by_file = {
+        row["file"].replace(os.sep, "/"): row["verdict"] for row in json.loads(result.out)
+    }
+    assert verdict_by_file == {
         "also.ts.txt": "mistakes", "empty.txt": "failed", "note.ts": "mistakes",
         "notepad.txt": "passed", "wrong.txt": "mistakes", "Ana/square.ts": "passed",
         "Beto/square.ts": "passed", "x.ts/square.ts": "passed", "notasio.txt": "mistakes",
@@ -273,7 +277,7 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
     }  # fmt: skip
     verdicts = [row[1] for row in csv.reader(rows.read_text("utf-8-sig").splitlines())]
     assert verdicts.count("no_program") == len(notes)
-    assert done.err.startswith(
+    assert result.err.startswith(
         "Not checked because they look like notes: Léeme primero.TXT, README"
     )
     table = tsc("lesson", "check", "1", pupils).out.splitlines()
@@ -296,9 +300,9 @@ def test_a_wrong_program_of_a_pupil_has_a_row(tsc: Tsc, tmp_path: Path) -> None:
         "forward 5\nright 90", "if distancia < 10 parar", "Nombre: Ana\nSI;F 2,80;R 1,60",
     ):  # fmt: skip
         (tmp_path / "ana.txt").write_text(wrong, encoding="utf-8")
-        done = tsc("lesson", "check", "1", tmp_path, "--json")
-        (row,) = json.loads(done.out)
-        assert (done.code, row["file"], row["verdict"]) == (1, "ana.txt", "mistakes"), wrong
+        result = tsc("lesson", "check", "1", tmp_path, "--json")
+        (row,) = json.loads(result.out)
+        assert (result.code, row["file"], row["verdict"]) == (1, "ana.txt", "mistakes"), wrong
 
 
 def test_a_note_of_empty_lines_is_looked_at_once(tsc: Tsc, tmp_path: Path) -> None:
@@ -311,9 +315,9 @@ def test_a_note_of_empty_lines_is_looked_at_once(tsc: Tsc, tmp_path: Path) -> No
 def test_a_table_fits_the_terminal(
     columns: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    said = "The robot stood 18 cm before the middle of the garage. Make it drive further. " * 2
+    sentence = "The robot stood 18 cm before the middle of the garage. Make it drive further. " * 2
     marks = [
-        lesson_check.Mark("José Ñáñez (1).ts", "failed", 1, (("", said),)),
+        lesson_check.Mark("José Ñáñez (1).ts", "failed", 1, (("", sentence),)),
         lesson_check.Mark("ana.ts", "passed", 0, ()),
     ]
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from tests.support.command import Done
+from tests.support.command import CommandResult
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
 from tiniscript import robots
@@ -17,8 +17,8 @@ KIT = robots.load("tinibot").kit
 
 def test_a_line_is_done_at_once_and_the_program_stays(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "upload", "-e", "SB|W(1)").code == 0
-    done = on(pty_robot, "live", "F(0.2, 80);SHOW(1.5)")
-    assert (done.code, done.out) == (0, "SHOW 1.5\nDone.\n")
+    result = on(pty_robot, "live", "F(0.2, 80);SHOW(1.5)")
+    assert (result.code, result.out) == (0, "SHOW 1.5\nDone.\n")
     assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
     assert "SB" in on(pty_robot, "show").out
     assert on(pty_robot, "live", "F(2 80)").code == 1
@@ -38,12 +38,12 @@ def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
         "X = 1 / 0",
         "SHOW(9)",
     )
-    done = on(pty_robot, "live", "-", data="\n".join(lines).encode())
-    assert done.code == 1  # the fault ends it
-    assert done.out.splitlines() == [
+    result = on(pty_robot, "live", "-", data="\n".join(lines).encode())
+    assert result.code == 1  # the fault ends it
+    assert result.out.splitlines() == [
         "TELL: now known.", "X 30.5", "X 31.5", "X 31.5", "READY TRUE", "-X -31.5",
     ]  # fmt: skip
-    assert "DIVIDE_BY_ZERO" in done.err
+    assert "DIVIDE_BY_ZERO" in result.err
 
 
 def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
@@ -99,13 +99,13 @@ def test_ctrl_c_stops_what_the_robot_does_wherever_a_person_is(pty_robot: PtyRob
     assert on(pty_robot, "upload", "-e", "SB|F(60, 80)").code == 0
     terminal = Terminal("live", "--port", pty_robot.port)
     terminal.until("tini>")
-    for place, (typed, seen) in PLACES.items():
+    for place, (typed, word_on_screen) in PLACES.items():
         pty_robot.push()
         pty_robot.until(lambda: pty_robot.moves, "it drives")
         terminal.screen.reset()
         terminal.type(typed)
         if typed:
-            terminal.until(re.escape(seen.rstrip()))
+            terminal.until(re.escape(word_on_screen.rstrip()))
         terminal.type("\x03")
         terminal.until(re.escape("the robot has confirmed the stop."))
         assert not pty_robot.moves, place
@@ -117,14 +117,18 @@ def test_ctrl_c_stops_what_the_robot_does_wherever_a_person_is(pty_robot: PtyRob
 def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
     """Up to its end, or to the first line with a mistake."""
 
-    def run_live(lines: str) -> Done:
+    def run_live(lines: str) -> CommandResult:
         return on(pty_robot, "live", "-", data=lines.encode())
 
-    done = run_live("DEF TELL\n  SHOW(1)\nEND_DEF\nLOOP(2)\n\n  TELL // twice\nEND_LOOP\nSHOW(3)\n")
-    assert (done.code, done.err) == (0, "")
-    assert done.out == "TELL: now known.\nSHOW 1\nSHOW 1\nSHOW 3\n"
-    done = run_live("LOOP(2)\nF(2 80)\nEND_LOOP\nSHOW(4)\n").gives(1, out="")
-    assert done.err.startswith("line 2:") and "comma" in done.err and "END_LOOP" not in done.err
+    result = run_live(
+        "DEF TELL\n  SHOW(1)\nEND_DEF\nLOOP(2)\n\n  TELL // twice\nEND_LOOP\nSHOW(3)\n"
+    )
+    assert (result.code, result.err) == (0, "")
+    assert result.out == "TELL: now known.\nSHOW 1\nSHOW 1\nSHOW 3\n"
+    result = run_live("LOOP(2)\nF(2 80)\nEND_LOOP\nSHOW(4)\n").gives(1, out="")
+    assert (
+        result.err.startswith("line 2:") and "comma" in result.err and "END_LOOP" not in result.err
+    )
     run_live("IF(TRUE)\nSHOW(5)\n").gives(1, "ENDIF", out="")
 
 

@@ -12,7 +12,7 @@ from contextlib import closing
 
 import pytest
 
-from tests.support.command import FOREVER, Command, Done, inside
+from tests.support.command import FOREVER, Command, CommandResult, inside
 from tests.support.robot_fleet import RobotFleet, known_fleet
 from tests.support.terminal import Terminal
 from tiniscript import robots
@@ -37,8 +37,8 @@ def class_() -> Iterator[RobotFleet]:
         yield robot_fleet
 
 
-def results(done: Done) -> dict[str, dict[str, object]]:
-    rows = [json.loads(line) for line in done.out.splitlines()]
+def results(result: CommandResult) -> dict[str, dict[str, object]]:
+    rows = [json.loads(line) for line in result.out.splitlines()]
     return {row["port"]: row for row in rows if row["event"] == "RESULT"}
 
 
@@ -53,8 +53,8 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
             pupils[number].damages = 97
         for pupil in pupils:
             known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
-        done = inside("upload", "-e", SHORT, "--all", "--json").gives(3)
-        rows = results(done)
+        result = inside("upload", "-e", SHORT, "--all", "--json").gives(3)
+        rows = results(result)
         bad = {pupils[number].port for number in (SILENT, OTHER_KIT, DEAF)}
         named = {port: row for port, row in rows.items() if not row["is_absent"]}
         assert set(named) == {pupil.port for pupil in pupils}
@@ -64,7 +64,7 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         for pupil in pupils:
             if pupil.port not in bad:
                 assert pupil.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
-        events = [json.loads(line) for line in done.out.splitlines()]
+        events = [json.loads(line) for line in result.out.splitlines()]
         receipts = [row["port"] for row in events if row["event"] == "RECEIPT"]
         assert len(receipts) == len(set(receipts)) >= ROBOTS - 3
         shown = [row["port"] for row in events if row["event"] == "SHOW"]
@@ -75,10 +75,10 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
 
         inside("upload", "-e", FOREVER, "--all", "--detach").gives(3)
         assert sum(pupil.moves for pupil in pupils) == ROBOTS - 2  # it uses no device of a kit
-        done = inside("stop", "--all").gives(3)
+        result = inside("stop", "--all").gives(3)
         assert not any(pupil.moves for pupil in pupils)
         assert (
-            done.out.count("the robot has confirmed the stop") == ROBOTS - 2
+            result.out.count("the robot has confirmed the stop") == ROBOTS - 2
         )  # the other kit, too
 
 
@@ -87,15 +87,15 @@ def test_one_that_babbles_holds_up_no_other(class_: RobotFleet, babble: bytes) -
     """Another sketch that prints without an end, half frames, and the noise of a wrong speed."""
     *others, last = class_.pupils
     last.babble = babble
-    done = inside("upload", "-e", FOREVER, "--all", "--detach", "--json")
-    rows = results(done)
-    assert done.code == 3 and len(done.out) < 10_000
+    result = inside("upload", "-e", FOREVER, "--all", "--detach", "--json")
+    rows = results(result)
+    assert result.code == 3 and len(result.out) < 10_000
     assert {port for port, row in rows.items() if row["is_done"]} == {
         pupil.port for pupil in others
     }
     assert all(pupil.moves for pupil in others)
-    done = inside("stop", "--all", "--json")
-    rows = results(done)
+    result = inside("stop", "--all", "--json")
+    rows = results(result)
     assert {port for port, row in rows.items() if row["is_done"]} >= {
         pupil.port for pupil in others
     }
@@ -112,9 +112,9 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
     with monkeypatch.context() as short, closing(holder):
         short.setattr(opening, "STOP_BUSY_TIMEOUT_S", 0.5)
         for options in (("--all",), tuple(f"--port={pupil.port}" for pupil in class_.pupils)):
-            done = inside("stop", *options, "--json")
-            rows = results(done)
-            assert done.code == 3 and not rows[last.port]["is_done"]
+            result = inside("stop", *options, "--json")
+            rows = results(result)
+            assert result.code == 3 and not rows[last.port]["is_done"]
             assert all(rows[pupil.port]["is_done"] for pupil in others)
             assert not any(pupil.moves for pupil in others)
             inside("start", "--port", others[0].port, "--detach")
@@ -131,18 +131,18 @@ def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
         return command
 
     command = driven()
-    done = inside("stop", "--all", "--json").gives(0)
+    result = inside("stop", "--all", "--json").gives(0)
     assert not any(pupil.moves for pupil in class_.pupils)
-    rows = [row for row in results(done).values() if not row["is_absent"]]
+    rows = [row for row in results(result).values() if not row["is_absent"]]
     assert len(rows) == len(class_.pupils)
-    done = command.ended().gives(3)
+    result = command.ended().gives(3)
     reasons = ("The robot was stopped from a computer.", "another command stopped the robot")
-    assert sum(map(done.out.count, reasons)) == len(class_.pupils)  # before or after its start
+    assert sum(map(result.out.count, reasons)) == len(class_.pupils)  # before or after its start
     command = driven()
     command.signal(signal.SIGINT)
-    done = command.ended().gives(2)
+    result = command.ended().gives(2)
     assert not any(pupil.moves for pupil in class_.pupils)
-    assert done.out.count("the robot has confirmed the stop") == len(class_.pupils)
+    assert result.out.count("the robot has confirmed the stop") == len(class_.pupils)
     command = driven()
     command.kill()
     class_.until(lambda: not any(pupil.moves for pupil in class_.pupils), "they stop")
@@ -155,22 +155,22 @@ def test_each_robot_has_a_row(class_: RobotFleet) -> None:
     assert inside("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
     assert inside("upload", "-e", "SB|S", "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
-    done = inside("doctor", "--all").gives(0)
-    rows = [line.split("(")[1].split(")")[0] for line in done.out.splitlines()]
+    result = inside("doctor", "--all").gives(0)
+    rows = [line.split("(")[1].split(")")[0] for line in result.out.splitlines()]
     assert sorted(rows) == sorted(names)
-    assert done.out.count("nothing is running") == len(names)
+    assert result.out.count("nothing is running") == len(names)
     ports_of = ("--port", names[0], "--port", names[2])
-    found = results(inside("doctor", "--count", "3", "--json", *ports_of))
-    assert set(found) == {names[0], names[2]}
-    assert all(row["round_trips"] == 3 for row in found.values())
-    done = inside("upload", "-e", "SI|X = DISTANCE;SHOW(1 / X)", "--all", "--no-save").gives(3)
-    assert done.out.count("DIVIDE_BY_ZERO") == 4
-    assert done.out.count("line 1") == 4
-    done = inside(
+    robots_by_port = results(inside("doctor", "--count", "3", "--json", *ports_of))
+    assert set(robots_by_port) == {names[0], names[2]}
+    assert all(row["round_trips"] == 3 for row in robots_by_port.values())
+    result = inside("upload", "-e", "SI|X = DISTANCE;SHOW(1 / X)", "--all", "--no-save").gives(3)
+    assert result.out.count("DIVIDE_BY_ZERO") == 4
+    assert result.out.count("line 1") == 4
+    result = inside(
         "doctor", "--identify", "--port", names[0], "--port", "/dev/no-such", "--lang", "es"
     )
-    assert done.code == 3
-    assert "no existe el puerto /dev/no-such" in done.out
+    assert result.code == 3
+    assert "no existe el puerto /dev/no-such" in result.out
     assert "3" in inside("doctor", "--count", "3", "--port", names[0], "--port", names[0]).out
 
 
@@ -182,17 +182,17 @@ def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> 
         weak.robot.supply(True)
     inside("upload", "-e", "SB|S", "--port", weak.port)
     heard = {pupil.port: len(pupil.heard) for pupil in class_.pupils}
-    found = results(inside("doctor", "--all", "--count", "3", "--json").gives(3))
+    robots_by_port = results(inside("doctor", "--all", "--count", "3", "--json").gives(3))
     alone = json.loads(inside("doctor", "--port", weak.port, "--json").gives(3).out)
-    wrong = [each for each in alone["findings"] if each["is_wrong"]]
-    assert [each["cause"] for each in wrong] == ["low_supply"]
-    findings = found[weak.port]["findings"]
+    wrong = [finding for finding in alone["findings"] if finding["is_wrong"]]
+    assert [finding["cause"] for finding in wrong] == ["low_supply"]
+    findings = robots_by_port[weak.port]["findings"]
     assert isinstance(findings, list)
     assert [finding for finding in findings if finding["is_wrong"]] == wrong
-    assert wrong[0]["said"] in str(found[weak.port]["said"])
+    assert wrong[0]["said"] in str(robots_by_port[weak.port]["said"])
     for pupil in class_.pupils:
-        assert found[pupil.port]["is_done"] == (pupil is not weak)
-        assert found[pupil.port]["round_trips"] == 3
+        assert robots_by_port[pupil.port]["is_done"] == (pupil is not weak)
+        assert robots_by_port[pupil.port]["round_trips"] == 3
         assert pings(pupil.heard[heard[pupil.port] :]) == 3 + 20 * (pupil is weak)
 
 
@@ -206,17 +206,17 @@ def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
     assert inside("upload", "-e", first, "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
     assert inside("upload", "-e", second, "--port", names[1], "--port", names[2]).code == 0
-    done = inside("start", "--previous", "--all", "--json").gives(3)
-    rows = results(done)
+    result = inside("start", "--previous", "--all", "--json").gives(3)
+    rows = results(result)
     assert {port for port in names if rows[port]["is_done"]} == {names[1], names[2]}
     assert "no earlier program" in str(rows[names[0]]["said"])
     checksums = {rows[names[1]]["checksum"], rows[names[2]]["checksum"]}
     assert len(checksums) == 1
-    done = inside(
+    result = inside(
         "start", "--previous", "--port", names[1], "--port", names[2], "--lang", "es"
     ).gives(0)
-    assert done.out.count("vuelve a tener el programa anterior") == 2
-    assert str(checksums.pop()) not in done.out
+    assert result.out.count("vuelve a tener el programa anterior") == 2
+    assert str(checksums.pop()) not in result.out
 
 
 def test_a_port_that_never_had_a_robot_is_no_failure(
@@ -228,9 +228,9 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
     monkeypatch.setattr(ports, "list_ports", lambda: [ports.ListedPort(port, "")])
     monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_TIMEOUT_S", 1.0)
-    done = inside("doctor", "--identify", "--all").gives(0)
-    assert len(done.out.splitlines()) == 4
-    assert done.err == f"Done: 4 of 4.\nNo robot responds on {port}.\n"
+    result = inside("doctor", "--identify", "--all").gives(0)
+    assert len(result.out.splitlines()) == 4
+    assert result.err == f"Done: 4 of 4.\nNo robot responds on {port}.\n"
     monkeypatch.setattr(ports, "list_ports", list)
     monkeypatch.setattr(opening, "ANSWER_TIMEOUT_MS", 1000)
     known_ports.remember(known, "R9", is_used=False)
@@ -252,15 +252,15 @@ def test_nobody_and_wrong_use(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -> None:
     words = ("upload", "-e", "SI|F(1, 80);SHOW(7);F(1, 80)", "--all", "--no-save")
     terminal = Terminal(*words, size=(100, 24), types=False)
-    seen = set()
+    states_shown = set()
     while terminal.take():
         text = "\n".join(terminal.lines())
         if text.count("running   SHOW 7") == 4:
-            seen.add("values")
+            states_shown.add("values")
         if text.count("running") == 4:
-            seen.add("running")
+            states_shown.add("running")
     assert terminal.end() == 0
-    assert seen == {"values", "running"}
+    assert states_shown == {"values", "running"}
     rows = list(filter(None, terminal.lines()))
     assert "Done: 4 of 4." in rows
     assert sum(row.endswith("Done.") for row in rows) == 4

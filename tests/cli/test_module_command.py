@@ -45,10 +45,10 @@ def port_of(module: Simulated) -> str:
 
 
 def test_a_module_gets_name_pin_and_speed(tsc: Tsc, module: Simulated) -> None:
-    done = tsc("doctor", "--module", "--port", port_of(module), "--name", "ANA", "--pin", "4711",
+    result = tsc("doctor", "--module", "--port", port_of(module), "--name", "ANA", "--pin", "4711",
                "--baud", "57600").gives(0, "")  # fmt: skip
     assert (module.name, module.pin, module.baud) == ("ANA", "4711", 57600)
-    assert done.out.splitlines() == [
+    assert result.out.splitlines() == [
         f"HC-06 3.x on {port_of(module)}, version 3.0-20170609; it listens at 9600 baud.",
         "?      name ANA: the module reports that it has done this",
         *UNSEEN,
@@ -65,30 +65,30 @@ def test_quick_and_slow_ones_behind_a_real_port(tsc: Tsc, end: Simulated) -> Non
     """So that a port waits long enough for an answer. All kinds are in `tests/modules/`."""
     pin = "471123"[: len(end.pin)]
     with PtyEnd(end) as pty_end:
-        done = tsc("doctor", "--module", "--port", pty_end.port, "--id", "12347f3a", "--pin", pin,
+        result = tsc("doctor", "--module", "--port", pty_end.port, "--id", "12347f3a", "--pin", pin,
                    "--baud", "19200", "--lang", "es")  # fmt: skip
-    assert (done.code, done.err) == (0, "")
+    assert (result.code, result.err) == (0, "")
     assert (end.name, end.pin, end.data_baud) == ("Tini-7F3A", pin, 19200)
-    assert ("suelta su botón" in done.out) == isinstance(end, Hc05)
+    assert ("suelta su botón" in result.out) == isinstance(end, Hc05)
 
 
 def test_a_dry_run_shows_the_commands_and_changes_nothing(tsc: Tsc, module: Simulated) -> None:
-    done = tsc("doctor", "--module", "--port", port_of(module), "--name", "ANA", "--baud", "115200",
-               "--dry-run")  # fmt: skip
-    assert done.code == 0
-    assert "would send:  AT+NAME:ANA, or else AT+NAME=ANA\n" in done.out
-    assert "115200 baud: would send:  AT+UART=115200,0,0" in done.out
+    result = tsc("doctor", "--module", "--port", port_of(module), "--name", "ANA",
+                 "--baud", "115200", "--dry-run")  # fmt: skip
+    assert result.code == 0
+    assert "would send:  AT+NAME:ANA, or else AT+NAME=ANA\n" in result.out
+    assert "115200 baud: would send:  AT+UART=115200,0,0" in result.out
     assert (module.name, module.baud) == ("HC-06", 9600)
     assert not any("ANA" in command or "UART" in command for command in module.commands)
 
 
 def test_without_a_wish_it_says_what_it_has_found(tsc: Tsc) -> None:
     with PtyEnd(Bt05(38400)) as pty_end:
-        done = tsc("doctor", "--module", "--port", pty_end.port)
-    assert done.code == 0
-    assert "MLT-BT05 on" in done.out and "listens at 38400 baud" in done.out
-    assert "It now has: name BT05, 38400 baud." in done.out
-    assert "--pin 123456" in done.out
+        result = tsc("doctor", "--module", "--port", pty_end.port)
+    assert result.code == 0
+    assert "MLT-BT05 on" in result.out and "listens at 38400 baud" in result.out
+    assert "It now has: name BT05, 38400 baud." in result.out
+    assert "--pin 123456" in result.out
 
 
 def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -97,15 +97,15 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     end = Hc06New()
     end.is_on = False
     with PtyEnd(end) as pty_end:
-        done = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA")
-    assert done.code == 3
+        result = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA")
+    assert result.code == 3
     silent = sentences_of(sure_finding("module_silent"), "en")
-    assert f"WRONG  module: {silent.finding}\n" in done.out and silent.advice in done.out
-    assert done.err == ""
+    assert f"WRONG  module: {silent.finding}\n" in result.out and silent.advice in result.out
+    assert result.err == ""
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["--name", "A" * 21], "at most 20"),
         (["--name", ""], "at most 20"),
@@ -118,17 +118,17 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     ],
 )
 def test_what_no_module_can_have_is_refused_before_anything_is_opened(
-    tsc: Tsc, words: list[str], said: str
+    tsc: Tsc, words: list[str], message: str
 ) -> None:
-    tsc("doctor", "--module", "--port", "/dev/not-there", *words).gives(2, said)
+    tsc("doctor", "--module", "--port", "/dev/not-there", *words).gives(2, message)
 
 
 def test_what_this_module_cannot_have_is_refused_before_anything_is_changed(tsc: Tsc) -> None:
     end = Bt05()
     with PtyEnd(end) as pty_end:
-        done = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA", "--pin", "1234")
-    assert done.code == 2
-    assert "6 digits (MLT-BT05)" in done.err
+        result = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA", "--pin", "1234")
+    assert result.code == 2
+    assert "6 digits (MLT-BT05)" in result.err
     assert end.name == "BT05"
 
 
@@ -166,19 +166,21 @@ def test_how_a_step_ends_is_a_cause_of_the_doctors_table() -> None:
 
 def test_a_module_that_does_not_do_it_is_an_exit_code(tsc: Tsc, module: Simulated) -> None:
     module.breaks_after = 4
-    done = tsc("doctor", "--module", "--port", port_of(module), "--name", "ANA", "--baud", "115200")
-    assert done.code == 3
-    assert "WRONG  115200 baud: the module" in done.out
-    assert "try again" in done.out
+    result = tsc(
+        "doctor", "--module", "--port", port_of(module), "--name", "ANA", "--baud", "115200"
+    )
+    assert result.code == 3
+    assert "WRONG  115200 baud: the module" in result.out
+    assert "try again" in result.out
 
 
-@pytest.mark.parametrize(("is_on", "is_pulled", "code", "said"), [
+@pytest.mark.parametrize(("is_on", "is_pulled", "code", "expected"), [
     (True, True, 3, "The module was being set to 115200 baud"),
     (True, False, 2, "The module was being set to 115200 baud: it has that speed or the old one."),
     (False, False, 2, "tsc: stopped. The module's speed has not changed."),
 ])  # fmt: skip
 def test_a_pulled_cable_and_ctrl_c_say_at_which_speeds_the_module_may_be(
-    is_on: bool, is_pulled: bool, code: int, said: str
+    is_on: bool, is_pulled: bool, code: int, expected: str
 ) -> None:
     end = Hm10()
     end.is_on = is_on
@@ -189,7 +191,7 @@ def test_a_pulled_cable_and_ctrl_c_say_at_which_speeds_the_module_may_be(
             pty_end.pull()
         else:
             command.signal(signal.SIGINT)
-        done = command.ended()
-    assert done.code == code
-    assert said in (done.out if is_pulled else done.err)
-    assert ("WRONG  module: The port vanished" in done.out) == is_pulled
+        result = command.ended()
+    assert result.code == code
+    assert expected in (result.out if is_pulled else result.err)
+    assert ("WRONG  module: The port vanished" in result.out) == is_pulled

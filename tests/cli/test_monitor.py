@@ -33,8 +33,8 @@ def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path
         lambda: "FAULT" in rows.read_text(encoding="utf-8"), "the fault is written down"
     )
     command.signal(signal.SIGINT)
-    done = command.ended().gives(0)
-    events = [json.loads(line) for line in done.out.splitlines()]
+    result = command.ended().gives(0)
+    events = [json.loads(line) for line in result.out.splitlines()]
     assert [event["event"] for event in events] == ["SHOW", "SHOW", "FAULT"]
     assert [row.split(",")[1:] for row in rows.read_text(encoding="utf-8").splitlines()] == [
         ["event", "value", "name"], ["SHOW", "1.5", ""], ["SHOW", "TRUE", ""],
@@ -58,10 +58,10 @@ def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:
     terminal.until(r"(?s)── SHOW 1 .*Done\.|Done\..*── SHOW 1 ")
     terminal.interrupt()
     assert terminal.end() == 0
-    seen = terminal.written.decode()
-    assert "SHOW -2.5" in seen and "SHOW TRUE" in seen
-    assert any("⠀" < letter <= "⣿" for letter in seen)
-    assert seen.endswith("\n")
+    output = terminal.written.decode()
+    assert "SHOW -2.5" in output and "SHOW TRUE" in output
+    assert any("⠀" < letter <= "⣿" for letter in output)
+    assert output.endswith("\n")
 
 
 @pytest.mark.parametrize("values", [[], [(0, 5)], [(0, -5), (900, 7000), (20_000, 7000)]])
@@ -110,7 +110,7 @@ def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
                 is_there, losses = False, losses + 1
                 return waits, LostEvent()
             return None
-        asked = [each for each in searches if each.outcome is None]
+        asked = [search for search in searches if search.outcome is None]
         assert len(asked) == 1, "nobody looks for it"
         if chance.random() < 0.3:
             is_there = chance.random() < 0.3

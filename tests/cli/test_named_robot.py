@@ -42,19 +42,19 @@ def test_all_verbs_are_here() -> None:
 @each_row("verb", [verb for verb, words in CALLS.items() if words is not None])
 def test_every_verb_takes_the_robot_that_a_program_names(verb: str, tsc: Tsc, liner: Path) -> None:
     words = CALLS[verb] or []
-    done = tsc(verb, *words, liner)
-    assert "Error: " not in done.err and "[TS" not in done.err, done
-    assert done.code == (1 if verb == "lesson" else 0)  # it does not drive as lesson 1 wants
+    result = tsc(verb, *words, liner)
+    assert "Error: " not in result.err and "[TS" not in result.err, result
+    assert result.code == (1 if verb == "lesson" else 0)  # it does not drive as lesson 1 wants
 
 
 @each_row("verb", ["check", "run", "compile", "show", "upload"])
 def test_an_option_wins_and_says_so_once(verb: str, tsc: Tsc, liner: Path) -> None:
     words = CALLS[verb] or []
-    done = tsc(verb, *words, liner, "--robot", "tinibot").gives(1)
-    assert done.err.startswith(WINS.format("tinibot", liner, "liner"))
-    assert done.err.count(" takes precedence: ") == 1
+    result = tsc(verb, *words, liner, "--robot", "tinibot").gives(1)
+    assert result.err.startswith(WINS.format("tinibot", liner, "liner"))
+    assert result.err.count(" takes precedence: ") == 1
     wanted = "Try:  Write --robot liner in the command, not tinibot"
-    assert wanted in done.err  # the comment is there already
+    assert wanted in result.err  # the comment is there already
     same = tsc(verb, *words, liner, "--robot", "LINER").gives(0)
     assert " takes precedence: " not in same.err
 
@@ -73,22 +73,24 @@ def test_a_robot_of_ones_own_may_be_named(tsc: Tsc, tmp_path: Path) -> None:
 def test_a_name_that_no_robot_has_is_a_mistake(verb: str, tsc: Tsc, tmp_path: Path) -> None:
     path = tmp_path / "x.ts"
     path.write_text(UNKNOWN, encoding="utf-8")
-    done = tsc(verb, *(CALLS[verb] or []), path).gives(1)
-    assert done.err.count("[TS") == 1  # which words there are nobody knows
-    assert "line 1:  // robot: linar\n                   ^^^^^\n" in done.err
-    assert "No robot is called linar; TiniScript includes: tinibot, elegoo4" in done.err
-    assert "Try:  // robot: liner   [TS138]" in done.err
+    result = tsc(verb, *(CALLS[verb] or []), path).gives(1)
+    assert result.err.count("[TS") == 1  # which words there are nobody knows
+    assert "line 1:  // robot: linar\n                   ^^^^^\n" in result.err
+    assert "No robot is called linar; TiniScript includes: tinibot, elegoo4" in result.err
+    assert "Try:  // robot: liner   [TS138]" in result.err
 
 
-@each_row("language, said", [("es", "Ningún robot se llama x2"), ("pt", "Nenhum robô se chama x2")])
-def test_it_is_said_in_all_languages(language: str, said: str, tsc: Tsc) -> None:
-    done = tsc("check", "-e", "// robot: x2\nS", "--lang", language).gives(1)
-    assert said in done.err and "--robot" in done.err
+@each_row(
+    "language, message", [("es", "Ningún robot se llama x2"), ("pt", "Nenhum robô se chama x2")]
+)
+def test_it_is_said_in_all_languages(language: str, message: str, tsc: Tsc) -> None:
+    result = tsc("check", "-e", "// robot: x2\nS", "--lang", language).gives(1)
+    assert message in result.err and "--robot" in result.err
 
 
 def test_an_editor_is_told_where(tsc: Tsc) -> None:
-    (found,) = json.loads(tsc("check", "-e", UNKNOWN, "--json").gives(1).out)
-    assert (found["code"], found["line"], found["column"], found["end_column"]) == (
+    (finding,) = json.loads(tsc("check", "-e", UNKNOWN, "--json").gives(1).out)
+    assert (finding["code"], finding["line"], finding["column"], finding["end_column"]) == (
         "TS138", 1, 11, 16,
     )  # fmt: skip
 
@@ -99,8 +101,8 @@ def test_each_program_of_a_folder_has_its_own(tsc: Tsc, tmp_path: Path) -> None:
     (tmp_path / "c.ts").write_text("// robot: grabber\nSI|F(2 60);LED(TRUE)\n", encoding="utf-8")
     rows = json.loads(tsc("check", tmp_path, "--json").gives(1).out)
     assert [row["mistakes"] for row in rows] == [0, 0, 1]
-    done = tsc("check", tmp_path, "--robot", "liner").gives(1)
-    assert done.err == WINS.format("liner", tmp_path / "c.ts", "grabber")
+    result = tsc("check", tmp_path, "--robot", "liner").gives(1)
+    assert result.err == WINS.format("liner", tmp_path / "c.ts", "grabber")
     tsc("check", tmp_path, "--fix").gives(0)
     assert "F(2, 60)" in (tmp_path / "c.ts").read_text(encoding="utf-8")
 
@@ -110,11 +112,11 @@ def test_the_examples_are_right_as_they_are(tsc: Tsc) -> None:
 
 
 def test_the_one_that_answers_does_not_take_the_place_of_a_named_one(liner: Path) -> None:
-    with robot("--robot", "liner", "--world", "line") as found:
-        assert inside("upload", liner, "--port", found.port, "--no-run").gives(0).err == ""
+    with robot("--robot", "liner", "--world", "line") as running_robot:
+        assert inside("upload", liner, "--port", running_robot.port, "--no-run").gives(0).err == ""
         assert inside("check", liner, "--virtual").gives(0).err == ""
-    with robot() as found:
-        inside("upload", liner, "--port", found.port).gives(3, "another kit")
+    with robot() as running_robot:
+        inside("upload", liner, "--port", running_robot.port).gives(3, "another kit")
         assert inside("check", liner, "--virtual").gives(0).err == ""
 
 

@@ -13,7 +13,7 @@ from tests.support.casefile import ROOT
 from tests.support.command import Tsc
 from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES
-from tests.support.texts import said as all_said
+from tests.support.texts import catalogue_texts as all_said
 from tiniscript.base.languages import FOLDER
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts.options import command_of, options_of, selecting_options_of
@@ -49,13 +49,13 @@ def files() -> Iterator[Path]:
 
 
 def test_no_file_names_an_old_verb() -> None:
-    seen = 0
-    found: list[str] = []
+    count = 0
+    old_uses: list[str] = []
     for path in files():
-        seen += 1
+        count += 1
         text = path.read_text(encoding="utf-8", errors="replace")
-        found += [f"{path.relative_to(ROOT)}: {match[0]}" for match in NAMED.finditer(text)]
-    assert seen > 1000 and not found, "\n".join(found)
+        old_uses += [f"{path.relative_to(ROOT)}: {match[0]}" for match in NAMED.finditer(text)]
+    assert count > 1000 and not old_uses, "\n".join(old_uses)
 
 
 def test_what_is_searched_for_is_found() -> None:
@@ -108,30 +108,30 @@ def wrong_in(command: str) -> str | None:
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_what_messages_say_to_type_is_a_command(language: str) -> None:
-    found = 0
+    count = 0
     for path in (FOLDER / language).glob("*.toml"):
         if path.stem == "language" or not all_said(language, path.stem):
             continue
         for key, text in all_said(language, path.stem).items():
             is_robots = path.stem == "robot"
             for command in commands_in(text, is_document=False, is_robots=is_robots):
-                found += 1
+                count += 1
                 assert wrong_in(command) is None, (path.stem, key, command)
-    assert found > 100
+    assert count > 100
     owned = all_said(language, "robot")["remark/NOT_OWNER"]
     assert [*commands_in(owned, is_document=False, is_robots=True)]
 
 
 def test_what_sources_of_robots_say_to_type_is_a_command() -> None:
     """The compiler says it to who builds a firmware."""
-    found = 0
+    count = 0
     for path in files():
         if path.suffix in (".cpp", ".h") and "src" in path.parts:
             strings = re.findall(r'"((?:\\.|[^"\\\n])*)"', path.read_text(encoding="utf-8"))
             for command in commands_in(" ".join(strings), is_document=False, is_robots=True):
-                found += 1
+                count += 1
                 assert wrong_in(command) is None, (path.relative_to(ROOT), command)
-    assert found
+    assert count
 
 
 def test_what_is_no_command_is_found_in_what_a_robot_says() -> None:
@@ -145,14 +145,14 @@ def test_what_is_no_command_is_found_in_what_a_robot_says() -> None:
 
 def test_what_documents_say_to_type_is_a_command() -> None:
     """Those that say how something was before do not count."""
-    found = 0
+    count = 0
     for path in files():
         if path.suffix != ".md":
             continue
         for command in commands_in(path.read_text(encoding="utf-8"), is_document=True):
-            found += 1
+            count += 1
             assert wrong_in(command) is None, (path.relative_to(ROOT), command)
-    assert found > 500
+    assert count > 500
 
 
 # -- the old names --------------------------------------------------------------------------------
@@ -163,15 +163,15 @@ def test_an_old_name_says_what_it_is_now(tsc: Tsc, name: str) -> None:
     assert name not in VERBS
     for language in LANGUAGES:
         for more in ([], ["--nonsense"], ["--lang", language]):
-            done = tsc("--lang", language, name, *more).gives(2, out="")
-            assert done.err.count("\n") == 1 and name in done.err
-            now = done.err.rstrip("\n").rpartition("  tsc ")[2]
+            result = tsc("--lang", language, name, *more).gives(2, out="")
+            assert result.err.count("\n") == 1 and name in result.err
+            now = result.err.rstrip("\n").rpartition("  tsc ")[2]
             verb, *words = shlex.split(now)
             assert command_of(verb, words)[0] == FORMER_COMMANDS[name], now
             assert "nonsense" not in now and wrong_in(now) is None
 
 
-@each_row("was, now", [
+@each_row("old, now", [
     ("explain TS012", "check --explain TS012"), ("explain", "check --explain"),
     ("ports --ask --json", "doctor --ports --ask --json"), ("info --all", "doctor --all"),
     ("ping --port COM5 --count 3", "doctor --port COM5 --count 3"),
@@ -186,9 +186,9 @@ def test_an_old_name_says_what_it_is_now(tsc: Tsc, name: str) -> None:
     ("wifi --help", "set wifi --help"), ("completion bash", "help --completion bash"),
     ("text on", "set text on"), ("link", "monitor --hold"),
 ])  # fmt: skip
-def test_what_was_typed_after_it_stands_after_the_new_one(tsc: Tsc, was: str, now: str) -> None:
-    done = tsc(*shlex.split(was), "--lang", "en").gives(2, out="")
-    assert done.err.rstrip("\n").rpartition("  tsc ")[2].removesuffix(" --lang en") == now
+def test_what_was_typed_after_it_stands_after_the_new_one(tsc: Tsc, old: str, now: str) -> None:
+    result = tsc(*shlex.split(old), "--lang", "en").gives(2, out="")
+    assert result.err.rstrip("\n").rpartition("  tsc ")[2].removesuffix(" --lang en") == now
 
 
 def test_help_on_an_old_name_is_that_of_the_new_command(tsc: Tsc) -> None:
@@ -213,8 +213,8 @@ def test_two_steps_are_not_done_at_once(tsc: Tsc, words: str, first: str, second
 ])  # fmt: skip
 def test_an_option_of_another_step_is_named_with_it(tsc: Tsc, words: str, other: str) -> None:
     option = words.split()[-2] if words.split()[-1][0] != "-" else words.split()[-1]
-    said = f"{option} is an option of tsc {other}, not of tsc "
-    tsc(*words.split(), "--lang", "en").gives(2, said, f"Try:  tsc {other} --help", out="")
+    message = f"{option} is an option of tsc {other}, not of tsc "
+    tsc(*words.split(), "--lang", "en").gives(2, message, f"Try:  tsc {other} --help", out="")
 
 
 def test_the_word_after_set_may_come_after_options(tsc: Tsc) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.support import edited_robots
-from tests.support.command import PROGRAM, TSC, Done, Tsc
+from tests.support.command import PROGRAM, TSC, CommandResult, Tsc
 from tests.support.verbs import parsers, values_of, words_of
 from tests.support.waiting import HANGS_S
 from tiniscript.cli import paths
@@ -88,7 +88,7 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
         'path.open("a"': "csv",  # rows, and lines of a recording
         'path.open("w"': "record",
     }
-    found = set()
+    known_options = set()
     for file in sorted((HERE / "cli").rglob("*.py")):
         for line in file.read_text(encoding="utf-8").splitlines():
             words = ("outputs.write(", "outputs.write_output(", '.open("w', '.open("a',
@@ -97,9 +97,9 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
             if is_file and any(word in line for word in words):
                 known = [place for place in places if place in line]
                 assert known, f"{file.name}: {line.strip()}"
-                found |= set(known)
-    assert found == set(places)
-    assert {places[each] for each in found} == {*paths.WRITE_OPTIONS, "program", "programs"}
+                known_options |= set(known)
+    assert known_options == set(places)
+    assert {places[name] for name in known_options} == {*paths.WRITE_OPTIONS, "program", "programs"}
 
 
 @pytest.mark.sampled("how")
@@ -143,8 +143,8 @@ def test_two_outputs_that_are_not_there_yet_are_told_apart(tsc: Tsc, working_fol
     (working_folder / "link").symlink_to("x")
     (working_folder / "loop").symlink_to("loop")
     for second in ("x", "./x", "X", "folder/../x", "link"):
-        done = tsc("compile", "-e", PROGRAM, "-o", "x", "--map", second)
-        assert done.code == 2 and "the same file" in done.err, second
+        result = tsc("compile", "-e", PROGRAM, "-o", "x", "--map", second)
+        assert result.code == 2 and "the same file" in result.err, second
         assert not (working_folder / "x").exists()
     assert tsc("compile", "-e", PROGRAM, "-o", "link", "--map", "x").code == 2
     assert tsc("compile", "-e", PROGRAM, "-o", "loop").code == 2
@@ -163,7 +163,7 @@ def test_a_file_after_a_standard_stream_is_a_file(tmp_path: Path, words: str) ->
     completed = subprocess.run(
         command, cwd=tmp_path, capture_output=True, text=True, timeout=HANGS_S
     )
-    assert Done(completed.returncode, completed.stdout, completed.stderr).code == 2
+    assert CommandResult(completed.returncode, completed.stdout, completed.stderr).code == 2
     assert (tmp_path / "a.ts").read_text() == PROGRAM
 
 
@@ -175,10 +175,10 @@ def test_devices_and_pipes_may_be_written(tsc: Tsc, tmp_path: Path) -> None:
     assert Path(null).is_char_device()
     os.mkfifo(pipe)
     with subprocess.Popen(["cat", pipe], stdout=subprocess.PIPE) as reader:
-        done = tsc("compile", program, "-o", pipe)
-        if done.code:
+        result = tsc("compile", program, "-o", pipe)
+        if result.code:
             reader.kill()  # it would wait for somebody who opens the pipe
-        assert done.code == 0
+        assert result.code == 0
         assert reader.communicate(timeout=HANGS_S)[0].startswith(b"TS\x02")
     assert pipe.is_fifo()
     if Path("/dev/full").exists():

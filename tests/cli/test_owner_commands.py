@@ -83,8 +83,8 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
     assert [key.is_stale for key in KeyFile().all()] == [True]
     on(pty_robot, "upload", "-e", DRIVES).gives(3, "is not the one that this computer has")
     as_another(monkeypatch, tmp_path)
-    done = on(pty_robot, "upload", "-e", DRIVES)
-    assert done.code == 0 and "claimed the robot again." not in done.err
+    result = on(pty_robot, "upload", "-e", DRIVES)
+    assert result.code == 0 and "claimed the robot again." not in result.err
 
 
 def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
@@ -105,13 +105,13 @@ def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
 def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -> None:
     """Variables without room to be shown are forgotten; a longer line gets a message about it."""
     most = "W(0.01);" * 10 + "W(0.123);" * 4 + "X = 1"  # 38 bytes, and 46 with what tells X
-    done = on(pty_robot, "live", "-", data=f"{most}\nSHOW(X)\n".encode())
-    assert done.code == 0 and done.out.count("X 1\n") == 1
+    result = on(pty_robot, "live", "-", data=f"{most}\nSHOW(X)\n".encode())
+    assert result.code == 0 and result.out.count("X 1\n") == 1
     assert claimed(pty_robot).code == 0
     on(pty_robot, "live", "-", data=most.encode()).gives(0, "are lost", out="")
     on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8).gives(1, "room for 42")
-    done = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8, "--lang", "es")
-    assert "42" in done.err
+    result = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8, "--lang", "es")
+    assert "42" in result.err
 
 
 def test_a_claim_without_the_button_says_what_to_do(

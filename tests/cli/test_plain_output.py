@@ -52,11 +52,11 @@ LANGUAGES = ("en", "es")  # a commit draws one for each row
 CASES = [(verb, dest) for verb, parser in PARSERS.items() for dest in values_of(parser)]
 
 
-def assert_plain(*said: str) -> None:
-    for each in said:
-        match = BAD.search(each)
-        assert match is None, f"{match[0]!r} in {each!r}"
-        assert "tsc: done" not in each.splitlines(), "a line that tsc has not said"
+def assert_plain(*texts: str) -> None:
+    for printed_text in texts:
+        match = BAD.search(printed_text)
+        assert match is None, f"{match[0]!r} in {printed_text!r}"
+        assert "tsc: done" not in printed_text.splitlines(), "a line that tsc has not said"
 
 
 @pytest.fixture(autouse=True)
@@ -74,12 +74,12 @@ def test_no_argument_of_any_verb_reaches_the_terminal_raw(
     if dest in ("port", "ports", "listen") and ends:
         ends = ends[:-2]
     if dest in ("name", "line", "texts", "program", "text"):
-        ends = [each for each in ends if each not in ("X", "-e", PROGRAM, "F(1, 80)")]
+        ends = [ending for ending in ends if ending not in ("X", "-e", PROGRAM, "F(1, 80)")]
     for language in some_of(pytestconfig, f"{verb} {dest}", LANGUAGES):
         for evil in (EVIL, f"DISTANCE={EVIL}", f"{EVIL}.toml", f"/{EVIL}/x"):
             words = [option, evil] if option else [evil]
-            done = tsc(*words_of(verb), *words, *ends, "--lang", language)
-            assert_plain(done.out, done.err)
+            result = tsc(*words_of(verb), *words, *ends, "--lang", language)
+            assert_plain(result.out, result.err)
 
 
 @pytest.mark.parametrize("words", [
@@ -89,13 +89,13 @@ def test_no_argument_of_any_verb_reaches_the_terminal_raw(
 ])  # fmt: skip
 def test_unknown_verbs_and_options_are_said_plainly(tsc: Tsc, words: list[str]) -> None:
     for language in ("en", "es"):
-        done = tsc(*words, *([] if "--lang" in words[0] else ["--lang", language]))
-        assert_plain(done.out, done.err)
-        assert done.code == 2 or words[0] == "help"
+        result = tsc(*words, *([] if "--lang" in words[0] else ["--lang", language]))
+        assert_plain(result.out, result.err)
+        assert result.code == 2 or words[0] == "help"
 
 
-def in_toml(said: str) -> str:
-    return '"' + "".join(f"\\U{ord(letter):08x}" for letter in said) + '"'
+def in_toml(text: str) -> str:
+    return '"' + "".join(f"\\U{ord(letter):08x}" for letter in text) + '"'
 
 
 def spoiled(toml: str) -> list[str]:
@@ -120,9 +120,9 @@ def test_no_string_of_a_profile_reaches_the_terminal_raw(
         words += ["-e", "X = DISTANCE"] if verb in ("check", "run") else []
         for language in some_of(pytestconfig, f"{verb} {number}", LANGUAGES):
             ends = ENDS["robot"] if verb == "robot" else []
-            done = tsc(*words, *ends, "--lang", language)
-            assert done.code != 2 or "evil.toml" in done.err
-            assert_plain(done.out, done.err)
+            result = tsc(*words, *ends, "--lang", language)
+            assert result.code != 2 or "evil.toml" in result.err
+            assert_plain(result.out, result.err)
 
 
 def test_no_string_of_a_world_reaches_the_terminal_raw(tsc: Tsc) -> None:
@@ -131,8 +131,8 @@ def test_no_string_of_a_world_reaches_the_terminal_raw(tsc: Tsc) -> None:
     for toml in texts:
         Path("evil.toml").write_text(toml, encoding="utf-8")
         for language in ("en", "es"):
-            done = tsc("robot", "--world", "evil.toml", *ENDS["robot"], "--lang", language)
-            assert_plain(done.out, done.err)
+            result = tsc("robot", "--world", "evil.toml", *ENDS["robot"], "--lang", language)
+            assert_plain(result.out, result.err)
 
 
 def test_a_line_of_a_program_is_shown_plainly_where_it_faults(tsc: Tsc, tmp_path: Path) -> None:
@@ -142,9 +142,9 @@ def test_a_line_of_a_program_is_shown_plainly_where_it_faults(tsc: Tsc, tmp_path
     assert tsc("compile", program).code == 0
     image = program.with_suffix(".bin")
     for verb, file in (("run", program), ("run", image), ("show", image), ("check", program)):
-        done = tsc(verb, file)
-        assert_plain(done.out, done.err)
-        assert verb == "check" or "TIME" in done.out + done.err
+        result = tsc(verb, file)
+        assert_plain(result.out, result.err)
+        assert verb == "check" or "TIME" in result.out + result.err
 
 
 def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:  # fmt: skip # noqa: E501
@@ -161,8 +161,8 @@ def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, 
 
 
 def test_a_sentence_keeps_the_lines_of_other_sentences_alone() -> None:
-    said = Sentence("{a}|{b}").format(a="x\ny", b=Sentence("x\ny"))
-    assert said == "x?y|x\ny"
+    sentence = Sentence("{a}|{b}").format(a="x\ny", b=Sentence("x\ny"))
+    assert sentence == "x?y|x\ny"
     assert Sentence("{a}").format(a="x" * 10_000) == "x" * MOST_VALUE_CHARACTERS + "…"
     assert Sentence("{a:>3}").format(a=1) == "  1"
     assert isinstance(text("no_verb", "en"), Sentence)
@@ -177,11 +177,11 @@ def test_what_is_printable_stays() -> None:
 
 
 def test_one_byte_is_no_bytes() -> None:
-    for language, said in (("en", "1 byte of code"), ("es", "1 byte de código")):
+    for language, expected in (("en", "1 byte of code"), ("es", "1 byte de código")):
         values = {"checksum": "0", "name": " (1 bytes.ts)", "saved": "x"}
         one = text("info_program", language).format(code=1, **values)
-        assert said in one and "(1 bytes.ts)" in one
-        assert said not in text("info_program", language).format(code=11, **values)
+        assert expected in one and "(1 bytes.ts)" in one
+        assert expected not in text("info_program", language).format(code=11, **values)
 
 
 # -- what a robot says ----------------------------------------------------------------------------
@@ -200,8 +200,8 @@ def is_harmless(text: str) -> bool:
 def test_a_name_has_no_signs_that_act(sign: str) -> None:
     name = f"AB{sign}C".encode("utf-8", "surrogateescape")[:16]
     values = make_payload(HelloReply, {**DESCRIPTION, "name": name})
-    found = device_info_of(values).name
-    assert is_harmless(found) and found.startswith("AB") and found.endswith("C")
+    shown_name = device_info_of(values).name
+    assert is_harmless(shown_name) and shown_name.startswith("AB") and shown_name.endswith("C")
     known_ports.remember("/dev/x", f"AB{sign}C".encode("utf-8", "replace").decode())
     assert is_harmless(known_ports.remembered_ports().name_by_port["/dev/x"])
 
@@ -212,12 +212,12 @@ def test_a_device_describes_itself_without_them(sign: str, monkeypatch: pytest.M
         device, description = "/dev/x", f"Arduino{sign}Uno"
 
     monkeypatch.setattr("serial.tools.list_ports.comports", lambda: [Port()])
-    [found] = ports.list_ports()
-    assert is_harmless(found.description) and found.description.startswith("Arduino")
+    [port] = ports.list_ports()
+    assert is_harmless(port.description) and port.description.startswith("Arduino")
 
 
 @each_row(
-    "device, description, said",
+    "device, description, expected",
     [
         ("/dev/ttyS0", "n/a", "built into this computer"),
         ("/dev/ttyAMA10", "n/a", "built into this computer"),
@@ -227,7 +227,7 @@ def test_a_device_describes_itself_without_them(sign: str, monkeypatch: pytest.M
     ],
 )
 def test_a_port_without_a_robot_says_what_it_is(
-    device: str, description: str, said: str, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+    device: str, description: str, expected: str, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     class Port:
         pass
@@ -235,30 +235,30 @@ def test_a_port_without_a_robot_says_what_it_is(
     Port.device, Port.description = device, description  # type: ignore[attr-defined]
     monkeypatch.setattr("serial.tools.list_ports.comports", lambda: [Port()])
     (row,) = [line for line in tsc("doctor", "--ports").out.splitlines() if device in line]
-    assert (said in row) if said else row == device
-    (found,) = json.loads(tsc("doctor", "--ports", "--json").out)
-    assert found["description"].startswith(said)
+    assert (expected in row) if expected else row == device
+    (listed_port,) = json.loads(tsc("doctor", "--ports", "--json").out)
+    assert listed_port["description"].startswith(expected)
 
 
 def printed(text: str, is_json: bool) -> tuple[str, str]:
     """Return what is printed of a robot's text, and its row."""
-    said: list[str] = []
+    lines: list[str] = []
     rows = io.StringIO()
     writer = csv.writer(rows, lineterminator="\n")
     add = lambda *cells: writer.writerow(cells)  # noqa: E731
     printer = EventPrinter(
-        "en", is_json, add_row=add, print_line=said.append, print_error=said.append
+        "en", is_json, add_row=add, print_line=lines.append, print_error=lines.append
     )
     printer.print_event(5, TextEvent(text.encode("utf-8", "surrogateescape")))
-    return "\n".join(said), rows.getvalue()
+    return "\n".join(lines), rows.getvalue()
 
 
 @each_row("sign", ACTING)
 def test_a_text_is_printed_without_them(sign: str) -> None:
     for is_json in (False, True):
-        said, row = printed(f"AB{sign}C", is_json)
-        assert is_harmless(said) and is_harmless(row)
-        assert is_harmless(json.loads(said)["text"]) if is_json else "AB" in said
+        output, row = printed(f"AB{sign}C", is_json)
+        assert is_harmless(output) and is_harmless(row)
+        assert is_harmless(json.loads(output)["text"]) if is_json else "AB" in output
 
 
 @each_row("separator, text", product((",", ";", "\t"), FORMULAS))
@@ -270,5 +270,5 @@ def test_no_cell_of_a_row_is_a_formula(text: str, separator: str) -> None:
 
 
 def test_numbers_and_words_stay() -> None:
-    for said in ("F(1, -2) = 3", "F(2, -X)", "M(-X, +Y)", "a-b", "1 + 1", "x@y", "hello"):
-        assert escape_formula(said) == said
+    for plain in ("F(1, -2) = 3", "F(2, -X)", "M(-X, +Y)", "a-b", "1 + 1", "x@y", "hello"):
+        assert escape_formula(plain) == plain

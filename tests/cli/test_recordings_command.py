@@ -40,13 +40,13 @@ def test_a_run_on_the_virtual_robot_is_recorded_and_played_again(tsc: Tsc, tmp_p
         "F(1, 80) UNTIL(DISTANCE < 15);\nSHOW(RANDOM(1, 99));\nIF(KEY_A);SHOW(TRUE);ENDIF"
     )
     words = ("--record", file, "--seed", "7", "--sensor", "KEY_A=TRUE", "--world", "line")
-    done = tsc("run", program, *words).gives(0)
-    assert done.out.startswith("0 START\n0 READ DISTANCE ") and "SHOW TRUE" in done.out
-    assert done.out.endswith("DONE\n") and not is_foreign(file)
+    result = tsc("run", program, *words).gives(0)
+    assert result.out.startswith("0 START\n0 READ DISTANCE ") and "SHOW TRUE" in result.out
+    assert result.out.endswith("DONE\n") and not is_foreign(file)
     recording = decode(file.read_bytes())
     assert (recording.seed, recording.world and recording.world.name) == (7, "line")
     replayed = tsc("run", file)
-    assert (replayed.code, replayed.out) == (0, done.out)
+    assert (replayed.code, replayed.out) == (0, result.out)
     assert replayed.err == f"{AGAIN}{len(recording.rows)}.\n"
     show = next(row for row in recording.rows if row.event.startswith("SHOW"))
     changed = recordings.encode_row(show), recordings.encode_row(show._replace(event="SHOW 100"))
@@ -67,9 +67,9 @@ def test_a_run_is_as_long_as_it_may_be(tsc: Tsc, tmp_path: Path) -> None:
 
 def test_a_fault_is_recorded_and_told(tsc: Tsc, tmp_path: Path) -> None:
     file = tmp_path / "run.tsr"
-    done = tsc("run", "-e", TEXT, "--record", file).gives(1)
-    assert "FAULT DIVIDE_BY_ZERO" in done.out and "ine 3" in done.err
-    assert tsc("run", file).gives(0).out == done.out
+    result = tsc("run", "-e", TEXT, "--record", file).gives(1)
+    assert "FAULT DIVIDE_BY_ZERO" in result.out and "ine 3" in result.err
+    assert tsc("run", file).gives(0).out == result.out
 
 
 def test_a_world_of_a_file_is_in_the_file_of_the_run(tsc: Tsc, tmp_path: Path) -> None:
@@ -91,12 +91,12 @@ def test_a_real_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     assert [row.event for row in recording.rows] == ["SHOW 5", "FAULT DIVIDE_BY_ZERO"]
     assert 0 < recording.rows[0].ms <= recording.rows[1].ms < 2000
     assert not is_foreign(file)
-    done = tsc("run", file)
-    assert (done.code, done.err) == (0, "Both did the same. Values compared: 2.\n")
+    result = tsc("run", file)
+    assert (result.code, result.err) == (0, "Both did the same. Values compared: 2.\n")
     file.write_bytes(file.read_bytes().replace(b'SHOW 5"', b'SHOW 6"'))
-    done = tsc("run", file, "--world", "line", "--lang", "es").gives(1)
-    assert done.err.startswith("Línea 1: el robot dice 6 a los 0.")
-    assert "el virtual, 5 a los 0.2 s" in done.err
+    result = tsc("run", file, "--world", "line", "--lang", "es").gives(1)
+    assert result.err.startswith("Línea 1: el robot dice 6 a los 0.")
+    assert "el virtual, 5 a los 0.2 s" in result.err
 
 
 READS = """LOOP(6)
@@ -114,15 +114,18 @@ def test_a_real_run_is_recorded_with_what_it_read_and_played_in_another_world(
 ) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
     program.write_text(READS)
-    done = inside("upload", program, "--virtual", "--world", "obstacles", "--record", file)
-    assert done.gives(0, "").err == ""
+    result = inside("upload", program, "--virtual", "--world", "obstacles", "--record", file)
+    assert result.gives(0, "").err == ""
     recording = decode(file.read_bytes())
     read = {row.event.split()[1] for row in recording.rows if row.is_reading}
     assert read == {"DISTANCE", "LIGHT_L", "LIGHT_R"}
     values = sum(row.event.startswith("SHOW") for row in recording.rows)
     for world in ("obstacles", "line"):
-        done = inside("run", file, "--world", world)
-        assert (done.code, done.err) == (0, f"Both did the same. Values compared: {values + 1}.\n")
+        result = inside("run", file, "--world", world)
+        assert (result.code, result.err) == (
+            0,
+            f"Both did the same. Values compared: {values + 1}.\n",
+        )
 
 
 def test_a_robot_that_does_not_report_readings_says_so(
@@ -131,11 +134,11 @@ def test_a_robot_that_does_not_report_readings_says_so(
     monkeypatch.setattr(upload, "READINGS", 0)
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
     program.write_text("X = DISTANCE;SHOW(1)")
-    done = inside("upload", program, "--virtual", "--record", file).gives(0)
-    assert "This robot does not report what its program reads" in done.err
+    result = inside("upload", program, "--virtual", "--record", file).gives(0)
+    assert "This robot does not report what its program reads" in result.err
     assert not [row for row in decode(file.read_bytes()).rows if row.is_reading]
-    done = inside("run", file).gives(0)
-    assert "the recording lacks that reading" in done.err
+    result = inside("run", file).gives(0)
+    assert "the recording lacks that reading" in result.err
 
 
 @pytest.mark.parametrize("hurry", ["20", "max"])
@@ -147,10 +150,10 @@ def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
     inside("upload", program, "--virtual", "--hurry", hurry, "--record", file).gives(0)
     events = decode(file.read_bytes()).rows
     assert [event.event for event in events] == [*(f"SHOW {k}" for k in range(1, 7)), "DONE"]
-    for each, wanted_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
-        assert wanted_ms <= each.ms <= wanted_ms + 100, events
-    done = inside("run", file)
-    assert (done.code, done.err) == (0, "Both did the same. Values compared: 7.\n")
+    for event, wanted_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
+        assert wanted_ms <= event.ms <= wanted_ms + 100, events
+    result = inside("run", file)
+    assert (result.code, result.err) == (0, "Both did the same. Values compared: 7.\n")
 
 
 def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> None:
@@ -163,7 +166,7 @@ def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(
-    ("events", "code", "said"),
+    ("events", "code", "expected"),
     [
         (
             ((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")),
@@ -180,13 +183,13 @@ def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> 
     ],
 )
 def test_a_real_run_of_the_page_is_compared(
-    tsc: Tsc, tmp_path: Path, events: tuple[tuple[int, str], ...], code: int, said: str
+    tsc: Tsc, tmp_path: Path, events: tuple[tuple[int, str], ...], code: int, expected: str
 ) -> None:
     file = tmp_path / "run.tsr"
     file.write_bytes(real(*events))
     assert not is_foreign(file)
-    done = tsc("run", file)
-    assert (done.code, done.err[: len(said)]) == (code, said)
+    result = tsc("run", file)
+    assert (result.code, result.err[: len(expected)]) == (code, expected)
 
 
 def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path) -> None:
@@ -197,12 +200,12 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
         mark = "\ufeff" if encoding.startswith("utf-16-") else ""
         for end in ("\n", "\r\n"):
             file.write_bytes((mark + text.replace("\n", end)).encode(encoding))
-            done = tsc("run", file)
-            assert done.err == "Both did the same. Values compared: 2.\n", (encoding, end, done)
+            result = tsc("run", file)
+            assert result.err == "Both did the same. Values compared: 2.\n", (encoding, end, result)
 
 
 @pytest.mark.parametrize(
-    ("data", "said", "dicho"),
+    ("data", "message", "dicho"),
     [
         (real((5, "SHOW 1"))[:-4], "is damaged or is not a recorded run (line 3)", "(línea 3)"),
         (HEAD.encode(), "the end of", "le falta el final"),
@@ -228,16 +231,16 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
     ids=["torn", "cut", "older", "newer", "robot", "program", "long", "large"],
 )
 def test_a_file_that_cannot_be_played_says_why(
-    tsc: Tsc, tmp_path: Path, data: bytes, said: str, dicho: str
+    tsc: Tsc, tmp_path: Path, data: bytes, message: str, dicho: str
 ) -> None:
     file = tmp_path / "run.tsr"
     file.write_bytes(data)
-    for language, words in (("en", said), ("es", dicho)):
+    for language, words in (("en", message), ("es", dicho)):
         tsc("run", file, "--lang", language).gives(2, words, out="")
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (("run", "-e", TEXT, "--replay", "r"), "--replay any more. Try:  tsc run run.tsr"),
         (("run", "-e", TEXT, "--world", "line"), "--world works only with --record"),
@@ -262,7 +265,7 @@ def test_a_file_that_cannot_be_played_says_why(
     ],
 )  # fmt: skip
 def test_what_is_not_recorded_or_played_says_why(
-    tsc: Tsc, working_folder: Path, words: tuple[str, ...], said: str
+    tsc: Tsc, working_folder: Path, words: tuple[str, ...], message: str
 ) -> None:
     assert tsc("compile", "-e", TEXT, "-o", "p.bin").code == 0
     shipped = Path(recordings.__file__).parents[1].joinpath("robots/tinibot.toml")
@@ -270,7 +273,7 @@ def test_what_is_not_recorded_or_played_says_why(
     Path("own.toml").write_text(own, encoding="utf-8")
     Path("letter").write_bytes(b"a letter")
     Path("r").write_bytes(real((5, "SHOW 5")))
-    tsc(*words).gives(2, said, out="")
+    tsc(*words).gives(2, message, out="")
     assert Path("r").read_bytes() == real((5, "SHOW 5")) and not Path("new").exists()
 
 
@@ -278,12 +281,12 @@ def recorded(
     file: Path, *events: tuple[str, str], began_s: float | None = None, end: str = ""
 ) -> tuple[Row, ...]:
     """Record these events of a robot; return what the file has then."""
-    made = Recorder(str(file), HEAD, began_s=began_s)
+    recorder = Recorder(str(file), HEAD, began_s=began_s)
     for event in events:
-        made.add_event(7, *event)
+        recorder.add_event(7, *event)
     if end:
-        made.end_recording(end)
-    made.close()
+        recorder.end_recording(end)
+    recorder.close()
     return decode(file.read_bytes()).rows
 
 
@@ -354,9 +357,9 @@ def test_after_ctrl_c_saving_is_no_time_of_the_run(
 
     def printer(*given: object) -> EventPrinter:
         now_s[0] += 3  # the robot runs while this is loaded, and its time counts from before
-        return made(*given)  # type: ignore[arg-type]
+        return make_printer(*given)  # type: ignore[arg-type]
 
-    made = event_printer.printer_of
+    make_printer = event_printer.printer_of
     monkeypatch.setattr(upload, "printer_of", printer)
     monkeypatch.setattr(upload, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])

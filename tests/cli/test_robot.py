@@ -66,9 +66,9 @@ def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: 
     with PtyRobot(KIT, bytes_per_ms=2) as pty_robot:
         assert on(pty_robot, "upload", "-e", "SB|F(0.1, 40)").code == 0
         pty_robot.off_after = 250
-        done = inside("upload", "-e", LONG, "--port", pty_robot.port)
-        assert done.code == 3
-        assert "lost the connection to the robot" in done.err
+        result = inside("upload", "-e", LONG, "--port", pty_robot.port)
+        assert result.code == 3
+        assert "lost the connection to the robot" in result.err
         pty_robot.switch_on()
         assert on(pty_robot, "show", "-o", tmp_path / "new.bin").code == 0
     old = compile_text("SB|F(0.1, 40)", KIT).image
@@ -80,14 +80,14 @@ def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: 
 
 def test_a_robot_describes_itself_and_its_port_is_remembered(pty_robot: PtyRobot) -> None:
     assert inside("doctor", "--identify").code == 3  # which port?
-    done = on(pty_robot, "doctor", "--count", "3").gives(0, out="3 round trips")
+    result = on(pty_robot, "doctor", "--count", "3").gives(0, out="3 round trips")
     known = json.loads(inside("doctor", "--json").out)["robot"]
     assert (known["port"], known["kit"], known["robot"]) == (
         pty_robot.port, f"{KIT.fingerprint:04x}", "tinibot",
     )  # fmt: skip
     assert known["program"] is None
     assert known["text_level"] == "uno"
-    assert "reads text, level uno" in done.out
+    assert "reads text, level uno" in result.out
     with simulated(pty_robot):  # or what is late counts as lost
         assert json.loads(inside("doctor", "--json").out)["robot"]["round_trips"] == 20
         assert "10 round trips" in inside("upload", "-e", "PING|check_connection").out
@@ -97,7 +97,7 @@ def test_the_level_of_text_is_that_of_two_bits(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     described = requests.device_info_of
-    for features, level, said in (
+    for features, level, expected in (
         (0, None, "no lee texto"),
         (1, "uno", "lee texto, nivel uno"),
         (0xFFFE, "mega", "lee texto, nivel mega"),  # whatever else it is able to do
@@ -109,7 +109,7 @@ def test_the_level_of_text_is_that_of_two_bits(
 
         monkeypatch.setattr("tiniscript.cli.commands.doctor.device_info_of", with_features)
         assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["text_level"] == level
-        assert said in on(pty_robot, "doctor", "--lang", "es").out
+        assert expected in on(pty_robot, "doctor", "--lang", "es").out
 
 
 def test_a_board_that_has_just_been_reset_is_waited_for(pty_robot: PtyRobot) -> None:
@@ -121,8 +121,8 @@ def test_a_board_that_has_just_been_reset_is_waited_for(pty_robot: PtyRobot) -> 
 
 
 def test_a_name_survives_power_off(pty_robot: PtyRobot) -> None:
-    done = on(pty_robot, "set", "name", "Ñandú")
-    assert (done.code, done.out) == (0, f"{pty_robot.port}: the robot is now called Ñandú.\n")
+    result = on(pty_robot, "set", "name", "Ñandú")
+    assert (result.code, result.out) == (0, f"{pty_robot.port}: the robot is now called Ñandú.\n")
     pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["name"] == "Ñandú"
     for name in ("", " ", "a" * 17, "ñ" * 9, "a\nb"):
@@ -145,17 +145,17 @@ def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, pty_robot: PtyRobot, hasty
 def test_a_person_without_a_port_is_asked_for_one(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    found = [
+    listed_ports = [
         ports.ListedPort("/dev/ttyS77", "a modem"),
         ports.ListedPort(pty_robot.port, "a robot"),
     ]
-    monkeypatch.setattr(ports, "list_ports", lambda: found)
+    monkeypatch.setattr(ports, "list_ports", lambda: listed_ports)
     answers = iter(["7\n", "what?\n", "2\n"])
     monkeypatch.setattr("sys.stdin.isatty", lambda: True)
     monkeypatch.setattr("sys.stdin.readline", lambda: next(answers))
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
-    done = tsc("doctor", "--identify").gives(0, f"  2  {pty_robot.port}   a robot\n")
-    assert done.err.count("Number in the list: ") == 3
+    result = tsc("doctor", "--identify").gives(0, f"  2  {pty_robot.port}   a robot\n")
+    assert result.err.count("Number in the list: ") == 3
     assert tsc("doctor", "--identify").err == ""  # it is remembered
 
 
@@ -170,11 +170,11 @@ def test_nobody_something_else_and_another_version(
     pty_robot.switch_off()
     tsc("doctor", "--identify", "--port", pty_robot.port).gives(3, "nothing responds")
     sketch = "another sketch, not the TiniScript firmware. It sends: Hello from a sketch. Put"
-    for said, answer in (
+    for reply, answer in (
         (b"Hello from a sketch\r\n", sketch), (bytes(range(1, 256)) * 3, "not TiniScript"),
         (b"\xff" * 99, "not TiniScript. Perhaps the robot uses another baud rate"),
     ):  # fmt: skip
-        timer = threading.Timer(0.3, pty_robot.say, [said])
+        timer = threading.Timer(0.3, pty_robot.say, [reply])
         timer.start()
         tsc("doctor", "--identify", "--port", pty_robot.port).gives(3, answer)
         timer.join()
@@ -186,8 +186,8 @@ def test_ports_that_are_none(tsc: Tsc, verb: str, tmp_path: Path) -> None:
     for language in ("en", "es"):
         for port in ("/dev/no-such-port", str(tmp_path), os.devnull, "nix://a", "socket://a",
                      "socket://127.0.0.1:1", "a" * 5000):  # fmt: skip
-            done = tsc(*verb.split(), "--port", port, "--lang", language).gives(3, out="")
-            assert done.err.startswith("tsc: ")
+            result = tsc(*verb.split(), "--port", port, "--lang", language).gives(3, out="")
+            assert result.err.startswith("tsc: ")
         for port in ("", "a\0b"):
             assert tsc(*verb.split(), "--port", port, "--lang", language).code == 2
         assert tsc(*verb.split(), "--lang", language).code == (2 if verb == "show" else 3)

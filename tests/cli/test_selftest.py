@@ -42,34 +42,34 @@ GOOD = (LIGHT, LIGHT, DISTANCE)
 
 def found_by(pty_robot: PtyRobot, *words: str) -> tuple[int, dict[str, dict[str, object]]]:
     """Return the exit code, and each finding by what it is about."""
-    done = on(pty_robot, "doctor", "--selftest", "--yes", "--json", *words)
-    rows = json.loads(done.out)["found"]
-    return done.code, {
+    result = on(pty_robot, "doctor", "--selftest", "--yes", "--json", *words)
+    rows = json.loads(result.out)["found"]
+    return result.code, {
         f"{row['what']} {row['values'].get('name', '')}".strip(): row for row in rows
     }
 
 
 def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
-    code, found = found_by(pty_robot)
+    code, parts = found_by(pty_robot)
     assert code == 0
-    verdicts = {name: value["verdict"] for name, value in found.items()}
+    verdicts = {name: value["verdict"] for name, value in parts.items()}
     sensors = {f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors}
     asked = {"left", "right", "buzzer"}
-    sizes = found["firmware"]["values"]
+    sizes = parts["firmware"]["values"]
     assert isinstance(sizes, dict)
     assert {name: sizes[name] for name in ("largest", "window")} == {"largest": "63", "window": "1"}
     assert int(sizes["room"]) >= 389
-    assert found["supply"]["values"] == {"reset": "POWER"}
-    assert "power on" in str(found["supply"]["said"])
-    times = found["line"]["values"]
+    assert parts["supply"]["values"] == {"reset": "POWER"}
+    assert "power on" in str(parts["supply"]["said"])
+    times = parts["line"]["values"]
     assert isinstance(times, dict)
     assert float(times["least"]) <= float(times["ms"]) <= float(times["most"])
     assert {name for name, value in verdicts.items() if value == "ok"} == {
         "answers", "kit", "firmware", "line", "supply", "store", "trim", *sensors
     }  # fmt: skip
     assert {name for name, value in verdicts.items() if value == "open"} == asked
-    assert {each["cause"] for each in found.values()} == {
+    assert {finding["cause"] for finding in parts.values()} == {
         "is_there", "kit_is", "firmware_is", "line_is", "supply_is", "empty", "trim_is", "reads",
         "unasked",
     }  # fmt: skip
@@ -83,21 +83,21 @@ def test_every_board_has_its_sensors_tested(name: str) -> None:
     with PtyRobot(kit) as robot:
         middle = [sensor.is_yes_no or (sensor.low + sensor.high) // 2 for sensor in kit.sensors]
         robot.ask(lambda its: its.sense(*map(int, middle)))
-        code, found = found_by(robot)
+        code, parts = found_by(robot)
         # an ESP32's robot has the words of the paper's
         kits = {name: robots.load(name).kit for name in robots.names()}
         same = [{"robot": value} for value, its in kits.items() if its[:2] == kit[:2]]
-        assert found["kit"]["values"] in same and {"robot": name} in same
-        assert len([each for each in found if each.startswith("sensor")]) == len(kit.sensors)
+        assert parts["kit"]["values"] in same and {"robot": name} in same
+        assert len([part for part in parts if part.startswith("sensor")]) == len(kit.sensors)
         assert code == 0
 
 
 def test_another_kit_than_was_said() -> None:
     with PtyRobot(robots.load("liner").kit) as robot:
-        code, found = found_by(robot, "--robot", "tinibot")
+        code, parts = found_by(robot, "--robot", "tinibot")
     assert code == 3
-    assert found["kit"]["verdict"] == "wrong"
-    assert "--robot liner" in str(found["kit"]["next"])
+    assert parts["kit"]["verdict"] == "wrong"
+    assert "--robot liner" in str(parts["kit"]["next"])
 
 
 @pytest.mark.parametrize(("reset", "finding"), [("BROWN_OUT", "brown_out"), ("WATCHDOG", "hung")])
@@ -106,9 +106,9 @@ def test_a_robot_that_has_restarted(pty_robot: PtyRobot, reset: str, finding: st
         pty_robot._take_power()
         number = [name for name, _ in RESETS].index(reset)
         pty_robot._robot = HostFirmware(pty_robot.kit, EMPTY, number)
-    code, found = found_by(pty_robot)
+    code, parts = found_by(pty_robot)
     assert code == 3
-    assert (found["supply"]["verdict"], found["supply"]["cause"]) == ("wrong", finding)
+    assert (parts["supply"]["verdict"], parts["supply"]["cause"]) == ("wrong", finding)
 
 
 def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
@@ -117,39 +117,39 @@ def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
     on(pty_robot, "upload", "-e", "SB|F(1, 50)")
     pty_robot.damages = 97
     findings = json.loads(on(pty_robot, "doctor", "--robot", "liner", "--json").out)["findings"]
-    _, found = found_by(pty_robot, "--robot", "liner")
-    assert found["store"]["cause"] == "unsaved"
-    ours = {each["cause"]: each for each in found.values()}
-    assert {each["cause"] for each in findings} >= {"low_supply", "wrong_kit", "lossy"}
-    for each in findings:
-        if each["is_wrong"]:
-            its = ours[each["cause"]]
-            assert (its["verdict"], its["next"]) == ("wrong", each["next"])
-            assert its["said"] == each["said"]
+    _, parts = found_by(pty_robot, "--robot", "liner")
+    assert parts["store"]["cause"] == "unsaved"
+    ours = {finding["cause"]: finding for finding in parts.values()}
+    assert {finding["cause"] for finding in findings} >= {"low_supply", "wrong_kit", "lossy"}
+    for finding in findings:
+        if finding["is_wrong"]:
+            its = ours[finding["cause"]]
+            assert (its["verdict"], its["next"]) == ("wrong", finding["next"])
+            assert its["said"] == finding["said"]
 
 
 def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     """A sensor at the end of its range, a bad line, and in the middle of it the robot is silent."""
     low = pty_robot.kit.sensors[0].low
     pty_robot.ask(lambda robot: robot.sense(low, LIGHT, DISTANCE))
-    _, found = found_by(pty_robot)
+    _, parts = found_by(pty_robot)
     first, second = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
-    assert found[first]["cause"] == "stuck"
-    assert found[second]["verdict"] == "ok"
+    assert parts[first]["cause"] == "stuck"
+    assert parts[second]["verdict"] == "ok"
     pty_robot.ask(lambda robot: robot.sense(LIGHT, LIGHT, 0))
-    code, found = found_by(pty_robot)
-    assert (code, found["sensor DISTANCE"]["cause"]) == (3, "echo_hung")
-    assert found["sensor DISTANCE"]["verdict"] == "wrong"
+    code, parts = found_by(pty_robot)
+    assert (code, parts["sensor DISTANCE"]["cause"]) == (3, "echo_hung")
+    assert parts["sensor DISTANCE"]["verdict"] == "wrong"
     pty_robot.ask(lambda robot: robot.sense(low, LIGHT, DISTANCE))
     pty_robot.damages = 100
-    code, found = found_by(pty_robot)
+    code, parts = found_by(pty_robot)
     assert code == 3
-    assert found["line"]["cause"] == "lossy"
+    assert parts["line"]["cause"] == "lossy"
     pty_robot.damages, pty_robot.off_after = 0, 150
-    code, found = found_by(pty_robot)
+    code, parts = found_by(pty_robot)
     assert code == 3
-    assert found["kit"]["verdict"] == "ok", "what was found before is said"
-    assert (found["answers"]["verdict"], found["answers"]["cause"]) == ("wrong", "plain")
+    assert parts["kit"]["verdict"] == "ok", "what was found before is said"
+    assert (parts["answers"]["verdict"], parts["answers"]["cause"]) == ("wrong", "plain")
 
 
 @pytest.mark.sampled("kind")
@@ -166,17 +166,19 @@ def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str)
         if kind == "locked":
             stack.callback(open_port(port, 9600).close)
         findings = json.loads(inside("doctor", "--port", port, "--json").out)["findings"]
-        done = inside("doctor", "--selftest", "--port", port, "--json").gives(3)
+        result = inside("doctor", "--selftest", "--port", port, "--json").gives(3)
         text = inside("doctor", "--selftest", "--port", port, "--lang", "en").gives(3).out
-    found = json.loads(done.out)["found"]
-    wrong = [each for each in findings if each["is_wrong"]]
-    assert wrong and [each["cause"] for each in found] == [each["cause"] for each in wrong]
-    for ours, its in zip(found, wrong, strict=True):
+    reported = json.loads(result.out)["found"]
+    wrong = [finding for finding in findings if finding["is_wrong"]]
+    assert wrong and [finding["cause"] for finding in reported] == [
+        finding["cause"] for finding in wrong
+    ]
+    for ours, its in zip(reported, wrong, strict=True):
         assert [ours[key] for key in ("said", "seen", "next")] == [
             its[key] for key in ("said", "seen", "next")
         ]
         assert ours["next"] != "tsc doctor"
-        assert all(said in text for said in (its["said"], its["seen"], its["next"]))
+        assert all(sentence in text for sentence in (its["said"], its["seen"], its["next"]))
 
 
 def test_only_the_port_of_the_self_test_is_opened(
@@ -187,9 +189,9 @@ def test_only_the_port_of_the_self_test_is_opened(
     monkeypatch.setattr("tiniscript.doctor.linux._using_programs", lambda system, port: [])
     with PtyEnd(Firmware()) as end:
         monkeypatch.setattr("tiniscript.doctor.diagnosis._only_port", lambda *_: end.port)
-        done = inside("doctor", "--selftest", "--json").gives(3)
+        result = inside("doctor", "--selftest", "--json").gives(3)
         assert end.heard == b""
-    assert json.loads(done.out)["found"][0]["cause"] == "not_opened"
+    assert json.loads(result.out)["found"][0]["cause"] == "not_opened"
 
 
 # -- with a person
@@ -227,9 +229,9 @@ class Wires(NamedTuple):
     is_right_reversed: bool = False
     is_dead: bool = False
 
-    def seen(self, did: Sequence[str]) -> str:
+    def answer_after(self, did: Sequence[str]) -> str:
         """Return what a person answers who has seen the last motor turn."""
-        outputs = [each.split()[-2:] for each in did if "MOTORS" in each]
+        outputs = [line.split()[-2:] for line in did if "MOTORS" in line]
         left, right = next(
             [*map(int, output)] for output in reversed(outputs) if {*output} != {"0"}
         )
@@ -257,14 +259,14 @@ def person(
         elif "its surroundings clear" in question:
             pty_robot.ask(lambda robot: robot.sense(*GOOD))
         elif "motor turned" in question:
-            return wires.seen(pty_robot.did)
+            return wires.answer_after(pty_robot.did)
         return learns if "can remember" in question else "1"
 
     return answer
 
 
 def causes(out: str) -> set[str]:
-    return {each["cause"] for each in json.loads(out)["found"]}
+    return {finding["cause"] for finding in json.loads(out)["found"]}
 
 
 def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
@@ -296,13 +298,13 @@ def test_ctrl_c_stops_the_robot_whichever_motor_turns(pty_robot: PtyRobot, motor
 def test_what_a_person_sees_is_wrong(pty_robot: PtyRobot) -> None:
     """Motors that turn wrong or not at all, and sensors that notice nothing."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
-    for wires, said in (
+    for wires, expected in (
         (Wires(is_exchanged=True), "tsc set trim"), (Wires(is_dead=True), "check its wires"),
     ):  # fmt: skip
         code, out, err = asked(pty_robot, person(pty_robot, wires))
         assert code == 3
         assert out.count("WRONG") == 2
-        assert f"Try:  {said}" in out
+        assert f"Try:  {expected}" in out
         assert ("can remember" in err) == wires.is_exchanged
     assert on(pty_robot, "set", "trim", "--show").out.count("as they are wired") == 1
     code, out, _ = asked(pty_robot, person(pty_robot, is_noticed=False))
@@ -335,14 +337,14 @@ def test_each_cause_of_a_line_that_the_robot_ends(
 
     monkeypatch.setattr(SelfTest, "run_line", does)
     _, out, _ = asked(pty_robot, person(pty_robot), "--json")
-    found = [(each["what"], each["cause"]) for each in json.loads(out)["found"]]
+    causes = [(finding["what"], finding["cause"]) for finding in json.loads(out)["found"]]
     sensors = [("sensor", "no_reading")] * len(pty_robot.kit.sensors)
-    assert found[-3 - len(sensors) :] == [
+    assert causes[-3 - len(sensors) :] == [
         *sensors, ("left", "ended"), ("right", "ended"), ("buzzer", "ended"),
     ]  # fmt: skip
 
 
-WIRES = [Wires(*each) for each in product((False, True), repeat=3)]
+WIRES = [Wires(*flags) for flags in product((False, True), repeat=3)]
 
 
 @pytest.mark.parametrize("wires", WIRES)
@@ -387,20 +389,20 @@ def test_a_disc_that_flickers_at_rest_is_wrong(number: int | None) -> None:
         Flicker(robot, number, 20)
     running = SimulatedRobot(robot, HURRY)
     try:
-        done = inside(
+        result = inside(
             "doctor", "--selftest", "--port", running.port, "--robot", "tinibot2", "--yes", "--json"
         )
-        said = inside("doctor", "--port", running.port, "--lang", "en").out
+        output = inside("doctor", "--port", running.port, "--lang", "en").out
     finally:
         running.close()
-    (disc,) = [each for each in json.loads(done.out)["found"] if each["what"] == "discs"]
+    (disc,) = [finding for finding in json.loads(result.out)["found"] if finding["what"] == "discs"]
     if number is None:
-        assert (done.code, disc["cause"]) == (0, "discs_rest") and "disc" not in said
+        assert (result.code, disc["cause"]) == (0, "discs_rest") and "disc" not in output
         return
     edges = [int(disc["values"][side]) for side in ("left", "right")]
-    assert (done.code, disc["cause"], disc["verdict"]) == (3, "discs_noise", "wrong")
+    assert (result.code, disc["cause"], disc["verdict"]) == (3, "discs_noise", "wrong")
     assert edges[number] >= 18 and edges[1 - number] == 0
-    assert "a sensor" in said
+    assert "a sensor" in output
 
 
 # -- the report
@@ -410,13 +412,13 @@ def test_a_report_has_no_names(pty_robot: PtyRobot, tmp_path: Path) -> None:
     assert on(pty_robot, "set", "name", "LUISITO").code == 0
     file = tmp_path / "report.txt"
     for _ in range(2):  # a report of ours is replaced
-        done = on(pty_robot, "doctor", "--selftest", "--yes", "--report", file)
-    assert "LUISITO" in done.out
-    said = file.read_text(encoding="utf-8")
-    assert said.startswith(report.SELFTEST_MARK + "\n")
+        result = on(pty_robot, "doctor", "--selftest", "--yes", "--report", file)
+    assert "LUISITO" in result.out
+    report_text = file.read_text(encoding="utf-8")
+    assert report_text.startswith(report.SELFTEST_MARK + "\n")
     for private in ("LUISITO", str(tmp_path), os.uname().nodename):
-        assert private not in said
-    assert "sensor" in said
+        assert private not in report_text
+    assert "sensor" in report_text
     mine = tmp_path / "mine.txt"
     mine.write_text("mine")
     assert on(pty_robot, "doctor", "--selftest", "--yes", "--report", mine).code == 2
@@ -426,9 +428,9 @@ def test_a_report_has_no_names(pty_robot: PtyRobot, tmp_path: Path) -> None:
 def test_a_robot_that_is_not_there_has_a_report_too(tmp_path: Path) -> None:
     file = tmp_path / "report.txt"
     inside("doctor", "--selftest", "--port", "/dev/serial-of-Ana", "--report", file).gives(3)
-    said = file.read_text(encoding="utf-8")
-    assert "Ana" not in said
-    assert "tsc doctor" in said
+    report = file.read_text(encoding="utf-8")
+    assert "Ana" not in report
+    assert "tsc doctor" in report
 
 
 @pytest.mark.parametrize("answers", range(4))

@@ -26,7 +26,7 @@ LOOPS = "LOOP(FOREVER); SHOW({}); W(0.05); END_LOOP"
 def shown(out: str) -> list[str]:
     """Return the names of the values in JSON lines, nothing for one without."""
     events = [json.loads(line) for line in out.splitlines()]
-    return [each.get("name", "") for each in events if each["event"] == "SHOW"]
+    return [event.get("name", "") for event in events if event["event"] == "SHOW"]
 
 
 def forget_maps() -> None:
@@ -37,15 +37,15 @@ def forget_maps() -> None:
 def test_upload_names_what_its_program_shows(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(20_000, 60_000, 12_500))
     text = "SI|SHOW(DISTANCE); SHOW(light_r-light_l)\nSHOW(7)\nSHOW(DISTANCE)"
-    done = on(pty_robot, "upload", "-e", text).gives(0)
-    assert done.out.splitlines()[1:5] == [
+    result = on(pty_robot, "upload", "-e", text).gives(0)
+    assert result.out.splitlines()[1:5] == [
         "DISTANCE (line 1) 12.5", "LIGHT_R - LIGHT_L -40", "SHOW 7", "DISTANCE (line 3) 12.5",
     ]  # fmt: skip
-    done = on(pty_robot, "upload", "-e", text, "--lang", "es").gives(0)
-    assert "DISTANCE (línea 3) 12.5\n" in done.out
-    done = on(pty_robot, "upload", "-e", text, "--json").gives(0)
-    events = [json.loads(line) for line in done.out.splitlines()]
-    assert [each for each in events if each["event"] == "SHOW"] == [
+    result = on(pty_robot, "upload", "-e", text, "--lang", "es").gives(0)
+    assert "DISTANCE (línea 3) 12.5\n" in result.out
+    result = on(pty_robot, "upload", "-e", text, "--json").gives(0)
+    events = [json.loads(line) for line in result.out.splitlines()]
+    assert [event for event in events if event["event"] == "SHOW"] == [
         {"event": "SHOW", "value": 12.5, "name": "DISTANCE", "line": 1, "column": 4},
         {"event": "SHOW", "value": -40, "name": "LIGHT_R - LIGHT_L", "line": 1, "column": 20},
         {"event": "SHOW", "value": 7},
@@ -61,8 +61,8 @@ def test_monitor_knows_a_program_by_its_checksum(pty_robot: PtyRobot, tmp_path: 
     upload = ("upload", "-e", "SI|" + LOOPS.format("TIME > 1"), "--detach")
     on(pty_robot, *upload).gives(0)
     sheet = tmp_path / "rows.csv"
-    done = on(pty_robot, "monitor", "--json", "--csv", sheet, "--max-time", "1").gives(0)
-    names = shown(done.out)
+    result = on(pty_robot, "monitor", "--json", "--csv", sheet, "--max-time", "1").gives(0)
+    names = shown(result.out)
     known = names[names.index("TIME > 1") :]
     assert len(known) > 5 and set(known) == {"TIME > 1"} and not any(names[: -len(known)])
     with sheet.open(encoding="utf-8", newline="") as file:
@@ -70,8 +70,8 @@ def test_monitor_knows_a_program_by_its_checksum(pty_robot: PtyRobot, tmp_path: 
     assert head == ["ms", "event", "value", "name"]
     assert [row[3] for row in table if row[1] == "SHOW"] == names
     forget_maps()
-    done = on(pty_robot, "monitor", "--max-time", "1").gives(0)
-    values = {line.split(" ", 1)[1] for line in done.out.splitlines()}
+    result = on(pty_robot, "monitor", "--max-time", "1").gives(0)
+    values = {line.split(" ", 1)[1] for line in result.out.splitlines()}
     assert values == {"SHOW TRUE"}
     on(pty_robot, "stop").gives(0)
 
@@ -94,35 +94,35 @@ def test_monitor_follows_the_program_of_the_button_and_one_that_replaces_it(
 
 def event(text: str, number: int, program: int | None = None) -> ShownEvent:
     """Return the event of a SHOW of a text, by its place among them."""
-    found = compiled(text)
-    places = [row.offset for row in rows(found.code) if row.text.startswith("SHOW")]
+    compilation = compiled(text)
+    places = [row.offset for row in rows(compilation.code) if row.text.startswith("SHOW")]
     return ShownEvent(
-        2000, 0, 1, checksum(found.image) if program is None else program, places[number]
+        2000, 0, 1, checksum(compilation.image) if program is None else program, places[number]
     )
 
 
 def test_two_on_one_line_are_told_apart_in_a_table() -> None:
     text = "X = 1; SHOW(-X); SHOW(-X)"
-    said: list[str] = []
+    shown_names: list[str] = []
     table: list[tuple[object, ...]] = []
-    found = compiled(text)
+    compilation = compiled(text)
     printer = EventPrinter(
-        "en", program_map=mapped(found), checksum=checksum(found.image), print_line=said.append,
-        add_row=lambda *cells: table.append(cells),
+        "en", program_map=mapped(compilation), checksum=checksum(compilation.image),
+        print_line=shown_names.append, add_row=lambda *cells: table.append(cells),
     )  # fmt: skip
     for number in range(2):
         printer.print_event(0, event(text, number))
     printer.print_event(0, event(text, 0, program=1))
-    assert said == ["-X (line 1) 2", "-X (line 1) 2", "SHOW 2"]
+    assert shown_names == ["-X (line 1) 2", "-X (line 1) 2", "SHOW 2"]
     assert [row[3] for row in table] == ["'-X (line 1:8)", "'-X (line 1:18)", ""]
 
 
 def test_the_library_names_values() -> None:
-    found = compiled("SHOW(DISTANCE)")
+    compilation = compiled("SHOW(DISTANCE)")
     reader = EventReader()
     robot_event = reader.to_robot_event(0, event("SHOW(DISTANCE)", 0, program=5))
     assert robot_event and dict(robot_event.values) == {"value": 2}
-    reader.map_by_checksum[checksum(found.image)] = mapped(found)
+    reader.map_by_checksum[checksum(compilation.image)] = mapped(compilation)
     robot_event = reader.to_robot_event(0, event("SHOW(DISTANCE)", 0))
     assert robot_event and dict(robot_event.values) == {
         "value": 2,

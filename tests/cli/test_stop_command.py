@@ -57,8 +57,8 @@ def test_a_robot_that_its_button_has_started_again_is_stopped(pty_robot: PtyRobo
 def test_who_stops_at_the_same_time_is_told_so(pty_robot: PtyRobot, is_shared: bool) -> None:
     server = uploading(pty_robot) if is_shared else None
     stops = [Command("stop", "--port", pty_robot.port) for _ in range(3)]
-    done = [command.ended() for command in stops]
-    assert [(each.code, each.err) for each in done] == [(0, "")] * 3
+    results = [command.ended() for command in stops]
+    assert [(result.code, result.err) for result in results] == [(0, "")] * 3
     assert not pty_robot.moves
     if server is not None:
         assert server.ended().code == 3
@@ -123,7 +123,7 @@ def suspended(command: Command) -> Command:
     return command
 
 
-# Who waits for bytes is told of them, and reads them a while later: others may have them by then.
+# Who waits for bytes hears of them, and reads them a while later: others may have them by then.
 TOLD = """
 import select, sys, time
 from tiniscript.cli import main
@@ -234,8 +234,8 @@ def test_who_holds_up_a_stop_is_named(is_known: bool, monkeypatch: pytest.Monkey
             woken.append(self.pid)
             return False
 
-    found = Asleep(77, "tsc monitor") if is_known else None
-    monkeypatch.setattr(holders, "find_holder", lambda *_: found)
+    sleeper = Asleep(77, "tsc monitor") if is_known else None
+    monkeypatch.setattr(holders, "find_holder", lambda *_: sleeper)
 
     def busy(*_: object, **__: object) -> PortConnection:
         raise RobotError("port_busy", "en", {"port": "/dev/ttyUSB7", "why": ""})
@@ -243,9 +243,9 @@ def test_who_holds_up_a_stop_is_named(is_known: bool, monkeypatch: pytest.Monkey
     monkeypatch.setattr(opening, "_open_connection", busy)
     with pytest.raises(RobotError) as failed:
         opening.connection_to("/dev/ttyUSB7", "stop", 9600, 1)
-    said = str(failed.value)
-    assert ("tsc monitor (process 77)" in said) == is_known
-    assert "lift it" in said and "batteries" in said
+    message = str(failed.value)
+    assert ("tsc monitor (process 77)" in message) == is_known
+    assert "lift it" in message and "batteries" in message
     assert bool(woken) == is_known
 
 

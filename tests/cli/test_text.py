@@ -22,17 +22,17 @@ def program(tmp_path: Path) -> Path:
 
 def test_the_line_goes_to_standard_output(tsc: Tsc, program: Path) -> None:
     for more in ([], ["-o", "-"], ["--text-level", "uno"]):
-        done = tsc("compile", "--text", program, *more)
-        assert (done.code, done.out) == (0, LINE)
-        assert f"{program} -> -   20 bytes of text   3 bytes of code" in done.err
+        result = tsc("compile", "--text", program, *more)
+        assert (result.code, result.out) == (0, LINE)
+        assert f"{program} -> -   20 bytes of text   3 bytes of code" in result.err
     assert [path.name for path in program.parent.iterdir()] == ["go.ts"]
 
 
 def test_the_line_runs_and_compiles_as_the_program_does(tsc: Tsc, program: Path) -> None:
     line = program.parent / "line.ts"
-    done = tsc("compile", "--text", program, "-o", line, "--lang", "es")
-    assert done.code == 0 and line.read_bytes() == LINE.encode()
-    assert f"{program} -> {line}   20 bytes de texto" in done.out
+    result = tsc("compile", "--text", program, "-o", line, "--lang", "es")
+    assert result.code == 0 and line.read_bytes() == LINE.encode()
+    assert f"{program} -> {line}   20 bytes de texto" in result.out
     assert tsc("run", line).out == tsc("run", program).out
     for path in (line, program):
         assert tsc("compile", path).code == 0
@@ -46,12 +46,12 @@ def test_a_line_that_has_changed_does_nothing(tsc: Tsc) -> None:
 
 
 def test_what_a_level_lacks_is_a_mistake_with_its_place(tsc: Tsc) -> None:
-    done = tsc("check", "--text-level", "uno", "-e", LONG)
-    assert done.code == 1
-    assert "line 256:  S\n" in done.err
+    result = tsc("check", "--text-level", "uno", "-e", LONG)
+    assert result.code == 1
+    assert "line 256:  S\n" in result.err
     assert (
         "level uno turns this text into 260 bytes of code, 5 too many: it has room for 255"
-        in done.err
+        in result.err
     )
     data = tsc("check", "--json", "--text-level", "mega", "-e", LONG)
     assert '"code": "TS309"' in data.out and '"line": 256' in data.out
@@ -60,11 +60,11 @@ def test_what_a_level_lacks_is_a_mistake_with_its_place(tsc: Tsc) -> None:
 
 def test_nothing_is_written_that_a_level_does_not_take(tsc: Tsc, tmp_path: Path) -> None:
     target = tmp_path / "line.ts"
-    done = tsc("compile", "--text", "--text-level", "esp32", "-e", LONG, "-o", target)
-    assert done.code == 1 and "[TS309]" in done.err and not target.exists()
+    result = tsc("compile", "--text", "--text-level", "esp32", "-e", LONG, "-o", target)
+    assert result.code == 1 and "[TS309]" in result.err and not target.exists()
     assert tsc("compile", "--text", "-e", LONG, "-o", target).code == 0
-    done = tsc("compile", "--text", "-e", "F(2", "-o", tmp_path / "wrong.ts")
-    assert done.code == 1 and not (tmp_path / "wrong.ts").exists()
+    result = tsc("compile", "--text", "-e", "F(2", "-o", tmp_path / "wrong.ts")
+    assert result.code == 1 and not (tmp_path / "wrong.ts").exists()
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import pytest
 
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support import pty_robot as pty_robots
-from tests.support.command import Command, Done, inside
+from tests.support.command import Command, CommandResult, inside
 from tests.support.pty_robot import PtyRobot
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
@@ -31,14 +31,14 @@ from tiniscript.link.trim import Pace, Trim, trim_from_reply
 KIT = robots.load("tinibot").kit
 
 
-def on(pty_robot: PtyRobot, *arguments: str, data: str = "") -> Done:
+def on(pty_robot: PtyRobot, *arguments: str, data: str = "") -> CommandResult:
     return pty_robots.on(pty_robot, "set", "trim", *arguments, data=data.encode())
 
 
 def keeps(pty_robot: PtyRobot) -> Trim:
     """What the robot says that it keeps."""
-    done = on(pty_robot, "--show", "--json").gives(0)
-    fields = json.loads(done.out)
+    result = on(pty_robot, "--show", "--json").gives(0)
+    fields = json.loads(result.out)
     pace = fields["pace"]
     trim = Trim(*(fields[name] for name in Trim._fields))
     return trim._replace(pace=pace and Pace(**pace))
@@ -67,7 +67,7 @@ def driven(robot: HostFirmware, session: Session, left: int, right: int) -> list
 
 def test_motors_get_what_the_trim_makes_of_it() -> None:
     robot, session = switched_on(), computer()
-    for trim, power, found in (
+    for trim, power, powers in (
         (Trim(), (80, 40), "80 40"),
         (Trim(is_exchanged=True), (80, 40), "40 80"),
         (Trim(is_left_reversed=True), (80, 40), "-80 40"),
@@ -81,7 +81,7 @@ def test_motors_get_what_the_trim_makes_of_it() -> None:
         (Trim(balance=10, least=30), (100, -100), "90 -100"),
     ):
         assert robot.until(session, session.trim(trim.data())) == OK
-        assert driven(robot, session, *power) == [found, "0 0"], trim
+        assert driven(robot, session, *power) == [powers, "0 0"], trim
     assert driven(robot, session, 0, 0) == []
 
 
@@ -91,7 +91,7 @@ def test_a_trim_that_makes_no_sense_is_refused() -> None:
     for data in (b"\x08\0\0", b"\0\x29\0", b"\0\xd7\0", b"\0\x80\0", b"\0\0\x29", b"\0\0", b"\0"):
         expected = "BAD_VALUE" if len(data) == 3 else "BAD_LENGTH"
         assert robot.until(session, session.trim(data)) == STATUSES[expected], data
-    assert trim_from_reply(robot.done(session, session.trim())) == Trim(balance=3, pace=Pace())
+    assert trim_from_reply(robot.complete(session, session.trim())) == Trim(balance=3, pace=Pace())
 
 
 # -- the command ----------------------------------------------------------------------------------
@@ -99,8 +99,8 @@ def test_a_trim_that_makes_no_sense_is_refused() -> None:
 
 def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "--balance", "-5", "--least", "12").out.startswith("tinibot (")
-    done = on(pty_robot, "--exchange", "yes", "--reverse-right", "yes")
-    assert done.out.endswith(
+    result = on(pty_robot, "--exchange", "yes", "--reverse-right", "yes")
+    assert result.out.endswith(
         "has saved: motors swapped, right wheel reversed, right wheel 5 % weaker, "
         "the wheels begin to turn at 12 %, centimetres and degrees according to its kit\n"
     )
@@ -116,8 +116,8 @@ def test_what_cannot_be_set_is_said_without_a_robot() -> None:
         ("--balance", "41"), ("--least", "-1"), ("--exchange", "maybe"), ("--least", "x"),
         ("--speed-80", "-1"), ("--turn-80", "656"), ("--turn-40", "fast"),
     ):  # fmt: skip
-        done = inside("set", "trim", option, value, "--port", "/nowhere")
-        assert done.code == 2 and option in done.err, option
+        result = inside("set", "trim", option, value, "--port", "/nowhere")
+        assert result.code == 2 and option in result.err, option
 
 
 # Enter; the left output turns the right wheel, backward; the right one the left wheel, forward;
@@ -128,10 +128,10 @@ ANSWERS = "\n4\n1\n2\n2\n1\n\n2\n9\n3\n1\n1\n"
 
 def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot) -> None:
     assert pty_robots.on(pty_robot, "live", "W(0)").code == 0
-    done = on(pty_robot, data=ANSWERS + "2\n").gives(0)
+    result = on(pty_robot, data=ANSWERS + "2\n").gives(0)
     assert keeps(pty_robot) == Trim(True, False, True, -8, 15, Pace())
-    assert "a number from 1 to 4" in done.err
-    assert done.err.index("One motor turned") < done.err.index("The other motor turned")
+    assert "a number from 1 to 4" in result.err
+    assert result.err.index("One motor turned") < result.err.index("The other motor turned")
     moves = [line for line in pty_robot.did if line.startswith("MOTORS") and line != "MOTORS 0 0"]
     assert moves == [
         "MOTORS 60 0", "MOTORS 0 60",  # as they are wired
@@ -144,24 +144,24 @@ def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot)
 def of_the_table(cause: str, part: str, **values: str) -> str:
     """What the doctor's table says of a cause, as this verb prints it."""
     finding = Finding(cause, True, values, part)
-    found = causes.sentences_of(finding, "en")
+    sentences = causes.sentences_of(finding, "en")
     return (
-        f"tsc: {causes.label(finding, 'en')}: {found.finding}. The robot keeps its old trim. "
-        f"Try:  {found.advice}"
+        f"tsc: {causes.label(finding, 'en')}: {sentences.finding}. The robot keeps its old trim. "
+        f"Try:  {sentences.advice}"
     )
 
 
 def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "--balance", "7", "--least", "3").code == 0
-    for answers, said in (
+    for answers, expected in (
         ("\n1\n2\n", of_the_table("same_wheel", "motors")),
         ("\n5\n", of_the_table("still", "left")),
         ("\n1\n3\n" + "2\n" * 8, of_the_table("too_weak", "motors", n="40")),
         ("\n1\n3\n1\n\n" + "2\n" * 3, of_the_table("too_uneven", "motors", n="40")),
         ("\n1\n", "the input ended"),
     ):
-        on(pty_robot, data=answers).gives(3, said)
-        assert keeps(pty_robot) == Trim(balance=7, least=3, pace=Pace()), said
+        on(pty_robot, data=answers).gives(3, expected)
+        assert keeps(pty_robot) == Trim(balance=7, least=3, pace=Pace()), expected
         assert not pty_robot.moves
 
 
@@ -248,20 +248,22 @@ def test_a_robot_refuses_a_pace_that_does_not_rise_whole() -> None:
     for pace in (Pace(20, 20), Pace(20, 10), Pace(1, 0), Pace(0, 0, 9, 8)):
         refused = robot.until(session, session.trim(Trim(balance=9, pace=pace).data()))
         assert refused == STATUSES["BAD_VALUE"], pace
-        assert trim_from_reply(robot.done(session, session.trim())) == Trim(balance=3, pace=PACE)
+        assert trim_from_reply(robot.complete(session, session.trim())) == Trim(
+            balance=3, pace=PACE
+        )
 
 
 def test_a_pace_survives_a_fault_and_a_torn_save() -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.trim(Trim(pace=PACE).data())) == OK
     robot.talk(session, 1000)
-    kept = robot.memory()
+    memory_before = robot.memory()
     code = unpack(compile_text("SHOW(1 / 0)", KIT).image).code
     assert robot.until(session, session.live(code)) == OK  # the fault is saved beside it
     robot.talk(session, 1000)
-    for memory in (kept, robot.memory()):
+    for memory in (memory_before, robot.memory()):
         assert pace_of(memory) == PACE
-    assert robot.memory() != kept
+    assert robot.memory() != memory_before
     slots = [at for at in (66, 97) if robot.memory()[at] != 0xFF]
     torn = bytearray(robot.memory())
     for at in slots:
@@ -271,7 +273,7 @@ def test_a_pace_survives_a_fault_and_a_torn_save() -> None:
 
 def pace_of(memory: bytes) -> Pace | None:
     robot, session = switched_on(memory), computer(2)
-    return trim_from_reply(robot.done(session, session.trim())).pace
+    return trim_from_reply(robot.complete(session, session.trim())).pace
 
 
 def test_older_firmware_keeps_none() -> None:
@@ -282,19 +284,19 @@ def test_older_firmware_keeps_none() -> None:
 
 def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None:
     measuring = "1\n\nx\n-3\n0.5 m\n1e3\n99999\n\n33\n\n66,5 cm\n\n144°\n\n288\n"
-    done = on(pty_robot, data=LIFTED + measuring).gives(0)
+    result = on(pty_robot, data=LIFTED + measuring).gives(0)
     assert keeps(pty_robot).pace == Pace(16.5, 33.25, 144, 288)
-    assert done.err.count("18 in") == 5
-    assert "drives 16.5 cm per second at 40 % and 33.25 at 80 %" in done.out
+    assert result.err.count("18 in") == 5
+    assert "drives 16.5 cm per second at 40 % and 33.25 at 80 %" in result.out
     told_by_info = pty_robots.on(pty_robot, "doctor").out
     assert "turns 144 degrees per second at 40 % and 288 at 80 %" in told_by_info
 
 
 def test_who_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None:
     wrong = "1\n\n33\n\n33\n"
-    done = on(pty_robot, data=LIFTED + wrong + "\n0\n\n13 in\n\n144\n\n288\n")
-    assert done.code == 0, done.err
-    assert "Measure both again" in done.err
+    result = on(pty_robot, data=LIFTED + wrong + "\n0\n\n13 in\n\n144\n\n288\n")
+    assert result.code == 0, result.err
+    assert "Measure both again" in result.err
     assert keeps(pty_robot).pace == Pace(0, 16.51, 144, 288)
 
 

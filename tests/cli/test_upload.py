@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import LONG, OBSTACLE, Command, Done, inside
+from tests.support.command import LONG, OBSTACLE, Command, CommandResult, inside
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.terminal import Terminal
 from tiniscript import compile_text, robots
@@ -22,8 +22,8 @@ def test_upload_runs_the_program_and_stays_until_it_ends(
     program = tmp_path / "drive.ts"
     program.write_text("SI|F(0.2, 80)\nSHOW(DISTANCE + 1.5); SHOW(TRUE)\n", encoding="utf-8")
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
-    done = on(pty_robot, "upload", program).gives(0, "")
-    receipt, *rest = done.out.splitlines()
+    result = on(pty_robot, "upload", program).gives(0, "")
+    receipt, *rest = result.out.splitlines()
     assert receipt == f"{program} -> tinibot ({pty_robot.port})   SI: running"
     assert rest == [
         "DISTANCE + 1.5 43.5",
@@ -37,35 +37,35 @@ def test_upload_runs_the_program_and_stays_until_it_ends(
 def test_slots_and_checksums_are_for_those_who_ask(pty_robot: PtyRobot) -> None:
     image = compile_text("SI|S", KIT).image
     checksum = f"{int.from_bytes(image[10:14], 'little'):08x}"
-    done = on(pty_robot, "upload", "-e", "SI|S", "--verbose").gives(0, "")
-    receipt, _, last = done.out.splitlines()
+    result = on(pty_robot, "upload", "-e", "SI|S", "--verbose").gives(0, "")
+    receipt, _, last = result.out.splitlines()
     assert receipt.startswith(f"-e -> tinibot ({pty_robot.port})   {len(image)} bytes")
     assert receipt.endswith(f"checksum {checksum}   saving   SI: running")
     assert last == "Saved in slot 0."
-    done = on(pty_robot, "upload", "-e", "SI|S", "--json").gives(0, "")
-    rows = [json.loads(line) for line in done.out.splitlines()]
+    result = on(pty_robot, "upload", "-e", "SI|S", "--json").gives(0, "")
+    rows = [json.loads(line) for line in result.out.splitlines()]
     assert (rows[0]["checksum"], rows[0]["code_bytes"]) == (checksum, 1)
     assert {row["slot"] for row in rows if row.get("slot") is not None} == {0}
     # what is lost without power is told to all
-    done = on(pty_robot, "upload", "-e", "SI|S;S", "--no-save")
-    assert done.out.splitlines()[0].endswith("   only in RAM   SI: running")
+    result = on(pty_robot, "upload", "-e", "SI|S;S", "--no-save")
+    assert result.out.splitlines()[0].endswith("   only in RAM   SI: running")
 
 
 def test_a_program_goes_on_without_tsc(pty_robot: PtyRobot) -> None:
-    done = on(pty_robot, "upload", "-e", OBSTACLE, "--detach")
-    assert done.code == 0 and done.out.endswith("SI: running without tsc\n")
+    result = on(pty_robot, "upload", "-e", OBSTACLE, "--detach")
+    assert result.code == 0 and result.out.endswith("SI: running without tsc\n")
     pty_robot.ask(lambda robot: robot.wait(7000))
     assert pty_robot.did[:3] == ["MOTORS 80 80", "MOTORS 0 0", "MOTORS 60 -60"]
 
 
 def test_a_program_that_waits_ends_with_its_receipt(pty_robot: PtyRobot) -> None:
-    done = on(pty_robot, "upload", "-e", "SB|F(0.1, 80)")
-    assert (done.code, pty_robot.did) == (0, [])
-    assert "SB: waiting for the button or tsc start\nSaved." in done.out
+    result = on(pty_robot, "upload", "-e", "SB|F(0.1, 80)")
+    assert (result.code, pty_robot.did) == (0, [])
+    assert "SB: waiting for the button or tsc start\nSaved." in result.out
     pty_robot.push()
     pty_robot.until(lambda: "FINISHED" in pty_robot.did, "the button starts it")
-    done = on(pty_robot, "start").gives(0)
-    assert done.out.endswith("Done.\n")
+    result = on(pty_robot, "start").gives(0)
+    assert result.out.endswith("Done.\n")
     assert pty_robot.did.count("FINISHED") == 2
 
 
@@ -77,9 +77,9 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
     ours.write_bytes(compile_text(LONG, KIT).image)
     for damages in (0, 211):
         pty_robot.damages = damages
-        done = on(pty_robot, "upload", ours, "--no-run", "--no-save")
-        assert (done.code, pty_robot.did) == (0, [])
-        assert "only in RAM   SI: waiting" in done.out
+        result = on(pty_robot, "upload", ours, "--no-run", "--no-save")
+        assert (result.code, pty_robot.did) == (0, [])
+        assert "only in RAM   SI: waiting" in result.out
         assert on(pty_robot, "show", "-o", theirs).code == 0
         assert theirs.read_bytes() == ours.read_bytes(), damages
         fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
@@ -90,8 +90,8 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
 
 def test_the_receipt_is_data_too(pty_robot: PtyRobot) -> None:
     text = "SI|SHOW(0.5);SHOW(2);SHOW(FALSE);X = 0;SHOW(1 / X)"
-    done = on(pty_robot, "upload", "-e", text, "--json").gives(1)
-    lines = [json.loads(line) for line in done.out.splitlines()]
+    result = on(pty_robot, "upload", "-e", text, "--json").gives(1)
+    lines = [json.loads(line) for line in result.out.splitlines()]
     kinds = [line["event"] for line in lines]
     assert kinds == ["RECEIPT", "SHOW", "SHOW", "SHOW", "FAULT", "SAVED"]
     assert [line["value"] for line in lines[1:4]] == [0.5, 2, False]
@@ -107,8 +107,8 @@ def test_a_fault_names_its_line(pty_robot: PtyRobot, tmp_path: Path) -> None:
         1, "falla DIVIDE_BY_ZERO", "línea 3:  SHOW(1 / X)"
     )
     assert not pty_robot.moves
-    done = on(pty_robot, "doctor")  # the text is in the cache
-    assert "divide.ts, line 3:  SHOW(1 / X)" in done.out
+    result = on(pty_robot, "doctor")  # the text is in the cache
+    assert "divide.ts, line 3:  SHOW(1 / X)" in result.out
     assert on(pty_robot, "start").code == 1
 
 
@@ -120,9 +120,9 @@ def test_mistakes_keep_the_program_off_the_robot(pty_robot: PtyRobot) -> None:
 def test_what_does_not_fit_is_said_with_numbers(pty_robot: PtyRobot, tmp_path: Path) -> None:
     target = tmp_path / "a.bin"
     target.write_bytes(compile_text("SHOW(TIME * 1.234);" * 90, robots.load("grabber").kit).image)
-    done = on(pty_robot, "upload", target)
-    assert done.code == 1
-    assert "540 bytes of code, 151 more than the robot has room for (389)" in done.err
+    result = on(pty_robot, "upload", target)
+    assert result.code == 1
+    assert "540 bytes of code, 151 more than the robot has room for (389)" in result.err
     on(pty_robot, "upload", "-e", "SHOW(LINE_L)", "--robot", "liner").gives(3, "--robot tinibot")
     on(pty_robot, "start").gives(3, "tsc upload")
 
@@ -144,9 +144,9 @@ def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) 
     command = Command("upload", "-e", "SI|F(200, 80)", "--port", pty_robot.port, *other)
     pty_robot.until(lambda: pty_robot.moves, "it drives")
     pty_robot.switch_off_and_on()
-    done = command.ended()
-    assert done.code == 3 and "Done." not in done.out + done.err
-    assert "restarted, which ended its program" in done.out + done.err, done
+    result = command.ended()
+    assert result.code == 3 and "Done." not in result.out + result.err
+    assert "restarted, which ended its program" in result.out + result.err, result
 
 
 # -- what a robot keeps, and what is in the way of that -------------------------------------------
@@ -154,7 +154,7 @@ def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) 
 WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
 
 
-def interrupted(command: Command) -> Done:
+def interrupted(command: Command) -> CommandResult:
     command.signal(signal.SIGINT)
     return command.ended()
 
@@ -179,9 +179,9 @@ def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: 
     command = uploading(pty_robot)
     naming, trimming = ("set", "name", "ANA"), ("set", "trim", "--balance", "5")
     for words in (naming, trimming):
-        done = on(pty_robot, *words)
-        assert done.code == 3 and not done.out, words
-        assert "will save it as soon as its motors have stopped" in done.err
+        result = on(pty_robot, *words)
+        assert result.code == 3 and not result.out, words
+        assert "will save it as soon as its motors have stopped" in result.err
     assert "lo guarda en" in on(pty_robot, *naming, "--lang", "es").err
     assert pty_robot.moves, "nothing has stopped it"
     interrupted(command)
@@ -193,13 +193,13 @@ def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: 
 
 def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
-    done = on(pty_robot, "upload", "-e", "SI|SHOW(6)", "--no-save")
-    assert done.code == 0 and "batter" not in done.err + done.out, "nothing is to be saved"
-    done = on(pty_robot, "upload", "-e", "SI|SHOW(7)")
-    assert "SHOW 7" in done.out, "it runs all the same"
-    assert done.code == 3 and "Change the batteries and send the program again" in done.err
-    done = on(pty_robot, "upload", "-e", "SB|SHOW(8)", "--lang", "es")
-    assert done.code == 3 and "Cambia las pilas y envíalo otra vez" in done.err
+    result = on(pty_robot, "upload", "-e", "SI|SHOW(6)", "--no-save")
+    assert result.code == 0 and "batter" not in result.err + result.out, "nothing is to be saved"
+    result = on(pty_robot, "upload", "-e", "SI|SHOW(7)")
+    assert "SHOW 7" in result.out, "it runs all the same"
+    assert result.code == 3 and "Change the batteries and send the program again" in result.err
+    result = on(pty_robot, "upload", "-e", "SB|SHOW(8)", "--lang", "es")
+    assert result.code == 3 and "Cambia las pilas y envíalo otra vez" in result.err
     assert "RAM: the robot's batteries are too weak to save it" in on(pty_robot, "doctor").out
     fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
     assert (fields["saved"], fields["slot"]) == ("LOW_SUPPLY", None)
@@ -228,21 +228,21 @@ FIRST, SECOND = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
 
 def with_two(pty_robot: PtyRobot) -> list[str]:
     """Send two programs; return their checksums."""
-    done = [on(pty_robot, "upload", "--json", "-e", text) for text in (FIRST, SECOND)]
-    assert [each.code for each in done] == [0, 0]
-    return [json.loads(each.out.splitlines()[0])["checksum"] for each in done]
+    results = [on(pty_robot, "upload", "--json", "-e", text) for text in (FIRST, SECOND)]
+    assert [result.code for result in results] == [0, 0]
+    return [json.loads(result.out.splitlines()[0])["checksum"] for result in results]
 
 
 def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRobot) -> None:
     """As data it is a receipt."""
     first, second = with_two(pty_robot)
-    for language, checksum, said, saved in (
+    for language, checksum, expected, saved in (
         ("en", first, "it has the previous program again, checksum", "Saved. It starts"),
         ("es", second, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
     ):
-        done = on(pty_robot, "start", "--previous", "--lang", language).gives(0, "")
-        lines = done.out.splitlines()
-        assert f"{said} {checksum}" in lines[0] and "tsc start --previous" in lines[0]
+        result = on(pty_robot, "start", "--previous", "--lang", language).gives(0, "")
+        lines = result.out.splitlines()
+        assert f"{expected} {checksum}" in lines[0] and "tsc start --previous" in lines[0]
         assert len(lines) == 2 and lines[1].startswith(saved)
         pty_robot.switch_off_and_on()
         assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"] == checksum
@@ -264,19 +264,19 @@ def test_the_file_of_the_program_is_named_where_it_is_known(
 
 def test_where_there_is_none_before_the_next_step_is_said(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "upload", "-e", FIRST).code == 0
-    for language, said, advice in (
+    for language, expected, advice in (
         ("en", "no earlier program that it can run.", "Send the program that you want"),
         ("es", "ningún programa anterior que pueda", "Envía el programa que quieras"),
     ):
-        on(pty_robot, "start", "--previous", "--lang", language).gives(3, said, advice, out="")
+        on(pty_robot, "start", "--previous", "--lang", language).gives(3, expected, advice, out="")
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
 
 
 def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> None:
     with_two(pty_robot)
     command = uploading(pty_robot)
-    done = on(pty_robot, "start", "--previous").gives(0)
-    assert done.out.splitlines()[-1].startswith("Saved.")
+    result = on(pty_robot, "start", "--previous").gives(0)
+    assert result.out.splitlines()[-1].startswith("Saved.")
     assert not pty_robot.moves
     assert command.ended().code in (0, 3)
 
@@ -285,8 +285,8 @@ def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> 
 def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot) -> None:
     first, second = with_two(pty_robot)
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
-    for language, said in (("en", "Nothing is lost"), ("es", "No se pierde nada")):
-        on(pty_robot, "start", "--previous", "--lang", language).gives(3, said, out=first)
+    for language, expected in (("en", "Nothing is lost"), ("es", "No se pierde nada")):
+        on(pty_robot, "start", "--previous", "--lang", language).gives(3, expected, out=first)
         assert on(pty_robot, "start", "--previous").code == 0, "the second one is saved already"
     on(pty_robot, "start", "--previous")
     pty_robot.ask(lambda robot: robot.supply(is_low=False))
@@ -296,7 +296,7 @@ def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot
 
 def test_ports_and_options_are_those_of_the_other_verbs() -> None:
     for words in (("--port", "/dev/no-such-port"), ("--virtual",)):
-        done = inside("start", "--previous", *words)
-        assert done.code == 3 and done.err.startswith("tsc: ") and not done.out
+        result = inside("start", "--previous", *words)
+        assert result.code == 3 and result.err.startswith("tsc: ") and not result.out
     assert inside("start", "--previous", "--all", "--port", "X").code == 2
     assert inside("start", "--previous", "what").code == 2

@@ -26,21 +26,26 @@ from tiniscript.virtual import directory
 
 def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
-    with robot("--name", "KAT", "--world", "light", "--plot", picture) as found:
-        assert found.port.startswith("socket://127.0.0.1:")
+    with robot("--name", "KAT", "--world", "light", "--plot", picture) as running_robot:
+        assert running_robot.port.startswith("socket://127.0.0.1:")
         listed = json.loads(inside("doctor", "--ports", "--json").out)
-        [row] = [each for each in listed if each["port"] == found.port]
+        [row] = [row for row in listed if row["port"] == running_robot.port]
         assert row["is_virtual"]
         assert row["description"] == 'KAT: virtual robot tinibot, world "lamps in the dark"'
         in_spanish = 'KAT: robot virtual tinibot, mundo "lámparas en la oscuridad"'
-        assert f"{found.port}   {in_spanish}" in inside("doctor", "--ports", "--lang", "es").out
-        done = inside("upload", "--virtual", "-e", "SI|F(0.2, 50);SHOW(1.5);BEEP(0.1, 440)")
-        assert (done.code, done.err) == (0, "")
-        receipt, *rest = done.out.splitlines()
-        assert receipt.startswith(f"-e -> KAT ({found.port})")
+        assert (
+            f"{running_robot.port}   {in_spanish}"
+            in inside("doctor", "--ports", "--lang", "es").out
+        )
+        result = inside("upload", "--virtual", "-e", "SI|F(0.2, 50);SHOW(1.5);BEEP(0.1, 440)")
+        assert (result.code, result.err) == (0, "")
+        receipt, *rest = result.out.splitlines()
+        assert receipt.startswith(f"-e -> KAT ({running_robot.port})")
         assert rest == ["SHOW 1.5", "Done.", "Saved. It starts with the button."]
         # a value is shown when there is room for it on the line
-        lines = [re.sub(r"^\d+ (SHOW|BEEP|DONE)", r"\1", line) for line in found.until("DONE")]
+        lines = [
+            re.sub(r"^\d+ (SHOW|BEEP|DONE)", r"\1", line) for line in running_robot.until("DONE")
+        ]
         assert lines == ["0 START", "0 MOTORS 50 50", "200 MOTORS 0 0", "SHOW 1.5", "BEEP 440 100",
                          "DONE"]  # fmt: skip
         # where nothing is said it is found, too; and it is no port for another day
@@ -48,7 +53,7 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
         assert json.loads(inside("doctor", "--virtual", "--json").out)["robot"]["name"] == "KAT"
         for _ in range(3):
             assert inside("stop", "--virtual").code == 0
-        found.end().gives(0, "The virtual robot drove 9 cm")
+        running_robot.end().gives(0, "The virtual robot drove 9 cm")
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert directory.running_robots() == []
     inside("start").gives(3, "which port?")
@@ -56,13 +61,13 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
 
 @pytest.mark.parametrize("hurry", ["1", "50"])
 def test_a_computer_that_vanishes_stops_the_robot(hurry: str) -> None:
-    with robot("--hurry", hurry) as found:
-        upload = Command("upload", "--port", found.port, "-e", FOREVER)
-        found.until("0 MOTORS -30 30")
+    with robot("--hurry", hurry) as running_robot:
+        upload = Command("upload", "--port", running_robot.port, "-e", FOREVER)
+        running_robot.until("0 MOTORS -30 30")
         upload.kill()
         line = "MOTORS"
         while "MOTORS" in line:
-            line = found.line()
+            line = running_robot.line()
         assert line.endswith(" FAULT LINK_LOST")
 
 
@@ -82,28 +87,28 @@ def test_ctrl_c_counts_wherever_it_comes(monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_a_second_computer_is_told_that_the_port_is_taken() -> None:
     """What the one before it has begun to say is none of the words of the next one."""
-    with robot() as found:
-        with visitor(found.port) as first:
+    with robot() as running_robot:
+        with visitor(running_robot.port) as first:
             first.sendall(b"SHOW(1)\n")
             assert first.recv(1000)  # it is heard
-            done = inside("doctor", "--identify", "--port", found.port)
-            assert done.code == 3
-            assert f"another program is using the port {found.port}" in done.err
-            with visitor(found.port) as third:
+            result = inside("doctor", "--identify", "--port", running_robot.port)
+            assert result.code == 3
+            assert f"another program is using the port {running_robot.port}" in result.err
+            with visitor(running_robot.port) as third:
                 assert third.recv(1000).startswith(b"Port already in use")
                 assert third.recv(1000) == b""
             first.sendall(b"\x05half a frame")
-        inside("upload", "--port", found.port, "-e", "SI|F(0.1, 50)").gives(0, "")
+        inside("upload", "--port", running_robot.port, "-e", "SI|F(0.1, 50)").gives(0, "")
 
 
 def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
     """The button starts it at the same millisecond, so with the same seed all is the same."""
     memory = tmp_path / "kept.bin"
     text = OBSTACLE.replace("SI|", "SB|")
-    with robot("--memory", memory) as found:
+    with robot("--memory", memory) as running_robot:
         assert inside("upload", "--virtual", "-e", text).code == 0
         assert inside("set", "name", "INTI", "--virtual").code == 0
-        found.end(signal.SIGTERM)
+        running_robot.end(signal.SIGTERM)
     assert len(memory.read_bytes()) == 1024
     options = ("--button-at", "1", "--for", "20", "--hurry", "max", "--noise", "5", "--lang", "es")
     first, second, other = (
@@ -136,17 +141,17 @@ def test_each_robot_reads_what_it_has_written(name: str, size: int, tmp_path: Pa
 
 
 def test_a_pseudo_terminal_is_a_port_too() -> None:
-    with robot("--pty") as found:
-        port = found.line()
+    with robot("--pty") as running_robot:
+        port = running_robot.line()
         assert port.startswith("/dev/")
         assert inside("upload", "--port", port, "-e", "SI|F(0.1, 50)").code == 0
-        assert found.until("100 DONE")
+        assert running_robot.until("100 DONE")
 
 
 def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
-    found = Robot()
+    running_robot = Robot()
     assert len(directory.running_robots()) == 1
-    found.kill()
+    running_robot.kill()
     [note] = directory._folder().glob("*.json")
     assert directory.running_robots() == []
     assert not note.exists()
@@ -159,19 +164,19 @@ def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
 def test_of_several_robots_one_is_named(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
     with robot() as first, robot("--world", "line") as second:
-        done = tsc("doctor", "--identify", "--virtual").gives(3, second.port)
+        result = tsc("doctor", "--identify", "--virtual").gives(3, second.port)
         asked = tsc("doctor", "--identify")  # without --virtual and without a terminal
-        assert (asked.code, asked.err) == (3, done.err)
+        assert (asked.code, asked.err) == (3, result.err)
         places = sorted([(first.port, "obstacles"), (second.port, "a line to follow")])
         with monkeypatch.context() as person:
             person.setattr("sys.stdin.isatty", lambda: True)
             person.setattr("sys.stdin.readline", lambda: "2\n")
             person.setattr("sys.stderr.isatty", lambda: True)
-            done = tsc("doctor", "--identify")
-        assert done.code == 0
+            result = tsc("doctor", "--identify")
+        assert result.code == 0
         for number, (port, world) in enumerate(places, 1):
-            assert f'  {number}  {port}   virtual robot tinibot, world "{world}"\n' in done.err
-        assert places[1][0] in done.out
+            assert f'  {number}  {port}   virtual robot tinibot, world "{world}"\n' in result.err
+        assert places[1][0] in result.out
         assert tsc("doctor", "--port", second.port).code == 0
 
 
@@ -188,28 +193,28 @@ def colours(data: bytes) -> dict[str, int]:
         assert image.format == "PNG"
         assert image.size == (1200, 1143)  # the floor, 220 cm x 200 cm, its margins and the foot
         pixels: Any = image.convert("RGB").getcolors(image.width * image.height)
-    found = {}
+    colors = {}
     for name, colour in (
         ("way", picture.WAY_COLOUR),
         ("box", picture.BOX_COLOUR),
         ("robot", picture.ROBOT_COLOUR),
     ):
         wanted = bytes.fromhex(colour[1:])
-        found[name] = sum(  # the borders of lines are mixed
+        colors[name] = sum(  # the borders of lines are mixed
             count for count, pixel in pixels
             if max(abs(a - b) for a, b in zip(pixel, wanted, strict=True)) < 70
         )  # fmt: skip
-    return found
+    return colors
 
 
 def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None:
     still, way = tmp_path / "still.png", tmp_path / "way.png"
     inside("upload", "--virtual", "-e", "SI|S", "--plot", still).gives(0)
-    done = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
+    result = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
                    "--plot", way)  # fmt: skip
-    assert done.code == 0
-    assert "The time set with --for is over.\nSaved. It starts with the button.\n" in done.out
-    assert f"and touched nothing. Picture: {way}\n" in done.out
+    assert result.code == 0
+    assert "The time set with --for is over.\nSaved. It starts with the button.\n" in result.out
+    assert f"and touched nothing. Picture: {way}\n" in result.out
     before, after = colours(still.read_bytes()), colours(way.read_bytes())
     assert before["way"] < 20 < 4000 < after["way"]
     assert before["robot"] > 200
@@ -219,9 +224,9 @@ def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None
 
 def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
     text = "SI|LOOP(20);F(1, 50);B(1, 50);END_LOOP;SHOW(TIME)"
-    done = inside("upload", "--virtual", "-e", text, "--hurry", "max", "--faults", "3")
-    assert done.code == 0  # what a radio has written into the line is said, too
-    assert done.out.splitlines()[1:3] in (
+    result = inside("upload", "--virtual", "-e", text, "--hurry", "max", "--faults", "3")
+    assert result.code == 0  # what a radio has written into the line is said, too
+    assert result.out.splitlines()[1:3] in (
         ["TIME 40", "Done."],
         ["Done.", "Saved. It starts with the button."],
     )
@@ -232,19 +237,19 @@ def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
 def test_the_exit_code_is_that_of_the_run_whatever_has_begun_it(
     start: str, text: str, code: int
 ) -> None:
-    done = inside("upload", "--virtual", "-e", f"{start}|{text}", "--hurry", "max").gives(code)
-    assert "Saved." in done.out
+    result = inside("upload", "--virtual", "-e", f"{start}|{text}", "--hurry", "max").gives(code)
+    assert "Saved." in result.out
 
 
 def test_upload_and_live_say_what_they_say_of_any_robot() -> None:
-    done = inside("upload", "--virtual", "-e", "SI|X = 0;SHOW(1 / X)", "--json", "--seed", "7")
-    assert done.code == 1
-    events = [json.loads(line)["event"] for line in done.out.splitlines()]
+    result = inside("upload", "--virtual", "-e", "SI|X = 0;SHOW(1 / X)", "--json", "--seed", "7")
+    assert result.code == 1
+    events = [json.loads(line)["event"] for line in result.out.splitlines()]
     assert events == ["RECEIPT", "FAULT", "SAVED"]
-    assert "The virtual robot drove 0 cm" in done.err
-    done = inside("live", "--virtual", "F(0.1, 80);SHOW(BATTERY)", "--robot", "liner",
+    assert "The virtual robot drove 0 cm" in result.err
+    result = inside("live", "--virtual", "F(0.1, 80);SHOW(BATTERY)", "--robot", "liner",
                    "--sensor", "BATTERY=7.4").gives(0)  # fmt: skip
-    assert done.out.startswith("BATTERY 7.4\nDone.\nThe virtual robot drove 5 cm")
+    assert result.out.startswith("BATTERY 7.4\nDone.\nThe virtual robot drove 5 cm")
 
 
 def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path) -> None:
@@ -261,9 +266,9 @@ def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path)
 def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
     """The one of `tsc robot`; without one they say how to have one."""
     for command in ("doctor", "doctor --selftest", "set trim", "monitor"):
-        done = inside(*command.split(), "--virtual")
-        assert done.code == 3, command
-        assert "Start one in another terminal:  tsc robot" in done.err, command
+        result = inside(*command.split(), "--virtual")
+        assert result.code == 3, command
+        assert "Start one in another terminal:  tsc robot" in result.err, command
         assert "--virtual" in inside(*command.split(), "--help").out, command
     assert "Without a robot:  --virtual" in inside("upload", "-e", "SI|S").err
     with robot() as running:
@@ -273,7 +278,7 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["robot", "--listen", "70000"], "--listen takes a whole number from 0 to 65535"),
         (["robot", "--noise", "51"], "--noise takes a number from 0 to 50, not 51"),
@@ -298,17 +303,17 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
         (["live", "S", "--port", "COM1", "--virtual"], "--virtual cannot be combined"),
     ],
 )
-def test_wrong_options_are_said(tsc: Tsc, arguments: list[str], said: str) -> None:
-    tsc(*arguments).gives(2, said)
+def test_wrong_options_are_said(tsc: Tsc, arguments: list[str], message: str) -> None:
+    tsc(*arguments).gives(2, message)
     spanish = tsc(*arguments, "--lang", "es").gives(2)
-    assert said not in spanish.err or said.startswith("There")
+    assert message not in spanish.err or message.startswith("There")
 
 
 def test_a_port_that_is_taken_and_a_memory_that_is_none(tsc: Tsc, tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
-        done = tsc("robot", "--listen", str(taken.getsockname()[1]))
-    assert done.code == 3
-    assert "Choose another port with --listen" in done.err
+        result = tsc("robot", "--listen", str(taken.getsockname()[1]))
+    assert result.code == 3
+    assert "Choose another port with --listen" in result.err
     small = tmp_path / "small.bin"
     small.write_bytes(b"TS")
     tsc("robot", "--memory", small).gives(2, "which has 1024 bytes")
@@ -323,6 +328,6 @@ def test_what_is_not_installed_is_said(name: str, commands: list[str]) -> None:
         f"import sys; sys.modules[{name!r}] = None; from tiniscript.cli import main;"
         "sys.exit(str([main(each.split()) for each in sys.argv[1:]]))"
     )
-    done = Command(*commands, code=code).ended()
-    assert done.err.endswith(f"{[2] * len(commands)}\n")
-    assert done.err.count(install_advice.command("virtual")) == len(commands)
+    result = Command(*commands, code=code).ended()
+    assert result.err.endswith(f"{[2] * len(commands)}\n")
+    assert result.err.count(install_advice.command("virtual")) == len(commands)

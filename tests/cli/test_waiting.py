@@ -53,8 +53,8 @@ def test_who_waits_for_a_robot_is_told(
 ) -> None:
     """Not for a moment, and no program that reads is."""
     looks_on(monkeypatch)
-    done = tsc("doctor", "--identify", "--port", silent, "--lang", "es").gives(3)
-    assert done.err.startswith(f"Esperando al robot en {silent} …\n")
+    result = tsc("doctor", "--identify", "--port", silent, "--lang", "es").gives(3)
+    assert result.err.startswith(f"Esperando al robot en {silent} …\n")
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANGS_S)
     assert "Waiting" not in tsc("doctor", "--identify", "--port", silent).err
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
@@ -66,20 +66,20 @@ def test_who_waits_for_a_board_is_told_until_it_is_written(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     looks_on(monkeypatch)
-    said = ""
+    output = ""
 
     def write(*given: object) -> avrdude.WriteResult:
         def is_said() -> bool:
-            nonlocal said
-            said += capsys.readouterr().err
-            return "Waiting for the board on /dev/x …\n" in said
+            nonlocal output
+            output += capsys.readouterr().err
+            return "Waiting for the board on /dev/x …\n" in output
 
         until(is_said, "the sentence")
         return avrdude.WriteResult(avrdude.DONE)
 
     monkeypatch.setattr(avrdude, "write", write)
-    made = ReadyFile("tinibot", "uno", "1", Path("x"))
-    assert firmware._write_firmware([], UNO, "/dev/x", made, "en").outcome == avrdude.DONE
+    ready_file = ReadyFile("tinibot", "uno", "1", Path("x"))
+    assert firmware._write_firmware([], UNO, "/dev/x", ready_file, "en").outcome == avrdude.DONE
 
 
 SILENT_VERBS = [
@@ -105,9 +105,9 @@ def test_a_robot_that_is_silent_after_hello_is_said_to_be_waited_for_once(
         return device_info
 
     monkeypatch.setattr(connect.Connection, "meet", meet)
-    done = tsc(*words, "--port", pty_robot.port)
-    assert done.code in (1, 3)
-    assert done.err.count(f"Waiting for the robot on {pty_robot.port} …\n") == 1
+    result = tsc(*words, "--port", pty_robot.port)
+    assert result.code in (1, 3)
+    assert result.err.count(f"Waiting for the robot on {pty_robot.port} …\n") == 1
 
 
 def test_a_stop_that_is_not_confirmed_is_waited_for_in_words(
@@ -115,8 +115,8 @@ def test_a_stop_that_is_not_confirmed_is_waited_for_in_words(
 ) -> None:
     looks_on(monkeypatch)
     monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.3)
-    done = tsc("stop", "--port", silent).gives(3, "has not confirmed the stop")
-    assert done.err.count(f"Waiting for the robot on {silent} to confirm the stop …\n") == 1
+    result = tsc("stop", "--port", silent).gives(3, "has not confirmed the stop")
+    assert result.err.count(f"Waiting for the robot on {silent} to confirm the stop …\n") == 1
 
 
 def test_waits_without_news_are_one_silence(
@@ -152,14 +152,14 @@ def test_a_bar_is_not_full_before_all_is_done(
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(progress, "DRAW_DELAY_S", 0.0)
     bar = progress.Progress("en", 200)
-    for done in range(201):
-        bar.draw(done)
+    for percent in range(201):
+        bar.draw(percent)
     output = capsys.readouterr().err
     assert " 99 %" in output and "100 %" not in output and "." in output.rpartition("[")[2]
 
 
 def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is not said to be something else, nor to be silent while it waits for its button."""
+    """Nobody says that it is something else, or that it is silent while it waits for its button."""
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     for late_ms in (990, 1300):  # who is silent for 3 s is lost
         with BadLine(Fault("late", late_ms=late_ms), Random(1), 0) as line:
@@ -189,13 +189,13 @@ def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
         return reply
 
     monkeypatch.setattr(Client, "wait", wait)
-    done = tsc("set", "trim", "--show", "--port", pty_robot.port).gives(0)
+    result = tsc("set", "trim", "--show", "--port", pty_robot.port).gives(0)
     assert len(waits) >= 2
-    assert done.err.count("Waiting for the robot") == 1  # nobody has seen 3 s of silence
+    assert result.err.count("Waiting for the robot") == 1  # nobody has seen 3 s of silence
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
     now_s += 100
-    done = tsc("set", "trim", "--show", "--port", pty_robot.port).gives(0)
-    assert done.err.count("Waiting for the robot") == 1  # of HELLO, and of the request
+    result = tsc("set", "trim", "--show", "--port", pty_robot.port).gives(0)
+    assert result.err.count("Waiting for the robot") == 1  # of HELLO, and of the request
 
 
 def test_nothing_is_said_of_a_wait_that_is_over(
@@ -234,16 +234,16 @@ def test_a_thread_that_begins_late_ends_before_its_wait(monkeypatch: pytest.Monk
 def test_a_live_line_that_runs_for_long_says_so_and_its_warnings_once(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    said = {}
+    outputs = {}
     for words in (["live", "M(80, 80);W(100);M(0, 0)"], ["live", "F(0.1, 80)"]):
         terminal = Terminal(*words, "--port", pty_robot.port)
         if "100" in words[1]:
             terminal.until("The line is running. Ctrl-C stops the robot.")
             terminal.interrupt()
         code = terminal.end()
-        said[code] = "\n".join(terminal.whole())
-    assert "running" not in said[0] and "confirmed" in said[2]
-    assert said[2].count("This takes 100 seconds") == 1
+        outputs[code] = "\n".join(terminal.whole())
+    assert "running" not in outputs[0] and "confirmed" in outputs[2]
+    assert outputs[2].count("This takes 100 seconds") == 1
 
 
 @pytest.mark.parametrize("moment", ["handle_signals", "say_aside"])
@@ -252,14 +252,14 @@ def test_the_end_of_a_studio_says_what_it_waits_for(
 ) -> None:
     """Whenever that is, before its server has begun too."""
     looks_on(monkeypatch)
-    said = ""
+    output = ""
 
     class Silent(Hosting):
         def close(self) -> list[str]:
             def is_said() -> bool:
-                nonlocal said
-                said += capsys.readouterr().err
-                return "Waiting for the robots to confirm that they have stopped …\n" in said
+                nonlocal output
+                output += capsys.readouterr().err
+                return "Waiting for the robots to confirm that they have stopped …\n" in output
 
             until(is_said, "the sentence")
             return ["/dev/x"]

@@ -16,9 +16,9 @@ KIT = robots.load("tinibot").kit
 
 
 def compiled(text: str) -> Compilation:
-    found = compile_text(text, KIT)
-    assert found.is_right, [diagnostic.code.number for diagnostic in found.diagnostics]
-    return found
+    compilation = compile_text(text, KIT)
+    assert compilation.is_right, [diagnostic.code.number for diagnostic in compilation.diagnostics]
+    return compilation
 
 
 def instructions(text: str) -> list[str]:
@@ -129,9 +129,9 @@ def test_a_reading_before_a_label_stays_where_it_is() -> None:
 )
 def test_the_right_side_of_an_and_is_skipped_where_it_matters(right: str, has_jump: bool) -> None:
     text = f"X = TRUE; Y = 1; Z = 2; SHOW(X AND ({right})); SHOW(Y + Z)"
-    found = instructions(text)
-    assert any(each.startswith("AND_THEN") for each in found) == has_jump
-    assert ("AND" in found) != has_jump or right.count("AND") == 1
+    rows = instructions(text)
+    assert any(line.startswith("AND_THEN") for line in rows) == has_jump
+    assert ("AND" in rows) != has_jump or right.count("AND") == 1
 
 
 # -- relaxing branches ----------------------------------------------------------------------------
@@ -158,8 +158,8 @@ JUMPS = [
 @pytest.mark.parametrize(("text", "most", "name"), JUMPS)
 def test_a_jump_is_short_as_long_as_it_reaches(text: str, most: int, name: str) -> None:
     def jump(count: int) -> str:
-        found = instructions(text.format("S;" * count))
-        return next(word for word in (each.split()[0] for each in found)
+        rows = instructions(text.format("S;" * count))
+        return next(word for word in (line.split()[0] for line in rows)
                     if word in (name, name + "_FAR"))  # fmt: skip
 
     assert jump(most) == name
@@ -195,13 +195,13 @@ def test_a_comparing_branch_has_no_far_form(condition: str, short: str, far: lis
     """Where it does not reach it becomes what it stands for, and takes the same reading."""
     text = f"X = 3; LIGHT_R; LIGHT_L; IF({condition}); {{}} ENDIF; SHOW(X)"
     near = instructions(text.format("S;" * 255))
-    assert [each for each in near if each.startswith(short)]
+    assert [line for line in near if line.startswith(short)]
     code = compiled(text.format("S;" * 256)).code
-    found = [row.text for row in rows(code)]
-    at = next(k for k, each in enumerate(found) if each.startswith("IF_FAR"))
-    assert [found[at].split()[0], *found[at - 3 : at]] == [far[3], *far[:3]]
-    assert found[at].endswith(f"-> {rows(code)[-2].offset:04x}")  # to PUSH_VAR_0 of SHOW(X)
-    assert found.count("READ_0") == near.count("READ_0")
+    row_texts = [row.text for row in rows(code)]
+    at = next(k for k, line in enumerate(row_texts) if line.startswith("IF_FAR"))
+    assert [row_texts[at].split()[0], *row_texts[at - 3 : at]] == [far[3], *far[:3]]
+    assert row_texts[at].endswith(f"-> {rows(code)[-2].offset:04x}")  # to PUSH_VAR_0 of SHOW(X)
+    assert row_texts.count("READ_0") == near.count("READ_0")
 
 
 def test_one_jump_that_gets_longer_makes_others_longer() -> None:
@@ -209,9 +209,9 @@ def test_one_jump_that_gets_longer_makes_others_longer() -> None:
     opened, closed = "IF(X);" * 8, "ENDIF;" * 8
     border = 255 - 7 * 3  # seven IFs with their PUSH_VAR lie in the outermost one, 3 bytes each
     for count in range(border - 3, 255 + 3):
-        found = instructions(f"X = TRUE; {opened} {'S;' * count} {closed}")
+        rows = instructions(f"X = TRUE; {opened} {'S;' * count} {closed}")
         bytes_of = {"IF": 3, "IF_FAR": 4}
-        sizes = [bytes_of[each.split()[0]] for each in found if each.startswith("IF")]
+        sizes = [bytes_of[line.split()[0]] for line in rows if line.startswith("IF")]
         over = [count + sum(sizes[k + 1 :]) for k in range(8)]  # what each IF jumps over
         assert [size == 4 for size in sizes] == [skipped > 255 for skipped in over]
 

@@ -32,9 +32,9 @@ class Fault(NamedTuple):
 
 def faults() -> list[Fault]:
     text = TABLE.read_text(encoding="utf-8")
-    found = [Fault(*match.groups()) for match in FAULT.finditer(text)]
-    assert len(found) == text.count("\n# ") + 1, "a fault of another form"
-    return found
+    faults = [Fault(*match.groups()) for match in FAULT.finditer(text)]
+    assert len(faults) == text.count("\n# ") + 1, "a fault of another form"
+    return faults
 
 
 @contextmanager
@@ -52,10 +52,10 @@ def _module_with(fault: Fault) -> ModuleType:
     source = (PACKAGE / fault.file).read_text(encoding="utf-8")
     for change in fault.changes.split("@\n"):
         rows = change.splitlines(keepends=True)
-        was = "".join(row[1:] for row in rows if row[0] in " -")
+        old_text = "".join(row[1:] for row in rows if row[0] in " -")
         becomes = "".join(row[1:] for row in rows if row[0] in " +")
-        assert f"\n{source}".count(f"\n{was}") == 1, (fault.says, was)
-        source = f"\n{source}".replace(f"\n{was}", f"\n{becomes}")[1:]
+        assert f"\n{source}".count(f"\n{old_text}") == 1, (fault.says, old_text)
+        source = f"\n{source}".replace(f"\n{old_text}", f"\n{becomes}")[1:]
     name = fault.file.removesuffix(".py").replace("/", ".")
     module = ModuleType(f"tiniscript.{name}")
     exec(compile(source, fault.says, "exec"), vars(module))

@@ -52,7 +52,7 @@ class Spec:
             for k, *row in rows_by_word.get("readings", [])
         }
         numbers = {name: int(rows_by_word[name][0][0]) for name in ("seed", "begin", "until")}
-        every = [int(each) for each in rows_by_word["every"][0]]
+        every = [int(number) for number in rows_by_word["every"][0]]
 
         def late(waited: int, reached: int) -> int:
             return -reached % every[min(waited, len(every)) - 1]
@@ -64,8 +64,8 @@ class Spec:
             return from_ms <= passed % period_ms < to_ms
 
         limits = numbers["until"], numbers["seed"], 10**6
-        said: str = self.machine.trace(code, kit, lists, *limits, late, numbers["begin"], is_slow)
-        return said.splitlines()
+        answer: str = self.machine.trace(code, kit, lists, *limits, late, numbers["begin"], is_slow)
+        return answer.splitlines()
 
 
 def _device(row: list[str]) -> Device:

@@ -24,8 +24,8 @@ AVR_DEVICES = 14, 4  # sensors and actuators, at most: `kMostSensors` of the chi
 
 @lru_cache(maxsize=1)
 def answered() -> list[tuple[Run, list[str]]]:
-    found = ((run, answer_of(run)) for run in runs())
-    return [(run, answer) for run, answer in found if answer is not None]
+    answers = ((run, answer_of(run)) for run in runs())
+    return [(run, answer) for run, answer in answers if answer is not None]
 
 
 def pace_of(run: Run) -> Pace:

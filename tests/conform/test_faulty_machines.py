@@ -26,10 +26,10 @@ def test_the_case_notices_the_fault(fault: Fault) -> None:
     with machine_with(fault) as module:
         parts = {name: module[name] for name in ("load_image", "machine_of") if name in module}
         try:
-            found = answer_of(run, **parts)
+            answer = answer_of(run, **parts)
         except (LookupError, AssertionError):  # it has crashed
-            found = []
-    assert found != right
+            answer = []
+    assert answer != right
     assert answer_of(run) == right, "a fault stays behind"
 
 

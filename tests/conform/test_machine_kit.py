@@ -20,7 +20,7 @@ import pytest
 from tests.conform.spec_machine import Spec, runs
 from tests.oracle import verifier
 from tests.support.casefile import ROOT
-from tests.support.command import Done, Tsc
+from tests.support.command import CommandResult, Tsc
 from tests.support.waiting import has_ended, until
 from tiniscript import compile_text, robots
 from tiniscript.base.kit import Device, Kit
@@ -84,14 +84,14 @@ def machine(tmp_path: Path, source: str) -> str:
     return shlex.join([sys.executable, str(path)])
 
 
-def conform(tsc: Tsc, command: str, *more: str) -> Done:
+def conform(tsc: Tsc, command: str, *more: str) -> CommandResult:
     return tsc("doctor", "--conform", "--machine", command, *more)
 
 
 def found_by(tsc: Tsc, command: str, *more: str) -> list[dict[str, object]]:
     """Return what differs."""
-    done = conform(tsc, command, "--json", *more).gives(1)
-    rows: list[dict[str, object]] = json.loads(done.out)["found"]
+    result = conform(tsc, command, "--json", *more).gives(1)
+    rows: list[dict[str, object]] = json.loads(result.out)["found"]
     return rows
 
 
@@ -99,11 +99,11 @@ def test_the_machine_from_the_specification_passes_all(
     tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
-    done = conform(tsc, FROM_SPEC).gives(0)
+    result = conform(tsc, FROM_SPEC).gives(0)
     needing = sum(bool(case.needs) for case in machine_cases())
     count = len(machine_cases()) - needing
     assert count > 600 and needing > 600
-    assert done.out == (
+    assert result.out == (
         f"{needing} cases with TASK, WHEN, CM or DEG were skipped: "
         "this machine does not support them.\n"
         f"{count} of {count} cases pass. Kit 5, bytecode {ISA_MAJOR}.{ISA_MINOR}.\n"
@@ -118,14 +118,14 @@ def test_the_machine_from_the_specification_passes_all(
 def test_a_machine_lacks_tasks_only_if_it_refuses_the_first_image_with_some(refusal: str) -> None:
     cases = [case for case in machine_cases() if case.needs][:4]
     answers = iter([f"REFUSED {refusal}"])
-    found = list(verdicts(cases, lambda request, most: [next(answers)]))
-    assert [verdict.what for verdict in found] == [LACKS] * 4
+    judged = list(verdicts(cases, lambda request, most: [next(answers)]))
+    assert [verdict.what for verdict in judged] == [LACKS] * 4
     last = iter([*(case.answer for case in cases[:3]), [f"REFUSED {refusal}"]])
-    found = list(verdicts(cases, lambda request, most: next(last)))
-    assert [verdict.what for verdict in found] == [AGREES] * 3 + [DIFFERS]
+    judged = list(verdicts(cases, lambda request, most: next(last)))
+    assert [verdict.what for verdict in judged] == [AGREES] * 3 + [DIFFERS]
     other = iter([["REFUSED DAMAGED"], *(case.answer for case in cases[1:])])
-    found = list(verdicts(cases, lambda request, most: next(other)))
-    assert [verdict.what for verdict in found] == [DIFFERS] + [AGREES] * 3
+    judged = list(verdicts(cases, lambda request, most: next(other)))
+    assert [verdict.what for verdict in judged] == [DIFFERS] + [AGREES] * 3
 
 
 # A file of `tests/oracle`, what it says, what it says then, and a case that must be named.
@@ -175,13 +175,13 @@ BREAKS = [
 ]  # fmt: skip
 
 
-def changed(name: str, was: str, becomes: str) -> ModuleType:
+def changed(name: str, old: str, becomes: str) -> ModuleType:
     """Return a module of `tests/oracle` that says something else in one place."""
     module = ModuleType(f"tests.oracle.{name}")
     path = ROOT / "tests" / "oracle" / f"{name}.py"
     source, module.__file__ = path.read_text(encoding="utf-8"), str(path)
-    assert was in source
-    exec(compile(source.replace(was, becomes), name, "exec"), vars(module))
+    assert old in source
+    exec(compile(source.replace(old, becomes), name, "exec"), vars(module))
     return module
 
 
@@ -211,7 +211,7 @@ def test_a_broken_machine_is_told(file: str, old: str, new: str, named: str) -> 
 
 def test_each_instruction_runs() -> None:
     """What no case runs, no machine is tested for."""
-    seen = set()
+    opcodes = set()
     for case in machine_cases():
         if case.answer[-1].startswith("REFUSED"):
             continue
@@ -221,11 +221,11 @@ def test_each_instruction_runs() -> None:
         runs = machine_of(code, robot, len(kit.readings), case.seed)
         for _ in range(10_000):
             status = runs.tick(robot.now_ms, 1)
-            seen.add([*code, 0][runs.at])
+            opcodes.add([*code, 0][runs.at])
             robot.now_ms = max(runs.wake_ms, robot.now_ms)
             if status in (DONE, FAULT) or robot.now_ms > case.until_ms:
                 break
-    assert [op.name for op in OPS if op.opcode[-1] not in seen] == []
+    assert [op.name for op in OPS if op.opcode[-1] not in opcodes] == []
 
 
 def kit_of(case: MachineCase) -> Kit:
@@ -238,7 +238,7 @@ def kit_of(case: MachineCase) -> Kit:
             continue
         kind, unit, low, high = rest
         devices[what].append(Device(name, kind, unit, int(low), int(high)))
-    sensors, actuators = (tuple(found) for found in devices.values())
+    sensors, actuators = (tuple(devices) for devices in devices.values())
     return Kit(sensors, actuators, speeds["speed"], speeds["turn"])
 
 
@@ -275,12 +275,12 @@ HOSTILE = {
 
 @pytest.mark.parametrize("what", HOSTILE)
 def test_a_hostile_machine_is_named(what: str, tsc: Tsc, tmp_path: Path) -> None:
-    source, said, tried = HOSTILE[what]
+    source, message, tried = HOSTILE[what]
     command = machine(tmp_path, source)
     timeout_s = "1" if what == "hang" else "100"  # a busy computer starts Python in a second
-    done = conform(tsc, command, "--timeout", timeout_s).gives(1, out=said)
-    assert done.out.splitlines()[-1].startswith("0 of ")
-    assert "too many got no response." in done.out
+    result = conform(tsc, command, "--timeout", timeout_s).gives(1, out=message)
+    assert result.out.splitlines()[-1].startswith("0 of ")
+    assert "too many got no response." in result.out
     rows = found_by(tsc, command, "--timeout", timeout_s)
     assert [row["what"] for row in rows] == [what] * tried
 
@@ -319,8 +319,8 @@ def test_a_machine_that_has_ended_is_not_waited_for(
 def test_of_a_machine_that_crashed_without_a_word_the_exit_code_is_told(
     tsc: Tsc, tmp_path: Path
 ) -> None:
-    done = conform(tsc, machine(tmp_path, "sys.exit(3)"), "--only", "images: no code")
-    assert re.search(r"exit code 3\b(?!:)", done.out)
+    result = conform(tsc, machine(tmp_path, "sys.exit(3)"), "--only", "images: no code")
+    assert re.search(r"exit code 3\b(?!:)", result.out)
 
 
 def test_half_an_answer_is_one_of_a_machine_that_crashed(tsc: Tsc, tmp_path: Path) -> None:
@@ -332,17 +332,17 @@ def test_half_an_answer_is_one_of_a_machine_that_crashed(tsc: Tsc, tmp_path: Pat
 
 def test_bytes_that_are_no_text_are_shown_without_harm(tsc: Tsc, tmp_path: Path) -> None:
     source = "os.write(1, bytes(range(256)) + b'\\n\\x1b[2J 0 DONE')"
-    done = conform(tsc, machine(tmp_path, source), "--only", "images: whole").gives(1)
-    assert "\x1b" not in done.out
-    assert "\0" not in done.out
+    result = conform(tsc, machine(tmp_path, source), "--only", "images: whole").gives(1)
+    assert "\x1b" not in result.out
+    assert "\0" not in result.out
 
 
 def test_a_machine_that_reads_nothing_is_no_trouble(tsc: Tsc, tmp_path: Path) -> None:
     """The longest image is more than a pipe holds."""
     command = machine(tmp_path, "time.sleep(60)")
-    done = conform(tsc, command, "--only", "the longest code", "--timeout", "1")
-    assert done.code == 1
-    assert "did not finish" in done.out
+    result = conform(tsc, command, "--only", "the longest code", "--timeout", "1")
+    assert result.code == 1
+    assert "did not finish" in result.out
 
 
 def test_what_it_has_started_ends_with_it(tsc: Tsc, tmp_path: Path) -> None:
@@ -362,8 +362,8 @@ def test_what_it_has_started_ends_with_it(tsc: Tsc, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("command", ["no_such_command", "", "'", "/"])
 def test_a_command_that_does_not_start(command: str, tsc: Tsc) -> None:
-    done = conform(tsc, command).gives(2)
-    assert "does not start" in done.err and "Errno" not in done.err
+    result = conform(tsc, command).gives(2)
+    assert "does not start" in result.err and "Errno" not in result.err
     assert "no arranca" in conform(tsc, command, "--lang", "es").err
 
 
@@ -372,8 +372,8 @@ def test_without_its_file_the_command_that_makes_it_is_named(
 ) -> None:
     monkeypatch.setattr(kit_files, "FOLDER", tmp_path)
     for words in (("--machine", "x"), ("--port", "P")):
-        said = tsc("doctor", "--conform", *words).gives(2).err
-        assert f"{sys.executable} -m tools.builds.conformance" in said
+        err = tsc("doctor", "--conform", *words).gives(2).err
+        assert f"{sys.executable} -m tools.builds.conformance" in err
         for language in ("es", "pt"):
             assert (
                 "tools.builds.conformance"
@@ -436,5 +436,5 @@ def test_the_page_says_how_many(tsc: Tsc) -> None:
     }
     text = PAGE.read_text(encoding="utf-8")
     for pattern, true_count in counts.items():
-        said = re.search(pattern, text)
-        assert said and int(said[1]) == pytest.approx(true_count, rel=0.05), (pattern, true_count)
+        match = re.search(pattern, text)
+        assert match and int(match[1]) == pytest.approx(true_count, rel=0.05), (pattern, true_count)

@@ -37,10 +37,10 @@ class ChangedWire(Wire):
     def __init__(self, port: str, change: Change) -> None:
         super().__init__(ports.open_port(port, 9600))
         self.change = change
-        self.left = b""
+        self.rest = b""
 
     def receive(self, wait_ms: int, quiet_ms: int = 60) -> bytes:
-        *packets, self.left = (self.left + super().receive(wait_ms, quiet_ms)).split(b"\0")
+        *packets, self.rest = (self.rest + super().receive(wait_ms, quiet_ms)).split(b"\0")
         frames = (decode_frame(packet) for packet in packets if packet)
         changed = [self.change(frame) for frame in frames if frame]
         return b"".join(encode_frame(frame) for frame in changed if frame)
@@ -61,10 +61,10 @@ def of(name: str) -> int:
 
 
 def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
-    done = tsc("doctor", "--conform", "--port", pty_robot.port).gives(0)
+    result = tsc("doctor", "--conform", "--port", pty_robot.port).gives(0)
     count = len(all_checks(link_test_suite()))
     assert count > 200
-    assert done.out == f"{count} of {count} checks pass. Kit 1, link {LINK}, bytecode {ISA}.\n"
+    assert result.out == f"{count} of {count} checks pass. Kit 1, link {LINK}, bytecode {ISA}.\n"
     assert not any("MOTORS" in row and row != "MOTORS 0 0" for row in pty_robot.did)
 
 
@@ -73,8 +73,8 @@ def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
 def test_an_uno_passes(group: str, sketch: Path, tmp_path: Path, tsc: Tsc) -> None:
     with Uno(sketch, names=NAMES, eeprom=tmp_path / "eeprom", baud=BAUD, tells_sleep=False) as uno:
         uno.go()
-        done = tsc("doctor", "--conform", "--port", uno.pty, "--only", group)
-    assert done.code == 0, done.out
+        result = tsc("doctor", "--conform", "--port", uno.pty, "--only", group)
+    assert result.code == 0, result.out
 
 
 def altered(name: str, **fields: Callable[[bytes], bytes]) -> Change:
@@ -141,8 +141,8 @@ def test_what_is_changed_on_its_way_is_named(what: str, pty_robot: PtyRobot) -> 
         assert {verdict.what for verdict in verdicts(robot, checks)} == {AGREES}
     with asked(pty_robot, change) as robot:
         greet(robot)
-        found = list(verdicts(robot, checks))
-    assert any(verdict.what != AGREES for verdict in found), found
+        judged = list(verdicts(robot, checks))
+    assert any(verdict.what != AGREES for verdict in judged), judged
 
 
 def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
@@ -151,13 +151,13 @@ def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
         robot.answer_timeout_ms = 10
         assert isinstance(robot.wire, ChangedWire)
         robot.wire.change = lambda frame: None
-        found = list(verdicts(robot, all_checks(link_test_suite())))
-    assert [(verdict.what, verdict.detail) for verdict in found] == [("silent", "PING")] * 3
+        judged = list(verdicts(robot, all_checks(link_test_suite())))
+    assert [(verdict.what, verdict.detail) for verdict in judged] == [("silent", "PING")] * 3
 
 
 def test_json_names_the_checks(pty_robot: PtyRobot) -> None:
-    done = on(pty_robot, "doctor", "--conform", "--only", "link: PING", "--json")
-    assert json.loads(done.out) == {
+    result = on(pty_robot, "doctor", "--conform", "--only", "link: PING", "--json")
+    assert json.loads(result.out) == {
         "version": "1", "link": LINK, "isa": ISA,
         "cases": 1, "agree": 1, "differ": 0, "found": [],
     }  # fmt: skip
@@ -187,7 +187,7 @@ def flood(peer: socket.socket) -> None:
 
 
 @pytest.mark.parametrize(
-    ("serve", "said"),
+    ("serve", "sentence"),
     [
         (lambda peer: None, "disappeared"),
         (lambda peer: peer.recv(1), "disappeared"),
@@ -195,24 +195,24 @@ def flood(peer: socket.socket) -> None:
     ],
     ids=["closes", "closes later", "floods"],
 )
-def test_somebody_else_on_the_port(serve: Callable[[socket.socket], None], said: str, tsc: Tsc,
+def test_somebody_else_on_the_port(serve: Callable[[socket.socket], None], sentence: str, tsc: Tsc,
                                    monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
     from tiniscript.cli.commands import doctor_conform
 
     monkeypatch.setattr(doctor_conform, "RADIO_TIMEOUT_MS", 50)
     with server(serve) as port:
-        done = tsc("doctor", "--conform", "--port", port)
-    assert done.code == 3
-    assert said in done.err
+        result = tsc("doctor", "--conform", "--port", port)
+    assert result.code == 3
+    assert sentence in result.err
 
 
 def test_a_cable_that_is_pulled(pty_robot: PtyRobot, tsc: Tsc) -> None:
     pulled = threading.Timer(3.0, pty_robot.pull)
     pulled.start()
-    done = tsc("doctor", "--conform", "--port", pty_robot.port)
+    result = tsc("doctor", "--conform", "--port", pty_robot.port)
     pulled.join()
-    assert done.code == 3
-    assert "disappeared after" in done.err
+    assert result.code == 3
+    assert "disappeared after" in result.err
 
 
 def test_a_port_that_is_not_there(tsc: Tsc) -> None:

@@ -134,19 +134,22 @@ def some_characters(dice: random.Random) -> str:
     return "".join(chr(dice.randint(*dice.choice(ranges))) for _ in range(dice.choice((1, 5, 300))))
 
 
-def check_messages(found: Compilation) -> None:
+def check_messages(compilation: Compilation) -> None:
     """Check all that is true of the messages for any text."""
-    text, source = found.source.text, found.source
-    for diagnostic in found.diagnostics:
+    text, source = compilation.source.text, compilation.source
+    for diagnostic in compilation.diagnostics:
         assert gap_names(diagnostic.code.number) <= set(diagnostic.values)
         for lang in LANGUAGES:
-            said = message(diagnostic, source, lang)
-            assert said.severity == ("mistake" if diagnostic.is_mistake else "warning")
-            assert (said.line, said.column) < (said.end_line, said.end_column) or not text
-            assert said.column <= len(source.line_text(said.line)) + 1
-            assert said.message.isprintable()
-            assert said.fix.isprintable()
-            rows = as_text(said, source, lang).split("\n")
+            full_message = message(diagnostic, source, lang)
+            assert full_message.severity == ("mistake" if diagnostic.is_mistake else "warning")
+            assert (full_message.line, full_message.column) < (
+                full_message.end_line,
+                full_message.end_column,
+            ) or not text
+            assert full_message.column <= len(source.line_text(full_message.line)) + 1
+            assert full_message.message.isprintable()
+            assert full_message.fix.isprintable()
+            rows = as_text(full_message, source, lang).split("\n")
             assert len(rows) in (3, 4)
             assert all(row.isprintable() for row in rows)
             assert re.fullmatch(r" +\^+", rows[1])
@@ -169,9 +172,9 @@ def test_any_text_is_told_well(seed: int) -> None:
      "IF(TRUE)\nS\nF(1 80)\nEND", "LOOP(2)\nF(1,80)\nLOOP(3)\nfoo\nEND_LOOP"],
 )  # fmt: skip
 def test_each_end_of_a_line_is_one(text: str) -> None:
-    found = check_text(text, KIT)
-    check_messages(found)
-    assert check_text(text.replace("\n", "\r"), KIT).diagnostics == found.diagnostics
+    compilation = check_text(text, KIT)
+    check_messages(compilation)
+    assert check_text(text.replace("\n", "\r"), KIT).diagnostics == compilation.diagnostics
 
 
 def test_letters_of_no_name_where_a_number_goes_are_told_well() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES, gap_names
-from tests.support.texts import said as all_said
+from tests.support.texts import catalogue_texts as all_said
 from tiniscript import check_text, compile_text
 from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
 from tiniscript.base.languages import SOURCE_LANGUAGE, languages
@@ -60,8 +60,8 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
 
 
 def first(text: str, lang: str = "en") -> tuple[Message, Source]:
-    found = compile_text(text, KIT)
-    return message(found.diagnostics[0], found.source, lang), found.source
+    compilation = compile_text(text, KIT)
+    return message(compilation.diagnostics[0], compilation.source, lang), compilation.source
 
 
 # -- the table ------------------------------------------------------------------------------------
@@ -103,14 +103,14 @@ def test_the_right_example_has_no_diagnostic(code: str) -> None:
 
 @each_row("code", EXAMPLES)
 def test_the_examples_fill_all_gaps_of_their_messages(code: str) -> None:
-    found = compile_text(TEXTS[SOURCE_LANGUAGE][f"{code}/wrong"], KIT)
-    values = found.diagnostics[0].values
-    if found.diagnostics[0].repair is None:  # else what it becomes is told
+    compilation = compile_text(TEXTS[SOURCE_LANGUAGE][f"{code}/wrong"], KIT)
+    values = compilation.diagnostics[0].values
+    if compilation.diagnostics[0].repair is None:  # else what it becomes is told
         assert gap_names(code) <= set(values)
     for lang in LANGUAGES:
-        said = message(found.diagnostics[0], found.source, lang)
-        assert "{" not in said.message + said.fix
-        assert "@" not in said.message + said.fix
+        full_message = message(compilation.diagnostics[0], compilation.source, lang)
+        assert "{" not in full_message.message + full_message.fix
+        assert "@" not in full_message.message + full_message.fix
 
 
 @pytest.mark.parametrize("code", sorted(WITHOUT_EXAMPLE))
@@ -118,18 +118,20 @@ def test_messages_without_an_example_have_gaps_that_are_filled(code: str) -> Non
     assert gap_names(code) <= set(WITHOUT_EXAMPLE[code])
     diagnostic = Diagnostic(CODES[code], Span(0, 0), WITHOUT_EXAMPLE[code])
     for lang in LANGUAGES:
-        said = message(diagnostic, Source(""), lang)
-        assert said[2:6] == (1, 1, 1, 1)
-        assert as_text(said, Source(""), lang).startswith(("Warning: ", "Aviso: ", said.message))
-        assert "{" not in said.message + said.fix
+        full_message = message(diagnostic, Source(""), lang)
+        assert full_message[2:6] == (1, 1, 1, 1)
+        assert as_text(full_message, Source(""), lang).startswith(
+            ("Warning: ", "Aviso: ", full_message.message)
+        )
+        assert "{" not in full_message.message + full_message.fix
 
 
 def test_a_program_that_is_too_long_for_any_robot_says_by_how_much() -> None:
-    said, source = first("SHOW(DISTANCE * 1.125 + 2.25)\n" * 5000)
-    assert said.code == "TS306"
-    assert re.search(r"\d+ bytes too long: a robot holds at most 32767$", said.message)
-    assert (said.line, said.column) == (5000, 29)
-    assert "{" not in as_text(said, source, "en")
+    message, source = first("SHOW(DISTANCE * 1.125 + 2.25)\n" * 5000)
+    assert message.code == "TS306"
+    assert re.search(r"\d+ bytes too long: a robot holds at most 32767$", message.message)
+    assert (message.line, message.column) == (5000, 29)
+    assert "{" not in as_text(message, source, "en")
 
 
 # -- gaps -----------------------------------------------------------------------------------------
@@ -147,9 +149,11 @@ def test_a_text_with_an_empty_gap_gives_way_to_the_next() -> None:
 def test_braces_ats_and_line_ends_in_a_program_are_only_shown() -> None:
     for text in ("{fix}", "{0.__class__}", "{", "}", "%s", "@", "@number?", "a\nb\tc", "\x07"):
         values = {"by": "W", "found": text}
-        said = message(Diagnostic(codes.WANTS_NUMBER, Span(0, 0), values), Source("W"), "en")
+        full_message = message(
+            Diagnostic(codes.WANTS_NUMBER, Span(0, 0), values), Source("W"), "en"
+        )
         plain = text.replace("\n", " ").replace("\t", " ").replace("\x07", "␇")
-        assert said.fix == f"Write a number instead of {plain}"
+        assert full_message.fix == f"Write a number instead of {plain}"
 
 
 def test_terms_and_units_are_translated() -> None:
@@ -163,11 +167,11 @@ def test_terms_and_units_are_translated() -> None:
 
 
 def test_long_pieces_of_a_program_are_shortened() -> None:
-    said, _ = first("SHOW(" + "DISTANCE < 1 AND " * 5000 + "TRUE + 1)")
-    assert len(said.message) < 200
-    assert len(said.fix) < 200
-    said, _ = first("A" * 100_000)
-    assert len(said.message) < 200
+    message, _ = first("SHOW(" + "DISTANCE < 1 AND " * 5000 + "TRUE + 1)")
+    assert len(message.message) < 200
+    assert len(message.fix) < 200
+    message, _ = first("A" * 100_000)
+    assert len(message.message) < 200
 
 
 # -- whole messages: `tests/cases` has them as text -----------------------------------------------
@@ -175,15 +179,17 @@ def test_long_pieces_of_a_program_are_shortened() -> None:
 
 def test_colors_change_nothing_but_colors() -> None:
     for text in ("F(2 80)", "W(0.12345)"):
-        said, source = first(text)
-        colored = as_text(said, source, "en", color=True)
-        assert colored != as_text(said, source, "en")
-        assert re.sub(r"\033\[[0-9;]*m", "", colored) == as_text(said, source, "en")
+        message, source = first(text)
+        colored = as_text(message, source, "en", color=True)
+        assert colored != as_text(message, source, "en")
+        assert re.sub(r"\033\[[0-9;]*m", "", colored) == as_text(message, source, "en")
 
 
 def test_as_json() -> None:
-    found = check_text("F()\nX = 0.0001\nSHOW(X)", KIT)
-    messages = [message(diagnostic, found.source, "en") for diagnostic in found.diagnostics]
+    compilation = check_text("F()\nX = 0.0001\nSHOW(X)", KIT)
+    messages = [
+        message(diagnostic, compilation.source, "en") for diagnostic in compilation.diagnostics
+    ]
     assert as_json(messages) == [
         {
             "code": "TS020",

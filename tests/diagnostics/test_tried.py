@@ -19,8 +19,10 @@ TINIBOT = robots.load(robots.DEFAULT)
 def messages_of(program: str, language: str = "en") -> list[Message]:
     """Return what is said of a program for the robot that it names."""
     robot = robot_of(program.encode(), TINIBOT)
-    found = compile_source(program.encode(), robot, "", is_strict=True)
-    return [message(diagnostic, found.source, language) for diagnostic in found.diagnostics]
+    compilation = compile_source(program.encode(), robot, "", is_strict=True)
+    return [
+        message(diagnostic, compilation.source, language) for diagnostic in compilation.diagnostics
+    ]
 
 
 @each_row("language", LANGUAGES)
@@ -28,11 +30,13 @@ def messages_of(program: str, language: str = "en") -> list[Message]:
 @each_row("number", (1, 2, 19, 20, 30, 45, 60, 90, 100, 101, 180, 360))
 def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: int) -> None:
     """As power, centimetres or degrees: never with a gap between the brackets."""
-    (said,) = messages_of(f"{word}({number})", language)
-    calls = re.findall(r"\b[FBLR]\([^()]*\d[^()]*\)", said.fix)
-    assert calls or number < 20, said
+    (message,) = messages_of(f"{word}({number})", language)
+    calls = re.findall(r"\b[FBLR]\([^()]*\d[^()]*\)", message.fix)
+    assert calls or number < 20, message
     for call in calls:
-        assert str(number) in call and not [each for each in check(call) if each.code < "TS800"]
+        assert str(number) in call and not [
+            message for message in check(call) if message.code < "TS800"
+        ]
 
 
 @each_row(
@@ -47,10 +51,10 @@ def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: 
 )
 def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted: str) -> None:
     robot = robot_of(program.encode(), TINIBOT)
-    made = repair_program(
+    repaired = repair_program(
         program, lambda to: compile_source(to.encode(), robot, "", True).diagnostics
     )
-    assert made.text == wanted and not made.diagnostics_left
+    assert repaired.text == wanted and not repaired.diagnostics_left
 
 
 @each_row(
@@ -61,7 +65,7 @@ def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted:
     ],
 )
 def test_what_a_pin_is_said_to_be_is_a_yes_or_no(program: str, fix: str) -> None:
-    assert [each.fix for each in messages_of(program)] == [fix]
+    assert [message.fix for message in messages_of(program)] == [fix]
 
 
 @each_row(
@@ -80,15 +84,15 @@ def test_words_of_another_kit_are_one_mistake(program: str, words: list[tuple[st
     messages = messages_of(program)
     source = Source(program)
     named = []
-    for each in messages:
-        if each.code == "TS119":
+    for shown in messages:
+        if shown.code == "TS119":
             rows = source.text.split("\n")
-            word = rows[each.line - 1][each.column - 1 : each.end_column - 1]
-            named.append((word, each.fix.rpartition(" ")[2]))
+            word = rows[shown.line - 1][shown.column - 1 : shown.end_column - 1]
+            named.append((word, shown.fix.rpartition(" ")[2]))
     assert named == words and len(messages) == max(1, len(words))
     if len(words) == 1:
         changed = f"// robot: {words[0][1]}\n{program.rpartition(chr(10))[2]}"
-        assert not [each for each in messages_of(changed) if each.severity == "mistake"]
+        assert not [message for message in messages_of(changed) if message.severity == "mistake"]
 
 
 @each_row(
@@ -108,7 +112,7 @@ def test_words_of_another_kit_are_one_mistake(program: str, words: list[tuple[st
 )  # fmt: skip
 def test_what_is_tried_does_what_was_written(program: str, fixes: list[str]) -> None:
     """A robot that stands goes on standing, and one condition is told of once."""
-    assert [each.fix for each in messages_of(program)] == fixes
+    assert [message.fix for message in messages_of(program)] == fixes
 
 
 @each_row(
@@ -122,16 +126,16 @@ def test_what_is_tried_does_what_was_written(program: str, fixes: list[str]) -> 
     ],
 )
 def test_what_is_done_beside_is_a_task(program: str, wanted: str) -> None:
-    made = repair_program(
+    repaired = repair_program(
         program, lambda to: list(compile_source(to.encode(), TINIBOT, "", True).diagnostics)
     )
-    assert (made.text, made.diagnostics_left) == (wanted, [])
+    assert (repaired.text, repaired.diagnostics_left) == (wanted, [])
 
 
 def test_what_spanish_pupils_say_for_when_is_shown() -> None:
     """SIEMPRE QUE may be a WHILE as well: it is shown, and nobody makes it."""
-    (said,) = messages_of("SIEMPRE QUE DISTANCE < 9\nB(1, 60)\nFIN", "es")
-    assert said.fix == "WHEN(DISTANCE < 9); B(1, 60); END_WHEN"
+    (message,) = messages_of("SIEMPRE QUE DISTANCE < 9\nB(1, 60)\nFIN", "es")
+    assert message.fix == "WHEN(DISTANCE < 9); B(1, 60); END_WHEN"
 
 
 @each_row(
@@ -144,7 +148,7 @@ def test_what_spanish_pupils_say_for_when_is_shown() -> None:
     ],
 )
 def test_an_unknown_word_is_one_mistake(program: str, lines: list[int]) -> None:
-    assert [each.line for each in messages_of(program)] == lines
+    assert [message.line for message in messages_of(program)] == lines
 
 
 @each_row(

@@ -57,10 +57,10 @@ class Damaged(Firmware):
         self.hello["name"] = self.chance.randbytes(self.chance.randrange(17))
 
     def answer(self, data: bytes) -> bytes:
-        said = bytearray(super().answer(data))
-        if said and self.chance.random() < 0.1:
-            said[self.chance.randrange(len(said))] ^= 1 << self.chance.randrange(8)
-        return bytes(said)
+        reply = bytearray(super().answer(data))
+        if reply and self.chance.random() < 0.1:
+            reply[self.chance.randrange(len(reply))] ^= 1 << self.chance.randrange(8)
+        return bytes(reply)
 
 
 @pytest.mark.sampled("seed", keep=7)

@@ -27,9 +27,9 @@ def linux(tmp_path: Path) -> FakeComputer:
 def test_a_computer_without_anything(linux: FakeComputer) -> None:
     assert diagnosis.inspect_computer(linux).adapters is None  # no sysfs: nothing is known of USB
     linux.usb("usb1", "1d6b", "0002")  # its own hub
-    found = diagnosis.inspect_computer(linux)
-    assert (found.adapters, found.bluetooth, found.paired_names) == ((), NONE, ())
-    assert found.has_module is False
+    computer = diagnosis.inspect_computer(linux)
+    assert (computer.adapters, computer.bluetooth, computer.paired_names) == ((), NONE, ())
+    assert computer.has_module is False
 
 
 @pytest.mark.parametrize(
@@ -51,24 +51,24 @@ def test_an_adapter_with_and_without_its_driver(
 def test_an_adapter_that_brltty_has_taken(linux: FakeComputer) -> None:
     linux.usb("1-1", "1a86", "7523", driver="usbfs")
     linux.program(77, "brltty")
-    found = diagnosis.inspect_computer(linux)
-    assert found.adapters == (Adapter("CH340", "ch341", "usbfs", False),)
-    assert found.programs == {"brltty"}
+    computer = diagnosis.inspect_computer(linux)
+    assert computer.adapters == (Adapter("CH340", "ch341", "usbfs", False),)
+    assert computer.programs == {"brltty"}
 
 
 def test_bluetooth_of_linux(linux: FakeComputer) -> None:
     linux.write("/sys/class/bluetooth/hci0/address", "00:11:22:33:44:55")
     linux.write("/sys/class/rfkill/rfkill1/type", "wlan")
     linux.write("/sys/class/rfkill/rfkill1/soft", "1")
-    found = diagnosis.inspect_computer(linux)
-    assert (found.bluetooth, found.paired_names, found.has_module) == (ON, None, None)
+    computer = diagnosis.inspect_computer(linux)
+    assert (computer.bluetooth, computer.paired_names, computer.has_module) == (ON, None, None)
     linux.outputs["bluetoothctl", "paired-devices"] = "Device 98:D3:31:F5:00:01 HC-05\n"
     assert diagnosis.inspect_computer(linux).has_module is True
     linux.outputs["bluetoothctl", "devices", "Paired"] = (
         "Device 98:D3:31:F5:00:01 Telephone of Ana\nnonsense\n"
     )
-    found = diagnosis.inspect_computer(linux)
-    assert (found.paired_names, found.has_module) == (("Telephone of Ana",), False)
+    computer = diagnosis.inspect_computer(linux)
+    assert (computer.paired_names, computer.has_module) == (("Telephone of Ana",), False)
     linux.write("/sys/class/rfkill/rfkill0/type", "bluetooth")
     linux.write("/sys/class/rfkill/rfkill0/hard", "1")
     assert diagnosis.inspect_computer(linux).bluetooth == OFF
@@ -119,9 +119,9 @@ def test_macos(tmp_path: Path) -> None:
             "controller_properties": {"controller_state": "attrib_on"},
             "device_not_connected": [{"HC-06": {}}, {"Telephone": {}}]}]}
     )  # fmt: skip
-    found = diagnosis.inspect_computer(system)
-    assert found.adapters == (Adapter("CH340", "", "", False),)
-    assert (found.bluetooth, found.has_module) == (ON, True)
+    computer = diagnosis.inspect_computer(system)
+    assert computer.adapters == (Adapter("CH340", "", "", False),)
+    assert (computer.bluetooth, computer.has_module) == (ON, True)
     system.add_port("/dev/cu.usbserial-1420")
     (adapter,) = diagnosis.inspect_computer(system).adapters or ()
     assert adapter.has_port
@@ -131,16 +131,16 @@ def test_bluetooth_of_macos(tmp_path: Path) -> None:
     off = [{"controller_properties": {"controller_state": "attrib_off"}}]
     system = FakeComputer(tmp_path, "darwin")
     assert diagnosis.inspect_computer(system).bluetooth == UNKNOWN
-    for said, state in (
+    for output, state in (
         ("no JSON", UNKNOWN),
         ('{"SPBluetoothDataType": 5}', UNKNOWN),
         ('{"SPBluetoothDataType": []}', NONE),
         ('{"SPBluetoothDataType": [{}]}', NONE),
         (json.dumps({"SPBluetoothDataType": off}), OFF),
     ):
-        system.outputs["system_profiler", "SPBluetoothDataType", "-json"] = said
-        found = diagnosis.inspect_computer(system)
-        assert (found.bluetooth, found.adapters) == (state, None), said
+        system.outputs["system_profiler", "SPBluetoothDataType", "-json"] = output
+        computer = diagnosis.inspect_computer(system)
+        assert (computer.bluetooth, computer.adapters) == (state, None), output
 
 
 def test_who_uses_a_port_of_macos(tmp_path: Path) -> None:
@@ -162,21 +162,25 @@ Estado:                     Iniciado
 
 def test_windows_in_any_language(tmp_path: Path) -> None:
     system = FakeComputer(tmp_path, "win32")
-    found = diagnosis.inspect_computer(system)
-    assert (found.adapters, found.bluetooth, found.has_module) == (None, UNKNOWN, None)
+    computer = diagnosis.inspect_computer(system)
+    assert (computer.adapters, computer.bluetooth, computer.has_module) == (None, UNKNOWN, None)
     system.outputs[PNPUTIL] = CH340_HERE
     system.outputs[(*PNPUTIL, "/class", "Bluetooth")] = (
         "Instance ID: USB\\VID_8087&PID_0A2B\\5\n"
         "Instance ID: BTHENUM\\DEV_98D331F50001\\7&1\nDevice Description: HC-05\n"
     )
-    found = diagnosis.inspect_computer(system)
-    assert found.adapters == (Adapter("CH340", "", "", True),)
-    assert (found.bluetooth, found.paired_names, found.has_module) == (ON, ("HC-05",), True)
+    computer = diagnosis.inspect_computer(system)
+    assert computer.adapters == (Adapter("CH340", "", "", True),)
+    assert (computer.bluetooth, computer.paired_names, computer.has_module) == (
+        ON,
+        ("HC-05",),
+        True,
+    )
     system.outputs[(*PNPUTIL, "/problem")] = CH340_HERE
     system.outputs[(*PNPUTIL, "/class", "Bluetooth")] = "No devices were found.\n"
-    found = diagnosis.inspect_computer(system)
-    assert found.adapters == (Adapter("CH340", "", "", False),)
-    assert found.bluetooth == NONE
+    computer = diagnosis.inspect_computer(system)
+    assert computer.adapters == (Adapter("CH340", "", "", False),)
+    assert computer.bluetooth == NONE
 
 
 # -- names, and the real door -------------------------------------------------------------------
@@ -193,8 +197,8 @@ def test_names_of_modules() -> None:
 def test_this_computer_can_be_looked_at() -> None:
     """Whatever it has: nothing is raised, and a program that does not exist is None."""
     system = System()
-    found = diagnosis.inspect_computer(system)
-    assert found.platform == system.platform
+    computer = diagnosis.inspect_computer(system)
+    assert computer.platform == system.platform
     assert system.output("no-such-program-here") is None
     assert system.output("false") is None
     assert system.output("echo", "here") == "here\n"

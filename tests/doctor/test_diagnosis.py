@@ -234,7 +234,7 @@ ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
 
 
 @pytest.mark.parametrize(
-    ("port", "make", "cause", "is_sure"), ROWS, ids=lambda each: str(each)[:20]
+    ("port", "make", "cause", "is_sure"), ROWS, ids=lambda value: str(value)[:20]
 )
 def test_each_cause_of_computer_and_port(
     case: Case, port: str | None, make: Make, cause: str, is_sure: bool
@@ -266,8 +266,8 @@ def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
     assert finding.cause == "charging_cable"
     assert finding.values == {"ports": f"/dev/ttyS0, {', '.join(case.virtual)}"}
     for language in ("en", "es"):
-        _, seen, then = sentences_of(finding, language)
-        assert finding.values["ports"] in seen
+        _, sentence, then = sentences_of(finding, language)
+        assert finding.values["ports"] in sentence
         assert "tsc doctor --port" in then
 
 
@@ -419,6 +419,6 @@ def test_every_cause_has_a_test() -> None:
         folder.parent / "cli" / f"test_{name}.py" for name in ("selftest", "module_command", "trim")
     )
     tables = (folder / "test_line.py", folder / "test_diagnosis.py", *commands)
-    said = "".join(path.read_text(encoding="utf-8") for path in tables)
-    assert [cause for cause in CAUSES if f'"{cause}"' not in said] == []
+    source = "".join(path.read_text(encoding="utf-8") for path in tables)
+    assert [cause for cause in CAUSES if f'"{cause}"' not in source] == []
     assert len(CAUSES) >= 20

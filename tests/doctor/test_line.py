@@ -22,7 +22,7 @@ from tests.support.simulated_wire import OtherEnd, SimulatedWire
 from tiniscript.doctor.examination import Expectations, examine
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.line import BAUDS, PortFacts, diagnose_line
-from tiniscript.doctor.robot import WireRobot
+from tiniscript.doctor.robot import WireRobot, hello_values
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
     LINK_FAULTS,
@@ -46,7 +46,7 @@ MEGA = b"\x1b\x01\0\x01\x0e\x01\x14"  # the greeting of its bootloader
 STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
 
 
-def found(
+def findings_on(
     end: OtherEnd,
     is_radio: bool = False,
     kit: int | None = None,
@@ -81,12 +81,12 @@ def watched(end: OtherEnd, watch_ms: int) -> dict[str, Finding]:
 
 
 def only(end: OtherEnd, **how: object) -> tuple[str, bool]:
-    (finding,) = found(end, **how)  # type: ignore[arg-type]
+    (finding,) = findings_on(end, **how)  # type: ignore[arg-type]
     return finding.cause, finding.is_sure
 
 
 def causes(end: OtherEnd, **how: object) -> dict[str, Finding]:
-    return {finding.cause: finding for finding in found(end, **how)}  # type: ignore[arg-type]
+    return {finding.cause: finding for finding in findings_on(end, **how)}  # type: ignore[arg-type]
 
 
 # -- a robot ------------------------------------------------------------------------------------
@@ -95,14 +95,14 @@ def causes(end: OtherEnd, **how: object) -> dict[str, Finding]:
 @pytest.mark.parametrize("is_radio", [False, True])
 def test_a_robot_that_is_fine_and_is_only_asked(is_radio: bool) -> None:
     """No frame acts, and there are never four zeros in a row: these would stop it."""
-    (finding,) = found(Firmware(), is_radio=is_radio, kit=KIT)
+    (finding,) = findings_on(Firmware(), is_radio=is_radio, kit=KIT)
     assert (finding.cause, finding.is_sure) == ("fine", True)
     assert (finding.values["name"], finding.values["id"]) == ("ANA", "12347f3a")
     end = Firmware(state=state("RUNNING"))
     end.deaf = 3
-    found(end, is_radio=is_radio, kit=KIT)
+    findings_on(end, is_radio=is_radio, kit=KIT)
     assert set(end.requests) == QUESTIONS
-    assert b"\0" * STOP_ZEROS not in b"".join(end.got)
+    assert b"\0" * STOP_ZEROS not in b"".join(end.received)
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def test_what_a_robot_tells(values: dict[str, int], cause: str) -> None:
     ],
 )
 def test_what_is_good_to_know_is_nothing_wrong(values: dict[str, int], cause: str) -> None:
-    findings = found(Firmware(**values), kit=KIT)
+    findings = findings_on(Firmware(**values), kit=KIT)
     assert [(finding.cause, finding.is_sure) for finding in findings] == [
         (cause, True),
         ("fine", True),
@@ -150,13 +150,13 @@ def test_a_robot_whose_key_this_computer_has_is_fine() -> None:
         assert only(Firmware(features=features), kit=KIT, its_key=key) == ("fine", True)
 
 
-@pytest.mark.parametrize(("features", "said"), [(0, "-"), (OWNERS | OWNED, "OWNERS, OWNED")])
-def test_a_report_tells_what_a_robot_can_do(features: int, said: str) -> None:
+@pytest.mark.parametrize(("features", "expected"), [(0, "-"), (OWNERS | OWNED, "OWNERS, OWNED")])
+def test_a_report_tells_what_a_robot_can_do(features: int, expected: str) -> None:
     robot = WireRobot(SimulatedWire(Firmware(features=features)), 4711, KIT)
     reply, noted = robot.hello(), dict[str, str]()
     assert reply is not None
     list(examine(robot, reply, Expectations(KIT, "tinibot", NAMES.get, on_facts=noted.update), 0))
-    assert noted["features"] == said
+    assert noted["features"] == expected
 
 
 def test_a_kit_that_nobody_knows() -> None:
@@ -188,6 +188,19 @@ def test_a_robot_that_restarts_by_itself_or_by_its_watchdog() -> None:
     end = Firmware()
     end.restarts_ms, end.resets = 700, "WATCHDOG"
     assert "hung" in causes(end)
+
+
+@pytest.mark.parametrize("restarts_ms", [1500, 4000, 9000])
+def test_each_restart_counts_once(restarts_ms: int) -> None:
+    end = Firmware()
+    robot = WireRobot(SimulatedWire(end), 4711, KIT)
+    end.restarts_ms, end.resets = restarts_ms, "POWER"
+    hello = robot.hello()
+    first = hello_values(hello)
+    assert hello is not None and first is not None
+    (finding,) = examine(robot, hello, Expectations(KIT, "tinibot", NAMES.get), 20_000)
+    last = end.hello["nonce"]
+    assert isinstance(last, int) and finding.values["count"] == str(last - first.nonce)
 
 
 @pytest.mark.parametrize(("resets", "is_sure"), [("BROWN_OUT", True), ("POWER", False)])
@@ -263,14 +276,14 @@ def test_a_robot_that_falls_silent(requests: int) -> None:
 
 @pytest.mark.parametrize("baud", [19200, 38400, 57600, 115200])
 def test_a_robot_at_another_speed(baud: int) -> None:
-    (finding,) = found(Firmware(baud))
+    (finding,) = findings_on(Firmware(baud))
     assert (finding.cause, finding.is_sure) == ("wrong_baud", True)
     assert finding.values["baud"] == str(baud)
 
 
 def test_a_robot_at_another_speed_with_another_trouble() -> None:
     end = Firmware(115200, saved=SAVED_BY_NAME["LOW_SUPPLY"])
-    assert [finding.cause for finding in found(end)] == ["wrong_baud", "low_supply"]
+    assert [finding.cause for finding in findings_on(end)] == ["wrong_baud", "low_supply"]
 
 
 @pytest.mark.parametrize(
@@ -343,26 +356,28 @@ KINDS = [
 
 
 @pytest.mark.parametrize("its_baud", [9600, 19200, 38400, 57600, 115200])
-@pytest.mark.parametrize(("kind", "cause", "said"), KINDS)
+@pytest.mark.parametrize(("kind", "cause", "sentence"), KINDS)
 def test_a_board_that_is_not_ours_on_a_cable(
-    kind: type[boards.Board], cause: str, said: str, its_baud: int
+    kind: type[boards.Board], cause: str, sentence: str, its_baud: int
 ) -> None:
     """Whatever speed it has, and whatever speed a robot would have here."""
     for baud in (9600, 115200):
-        (finding,) = found(kind(its_baud), baud=baud)
+        (finding,) = findings_on(kind(its_baud), baud=baud)
         if kind in SAY_NOTHING and its_baud not in (baud, *RESTARTED):
             assert finding.cause == "garbled", baud
             continue
         assert (finding.cause, finding.is_sure) == (cause, True), baud
-        assert said in finding.values["said"], baud
+        assert sentence in finding.values["said"], baud
 
 
-@pytest.mark.parametrize(("kind", "cause", "said"), KINDS)
-def test_a_board_that_is_not_ours_by_radio(kind: type[boards.Board], cause: str, said: str) -> None:
+@pytest.mark.parametrize(("kind", "cause", "sentence"), KINDS)
+def test_a_board_that_is_not_ours_by_radio(
+    kind: type[boards.Board], cause: str, sentence: str
+) -> None:
     """It was not restarted, so what it says when it starts is not heard."""
     end = kind(9600)
     end.now_ms = end._since_ms = 10_000
-    (finding,) = found(end, is_radio=True)
+    (finding,) = findings_on(end, is_radio=True)
     unheard = {
         boards.EchoSketch: "echo", boards.AtBoard: "echo", boards.Esp32Board: "crossed",
         boards.SilentPython: "crossed", boards.DownloadBoard: "crossed",
@@ -375,14 +390,14 @@ def test_a_robot_that_sends_and_hears_nothing() -> None:
     """Its frames and lines are never those of a foreign board."""
 
     class OneWay(Nobody):
-        said = b"// OK\r\n"
+        sent = b"// OK\r\n"
 
         def answer(self, data: bytes) -> bytes:
-            return self.said if self.now_ms % 300 == 0 else b""
+            return self.sent if self.now_ms % 300 == 0 else b""
 
     end = OneWay()
-    for said in (end.said, b"\0" + encode_frame(Frame(33, 0, 7, b"\x01\xff\x55\r\n>>> "))):
-        end.said = said
+    for data in (end.sent, b"\0" + encode_frame(Frame(33, 0, 7, b"\x01\xff\x55\r\n>>> "))):
+        end.sent = data
         for is_radio in (False, True):
             assert only(end, is_radio=is_radio) == ("one_way", False)
 
@@ -395,9 +410,9 @@ def test_what_is_text_at_a_speed_is_not_a_wrong_one(line: bytes) -> None:
     for baud in (9600, 57600):
         end = Sketch(baud)
         end.line = line
-        (finding,) = found(end)
+        (finding,) = findings_on(end)
         assert finding.cause == "other_sketch", finding
-    (finding,) = found(end, baud=57600, is_radio=True)
+    (finding,) = findings_on(end, baud=57600, is_radio=True)
     assert finding.cause == "other_sketch", finding
 
 
@@ -410,7 +425,7 @@ def test_a_text_of_a_board_that_is_probably_known_is_told_as_that() -> None:
 def test_what_a_sketch_prints_is_told_in_part_and_as_text() -> None:
     end = Sketch()
     end.line = b"x" * 300 + b"\r\n"
-    (finding,) = found(end)
+    (finding,) = findings_on(end)
     assert finding.values["said"] == "x" * 60
 
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from string import Formatter
 
 from tests.support.rows import each_row
+from tests.support.texts import catalogue_texts as all_said
 from tests.support.texts import in_all
-from tests.support.texts import said as all_said
 from tiniscript.cli.robot.self_test import SELF_REPORTED_PARTS, SIDES
 from tiniscript.cli.texts.causes import label, sentences_of
 from tiniscript.doctor.findings import CAUSES, OK, Finding
@@ -49,7 +49,7 @@ def sentences(cause: str, *kinds: str) -> Iterator[str]:
             yield sentence
 
 
-@each_row("cause", [each for each in CAUSES if each not in (*OF_A_PART, *foreign.NAMES)])
+@each_row("cause", [cause for cause in CAUSES if cause not in (*OF_A_PART, *foreign.NAMES)])
 def test_a_cause_says_what_is_wrong_what_was_seen_and_what_to_do(cause: str) -> None:
     assert len([*sentences(cause, "found", "seen", "next")]) > 3
 
@@ -59,9 +59,9 @@ def test_what_came_of_a_part_says_what_to_do_if_it_is_not_right(cause: str) -> N
     values = dict.fromkeys(VALUES.get(cause, ()), "7")
     assert [*sentences(cause, "found")]
     for language in ("en", "es", "pt"):
-        found = sentences_of(Finding(cause, True, values), language)
-        assert found.finding and not found.evidence
-        assert bool(found.advice) == (CAUSES[cause].verdict != OK)
+        advice = sentences_of(Finding(cause, True, values), language)
+        assert advice.finding and not advice.evidence
+        assert bool(advice.advice) == (CAUSES[cause].verdict != OK)
 
 
 @each_row("cause", foreign.NAMES)
@@ -109,10 +109,10 @@ def test_each_part_has_a_name() -> None:
 def test_an_examination_finds_what_is_about_a_part_or_that_it_is_no_robot_of_ours() -> None:
     names = [*CAUSES]
     about_it = names[names.index("other_robot") : names.index("fine")]
-    assert {each for each in about_it if not CAUSES[each].part} == {
+    assert {cause for cause in about_it if not CAUSES[cause].part} == {
         "other_robot", "unproven", "of_another_owner", "stopped",
     }  # fmt: skip
-    assert {CAUSES[each].part for each in about_it} == {"", *SELF_REPORTED_PARTS}
+    assert {CAUSES[cause].part for cause in about_it} == {"", *SELF_REPORTED_PARTS}
 
 
 def test_one_restart_is_said_as_one() -> None:

@@ -20,8 +20,8 @@ def memory(tmp_path: Path) -> Path:
 def uno(sketch: Path, memory: Path) -> Iterator[Uno]:
     from tests.support.robot_on_uno import switched_on
 
-    with switched_on(sketch, memory) as found:
-        yield found
+    with switched_on(sketch, memory) as started_uno:
+        yield started_uno
 
 
 @pytest.fixture
@@ -29,8 +29,8 @@ def robot(board: str, sketches: Callable[[str], Path], memory: Path) -> Iterator
     """The one of the parameter `board`."""
     from tests.support.robot_on_uno import switched_on
 
-    with switched_on(sketches(board), memory, board) as found:
-        yield found
+    with switched_on(sketches(board), memory, board) as started_uno:
+        yield started_uno
 
 
 @pytest.fixture

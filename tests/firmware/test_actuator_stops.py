@@ -85,12 +85,12 @@ def test_its_own_end_leaves_them_and_a_fault_does_not(text: str, lets_go: bool) 
 HOLDS = read(TEXTS["grabber"].replace('at_stop = "release"', 'at_stop = "hold"'), "holds")
 
 
-@pytest.mark.parametrize(("robot_name", "said", "drawn"), [
+@pytest.mark.parametrize(("robot_name", "sentences", "drawn"), [
     ("grabber", ["RELEASE GRIPPER", "SET LED FALSE"], {1: 0}),
     ("holds", ["SET LED FALSE"], {0: 90000, 1: 0}),
 ])  # fmt: skip
 def test_the_virtual_robot_says_and_draws_it(
-    robot_name: str, said: list[str], drawn: dict[int, int]
+    robot_name: str, sentences: list[str], drawn: dict[int, int]
 ) -> None:
     profile = {"grabber": GRABBER, "holds": HOLDS}[robot_name]
     robot = VirtualRobot(profile, worlds.load("obstacles"))
@@ -100,7 +100,7 @@ def test_the_virtual_robot_says_and_draws_it(
     robot.press()
     robot.let_go()
     events = robot.take_events()
-    assert [event.text for event in events][-len(said) - 1 :] == [*said, "STOP"]
+    assert [event.text for event in events][-len(sentences) - 1 :] == [*sentences, "STOP"]
     picture = Picture(profile, "en")
     for event in events:
         if event.kind != "START":

@@ -155,7 +155,7 @@ def test_no_challenge_is_a_tag() -> None:
         challenges.append(answer[3:])
     first, second = challenges
     times = range(table.robot.now_ms - 100, table.robot.now_ms + 100)
-    texts = [first + nonce + (each & 0xFFFF).to_bytes(2, "little") for each in times]
+    texts = [first + nonce + (time & 0xFFFF).to_bytes(2, "little") for time in times]
     assert [siphash(key.key, text + b"C") for text in texts].count(second) == 1
     assert second not in [siphash(key.key, text) for text in texts]
 
@@ -184,8 +184,8 @@ def test_forged_and_reordered_frames_drive_nothing(frames: int = 3000) -> None:
 
 
 def forged(frames: int, seed: int) -> int:
-    """Send recorded, forged and reordered frames to a robot with an owner; return how often one of
-    them had it drive, start or change. A stop in between is always obeyed.
+    """Send recorded, forged and reordered frames to a robot with an owner; return how many of them
+    had it drive, start or change. A stop in between is always obeyed.
     """
     chance = random.Random(seed)
     table, keys = Owned(), Keys()

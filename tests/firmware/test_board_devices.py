@@ -93,9 +93,9 @@ def is_true(robot: Robot, condition: str, set_up: Callable[[Board], object]) -> 
     board = started(robot, f"SI|IF({condition});M(20, 0);ELSE;M(10, 0);ENDIF;W(5)")
     set_up(board)
     board.ran(START + 5)
-    found = board.motors(START + 4)[0]
-    assert found in (f"pwm {20 * 653 >> 8}", f"pwm {10 * 653 >> 8}")
-    return found == f"pwm {20 * 653 >> 8}"
+    level = board.motors(START + 4)[0]
+    assert level in (f"pwm {20 * 653 >> 8}", f"pwm {10 * 653 >> 8}")
+    return level == f"pwm {20 * 653 >> 8}"
 
 
 @pytest.mark.parametrize(("name", "sensor", "pin", "is_high", "says"), [
@@ -122,8 +122,8 @@ def test_a_car_is_over_black_from_250_on(sensor: str, channel: int) -> None:
     """As ELEGOO's own program has it."""
     car = robots.load("elegoo4")
     for millivolts, says in ((1180, False), (1260, True)):
-        found = is_true(car, sensor, lambda board, mv=millivolts: board.analog(channel, mv))  # type: ignore[misc]
-        assert found == says
+        is_black = is_true(car, sensor, lambda board, mv=millivolts: board.analog(channel, mv))  # type: ignore[misc]
+        assert is_black == says
 
 
 DIM = (
@@ -156,7 +156,7 @@ def test_each_task_gets_its_readings_in_time(seed: int) -> None:
         tasks.append(f"LOOP(FOREVER)\n{''.join(reads)}{pause}\nEND_LOOP")
     own, *others = tasks[:3]
     text = f"SI|LONGEST = 0;COUNT = 0\n{own}\n"
-    text += "".join(f"TASK\n{each}\nEND_TASK\n" for each in others) + SEEN_AT_THE_END
+    text += "".join(f"TASK\n{other}\nEND_TASK\n" for other in others) + SEEN_AT_THE_END
     board = started(on_board("tinibot", "mega", *DIM), text).ran(START + 530)
     longest, count = (int(board.motors(START + 529)[pin].removeprefix("pwm ")) for pin in (0, 3))
     assert 0 < longest <= 3 * 26 and count > 20
@@ -180,8 +180,8 @@ def test_a_beep_has_its_frequency_and_its_length(name: str, hertz: int) -> None:
     board.ran(START + 290)
     edges = board.edges(buzzer_of(robot))
     periods = (len(edges) - 1) // 2
-    found = HERTZ * periods / (edges[2 * periods] - edges[0])
-    assert abs(found / hertz - 1) < 0.01
+    measured_hertz = HERTZ * periods / (edges[2 * periods] - edges[0])
+    assert abs(measured_hertz / hertz - 1) < 0.01
 
 
 def test_a_beep_of_no_time_ends_the_one_before() -> None:
@@ -230,11 +230,11 @@ def test_a_servo_and_a_lamp() -> None:
     for pin in (11, 30):
         board.watch(pin)
     board.ran(START + 320)
-    found = pulses(board, 11)
-    assert found[0][0] > START
+    pulse_list = pulses(board, 11)
+    assert pulse_list[0][0] > START
     for after, us in ((25, 600), (125, 1500), (225, 2400)):
-        each = [length for ms, length in found if START + after < ms < START + after + 70]
-        assert each and all(abs(length - us) < 3 for length in each)
+        lengths = [length for ms, length in pulse_list if START + after < ms < START + after + 70]
+        assert lengths and all(abs(length - us) < 3 for length in lengths)
     assert board.pin(30, START + 50) == "high"
 
 
@@ -270,8 +270,8 @@ def test_a_remote_control_is_read_after_the_sensors_of_the_kit(name: str) -> Non
     robot = on_board(name, "mega")
     board = started(robot, "SI|IF(KEY_DOWN AND NOT KEY_A);M(PAD_X, PAD_Y);ENDIF;W(5)")
     board.ran(START + 50)
-    found = [motor for motor in board.motors(START + 40) if motor.startswith("pwm")]
-    assert found == [f"pwm {60 * 653 >> 8}", f"pwm {70 * 653 >> 8}"]
+    motors = [motor for motor in board.motors(START + 40) if motor.startswith("pwm")]
+    assert motors == [f"pwm {60 * 653 >> 8}", f"pwm {70 * 653 >> 8}"]
 
 
 def test_a_board_without_room_for_a_remote_control_refuses_a_program_that_reads_it() -> None:

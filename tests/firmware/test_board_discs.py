@@ -237,14 +237,14 @@ def test_a_nano_with_discs_has_tasks(sketches: Callable[[str], Path]) -> None:
         assert robot.until(robot.session.hello()) == OK
         image = image_of(text, ROBOT.kit)
         assert robot.until(robot.session.upload(image)) == OK
-        seen = []
+        counts = []
         for distance_cm, milliseconds in ((50, 500), (9, 300), (50, 500), (50, 500)):
             robot.uno.sonar(*eye, distance_cm)
             robot.run(milliseconds)
-            seen.append(
+            counts.append(
                 tuple(
                     (wheel.wanted_speed > 0) - (wheel.wanted_speed < 0)
                     for wheel in robot.wheels.wheels
                 )
             )
-    assert seen == [(1, 1), (-1, -1), (1, -1), (1, 1)]
+    assert counts == [(1, 1), (-1, -1), (1, -1), (1, 1)]

@@ -112,7 +112,7 @@ def level_of(board: Board, pin: int, values: dict[int, int]) -> int:
 
 
 def at(states: list[Seen], ms: float) -> dict[str, int]:
-    return [each.powers for each in states if each.cycle <= ms * MS][-1]
+    return [state.powers for state in states if state.cycle <= ms * MS][-1]
 
 
 def both(sides: tuple[str, str], left: int, right: int) -> dict[str, int]:
@@ -149,13 +149,13 @@ def test_no_motor_turns_another_way_than_its_side(seed: int) -> None:
     previous = (0, 0)
     for number, (left, right) in enumerate(moves):
         begin, end = START + 20 * number, START + 20 * (number + 1)
-        levels = [int(each * 2.55) for each in (left, right)]
+        levels = [int(percent * 2.55) for percent in (left, right)]
         steady = at(states, end - 1)
         assert steady == {m: p for m, p in both(sides, *levels).items() if p}
-        for each in states:
-            if not begin - 1 < each.cycle / MS < end - 1:
+        for state in states:
+            if not begin - 1 < state.cycle / MS < end - 1:
                 continue
-            for motor, power in each.powers.items():
+            for motor, power in state.powers.items():
                 side = 0 if motor in left_of else 1
                 assert power in (levels[side], int(previous[side] * 2.55))
         previous = (left, right)
@@ -172,9 +172,9 @@ def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     board.press(400, 450)
     board.ran(430)
     states = seen_by_the_motors(board)
-    assert all(each.cycle >= (START - 1) * MS for each in states if each.powers)
+    assert all(state.cycle >= (START - 1) * MS for state in states if state.powers)
     stopped = START + 50.123 + 0.02 if chip == "uno" else 402
-    assert all(each.cycle < stopped * MS for each in states if each.powers)
+    assert all(state.cycle < stopped * MS for state in states if state.powers)
     enable = board.edges(WIRES["enable"])
     assert enable[0] < 100, "its outputs are off before a program drives"
 
@@ -245,6 +245,6 @@ def test_what_takes_the_shields_pins_is_named() -> None:
     )
     for chip in ("esp32dev", "esp32c3"):
         text = four.replace('"uno"', f'"{chip}"').replace('"A0"', "3" if chip[-1] == "3" else "34")
-        assert [each.partition(",")[0] for each in messages_of(text)] == [
+        assert [text.partition(",")[0] for text in messages_of(text)] == [
             "board.motors.driver is a shield for boards with the pins of an Uno"
         ]

@@ -29,7 +29,7 @@ def looking(text: str, *distances_cm: float, robot: Robot | None = None, more: s
     trigger, echo = sonar_pins(robot)
     board = started(robot, text, more)
     board.watch(trigger)
-    board.echoes(trigger, echo, [each * US_PER_CM for each in distances_cm])
+    board.echoes(trigger, echo, [distance_cm * US_PER_CM for distance_cm in distances_cm])
     return board
 
 
@@ -145,13 +145,13 @@ def test_two_sensors_never_hear_each_other(text: str) -> None:
         board.watch(trigger)
         board.echoes(trigger, echo, [distance * US_PER_CM for distance in distances])
     board.ran(START + 600)
-    each = [ping_starts_ms(board, sonar_pins(robot, number)[0]) for number, _ in rows]
-    both = sorted(ms for times in each for ms in times)
+    starts_ms = [ping_starts_ms(board, sonar_pins(robot, number)[0]) for number, _ in rows]
+    both = sorted(ms for times in starts_ms for ms in times)
     assert min(b - a for a, b in pairwise(both)) >= SPACING_MS
-    assert min(len(times) for times in each) >= 4
+    assert min(len(times) for times in starts_ms) >= 4
     driven = driven_ms(board, 2)
     assert len(driven) > 10
-    for motor, (times, (_, distances)) in enumerate(zip(each, rows, strict=True)):
+    for motor, (times, (_, distances)) in enumerate(zip(starts_ms, rows, strict=True)):
         for ms in driven:
             level = board.motors(ms)[3 * motor]
             cm = round(int(level.removeprefix("pwm ")) / 2.55)
@@ -196,9 +196,9 @@ def glitched(width_us: float) -> list[tuple[int, int]]:
 @pytest.mark.sampled("width_us")
 @pytest.mark.parametrize("width_us", [2.0, 10.0, GLITCH_US, 80.0])
 def test_a_glitch_at_any_phase_is_no_echo(width_us: float) -> None:
-    found = glitched(width_us)
-    assert len(found) == len(PHASES)
-    for phase, cm in found:
+    measurements = glitched(width_us)
+    assert len(measurements) == len(PHASES)
+    for phase, cm in measurements:
         nearest = min(
             abs(phase + part - edge)
             for part in (0, width_us)

@@ -9,7 +9,7 @@ from tests.support.casefile import ROOT, Case, read
 from tests.support.robot_on_host import outcome
 from tests.support.robot_on_uno import FORWARD, MOTORS, OFF, computer, send, states
 from tests.support.task_states import STATES
-from tests.support.uno_trace import OFF_MS, Setting, check_pins, last_zero, program, seen
+from tests.support.uno_trace import OFF_MS, Setting, check_pins, last_zero, motor_settings, program
 from tiniscript.link.messages import STATE_STOPPED
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
@@ -28,9 +28,9 @@ STOP_US = 12
 
 def without_readings() -> list[Case]:
     """Return the cases of tasks that a simulated board can follow to the millisecond."""
-    cases = [each for each in read(ROOT / "tests" / "cases" / "tasks.md") if "robot" in each.parts]
-    cases = [each for each in cases if "tiniscript" in each.parts]
-    return [each for each in cases if not {"READ", "FAULT"} & set(each.parts["robot"].split())]
+    cases = [case for case in read(ROOT / "tests" / "cases" / "tasks.md") if "robot" in case.parts]
+    cases = [case for case in cases if "tiniscript" in case.parts]
+    return [case for case in cases if not {"READ", "FAULT"} & set(case.parts["robot"].split())]
 
 
 @pytest.mark.sampled("case", "board", keep=2)
@@ -50,7 +50,7 @@ def test_while_four_tasks_count_the_clock_goes_on(robot: Uno) -> None:
 
 def driven(robot: Uno, since: int) -> list[Setting]:
     """Return how the motors have driven since a cycle, without the time in which they stand."""
-    return [setting for setting in seen(robot, since) if setting[1:] != (0, 0)]
+    return [setting for setting in motor_settings(robot, since) if setting[1:] != (0, 0)]
 
 
 @each_board
@@ -68,9 +68,9 @@ def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
         wired.run(700)
         robot.sonar("trigger", "echo", 80)
         wired.run(800)
-        found = driven(robot, near)
-        assert [setting[1:] for setting in found] == [(-60, -60), (60, -60), (60, 60)]
-        begins, turns, goes_on = (setting.ms for setting in found)
+        settings = driven(robot, near)
+        assert [setting[1:] for setting in settings] == [(-60, -60), (60, -60), (60, 60)]
+        begins, turns, goes_on = (setting.ms for setting in settings)
         assert begins < LOOK_MS and abs(turns - begins - 500) < OFF_MS
         assert 500 - OFF_MS < goes_on - turns < 500 + LOOK_MS
 
@@ -83,10 +83,10 @@ def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
     send(wired, "LOOP(4);F(0.2, 60);B(0.2, 60);END_LOOP;WHEN(DISTANCE < 15);S;END_WHEN",
          is_detached=True)  # fmt: skip
     wired.run(2000)
-    found = driven(robot, last_zero(robot, heard))
-    assert [setting[1:] for setting in found] == [(60, 60), (-60, -60)] * 4
-    for number, setting in enumerate(found):
-        assert abs(setting.ms - 200 * number) < OFF_MS, found
+    settings = driven(robot, last_zero(robot, heard))
+    assert [setting[1:] for setting in settings] == [(60, 60), (-60, -60)] * 4
+    for number, setting in enumerate(settings):
+        assert abs(setting.ms - 200 * number) < OFF_MS, settings
     assert states(robot) == OFF
 
 

@@ -60,8 +60,8 @@ def test_a_program_whose_line_never_ends_runs(
     """On a Nano, too; a second time, and only a whole one."""
     with switched_on(sketches(sketch_name), memory) as robot:
         for _ in range(2):
-            said = typed(robot, "SI|F(1, 60)", 2800)
-            assert (states(robot), said[:-1]) == (OFF, [])
+            answers = typed(robot, "SI|F(1, 60)", 2800)
+            assert (states(robot), answers[:-1]) == (OFF, [])
             assert typed(robot, "", 400)[-1:] == ["// OK"]
             assert states(robot) == FORWARD
             robot.run_ms(1500)
@@ -138,14 +138,14 @@ def test_a_stop_is_as_quick_while_text_is_read(uno: Uno, text: str) -> None:
 @each_board
 def test_its_words_are_those_of_its_level(board: str, robot: Uno) -> None:
     wired = computer(robot)
-    features = wired.done(wired.session.hello()).features
+    features = wired.complete(wired.session.hello()).features
     assert TEXT_LEVELS[features & TEXT_LEVEL][0] == board.upper()
     robot.run_ms(4000)
     words = " ".join(typed(robot, "HELP\n", 600)).replace("// ", "").split()
     assert {"F", "LOOP", "END_LOOP", "ROUND", "UNTIL", "DISTANCE"} <= {*words}
     assert bool({"DEF", "END_DEF", "ENDDEF", "TASK"} & {*words}) == (board == "mega")
-    said = typed(robot, "SI|SHOW(12.5);F(0.1,50)\n", 300)
-    assert said == ["// OK", "// 12.5", "// DONE"]
+    answers = typed(robot, "SI|SHOW(12.5);F(0.1,50)\n", 300)
+    assert answers == ["// OK", "// 12.5", "// DONE"]
 
 
 @pytest.mark.parametrize("board", ["mega"])
@@ -172,8 +172,10 @@ def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Pa
         (project / building.HEADER_FILE).write_text(building.header(robot), encoding="utf-8")
         pio(project, "run", "-e", "mega").gives(0)
         elf = project / ".pio" / "build" / "mega" / "firmware.elf"
-        for each in (language, other):
-            assert (pack_texts(rows(each)).texts in elf.read_bytes()) == (each == language)
+        for language_code in (language, other):
+            assert (pack_texts(rows(language_code)).texts in elf.read_bytes()) == (
+                language_code == language
+            )
         with Uno(elf, names=NAMES, board="mega", baud=BAUD, resets_on_open=False) as mega:
             mega.run_ms(300)
             assert typed(mega, "SI|R(1, 500)\n", 100) == [f"// {answer}"]

@@ -36,7 +36,7 @@ BAD_VALUE = STATUSES["BAD_VALUE"]
 
 
 def state(it: Debugged) -> int:
-    return it.robot.done(it.session, it.session.status()).state
+    return it.robot.complete(it.session, it.session.status()).state
 
 
 def test_a_robot_says_that_it_halts() -> None:
@@ -66,13 +66,13 @@ def test_a_program_halts_before_an_instruction_and_goes_on() -> None:
 def test_a_step_is_a_statement() -> None:
     it = debugged(DRIVE, 0)
     assert it.halt() == Halt(0, MAIN)
-    found = []
+    lines = []
     while it.step():
         halt = it.halt()
         if halt is None:
             break
-        found.append(halt.at)
-    assert found == [2, 5, 7, 10]
+        lines.append(halt.at)
+    assert lines == [2, 5, 7, 10]
     assert it.robot.did[-1].endswith("FINISHED")
 
 
@@ -144,10 +144,10 @@ def test_a_program_that_is_halted_is_saved_as_it_was_sent() -> None:
     assert robot.until(session, session.break_at((0, SECOND, 5, 7))) == OK
     assert robot.until(session, session.start()) == OK
     stored(robot, session)
-    assert robot.done(session, session.read_tasks()).is_halted
+    assert robot.complete(session, session.read_tasks()).is_halted
     restarted = switched_on(robot.memory())
     assert held(restarted, other := computer(7))[15:] == image.code
-    assert restarted.done(other, other.status()).program == image.checksum
+    assert restarted.complete(other, other.status()).program == image.checksum
 
 
 def test_a_place_is_told_with_the_programs_checksum() -> None:
@@ -345,13 +345,13 @@ def test_a_way_that_discs_measure_goes_on_with_its_rest() -> None:
         if is_halted:
             assert it.halt() == Halt(show, MAIN)
             it.talk(1000)
-            halted_at = robot.gone()[0]
+            halted_at = robot.wheel_edges()[0]
             it.talk(500)
-            assert 0 < halted_at == robot.gone()[0], "it stands"
+            assert 0 < halted_at == robot.wheel_edges()[0], "it stands"
             it.go()
         assert it.halt() is None and it.events[-1].name == "DONE"
         it.talk(1000)
-        gone.append(robot.gone()[0])
+        gone.append(robot.wheel_edges()[0])
     assert abs(gone[1] - gone[0]) < 1.5, "edges"
 
 
@@ -386,16 +386,16 @@ def test_a_when_halts_once_until_it_has_gone_through() -> None:
 
 
 def visits(image: Image, place: int) -> int:
-    """Return how often the machine in Python begins the instruction at a place."""
+    """Return how many times the machine in Python begins the instruction at a place."""
     machine = Machine(image.code, TracedRobot(KIT, lambda sensor: 0), len(KIT.readings))
     count = now_ms = 0
     while True:
         is_there = machine.task.pc == place and now_ms >= machine.task.wake_ms
-        found = machine.tick(now_ms, 1)
+        outcome = machine.tick(now_ms, 1)
         count += is_there
-        if found in ("done", "fault"):
+        if outcome in ("done", "fault"):
             return count
-        if found == "waiting":
+        if outcome == "waiting":
             now_ms = max(now_ms + 1, machine.task.wake_ms)
 
 
@@ -483,10 +483,10 @@ def test_a_program_that_is_typed_halts_as_well() -> None:
     robot, session = switched_on(), computer()
     robot.wait(200, b"SI|LOOP(FOREVER);W(0.1);SHOW(1);END_LOOP\n")
     assert robot.until(session, session.hello()) == OK
-    assert robot.done(session, session.status()).state == STATE_RUNNING
+    assert robot.complete(session, session.status()).state == STATE_RUNNING
     assert robot.until(session, session.break_at((1,))) == OK
     robot.talk(session, 500)
-    assert robot.done(session, session.read_tasks()).is_halted
+    assert robot.complete(session, session.read_tasks()).is_halted
 
 
 def test_a_session_asks_no_robot_that_cannot_halt() -> None:
@@ -522,7 +522,7 @@ def test_a_line_that_is_to_halt_does_so_before_its_first_statement() -> None:
     ],
 )
 def test_a_line_that_has_halted_does_what_it_does_alone(text: str) -> None:
-    found = []
+    variables = []
     for halts in (True, False):
         it = Debugged(DRIVE)
         asked = it.session.live(image_of(f"SI|{text}").code, halts=halts)
@@ -530,8 +530,8 @@ def test_a_line_that_has_halted_does_what_it_does_alone(text: str) -> None:
         while it.halt(200):
             assert halts
             it.go()
-        found.append([event.value for event in it.events if event.name == "SHOW"])
-    assert found[0] == found[1] != []
+        variables.append([event.value for event in it.events if event.name == "SHOW"])
+    assert variables[0] == variables[1] != []
 
 
 @pytest.mark.parametrize(

@@ -46,26 +46,26 @@ def run(image: Image, kit: Kit, seed: int, how: str) -> list[str]:
         some = statements[:1] if how == "steps" else rng.sample(statements, min(4, len(statements)))
         assert it.places(*some) == OK
     it.talk(BEGINS_MS - it.robot.now_ms)
-    done = len(it.robot.did)
+    event_count = len(it.robot.did)
     it.start()
-    own_ms, found, halted_in = 0, list[str](), 0
+    own_ms, lines_there, halted_in = 0, list[str](), 0
     while own_ms < LIMIT_MS:
         events = it.talk(1)
         own_ms += 1
-        lines = [line.split(maxsplit=1)[1] for line in it.robot.did[done:]]
-        done = len(it.robot.did)
+        lines = [line.split(maxsplit=1)[1] for line in it.robot.did[event_count:]]
+        event_count = len(it.robot.did)
         halts = [event for event in events if isinstance(event, HaltedEvent)]
-        found += lines
-        found += [f"SHOW {event.value}" for event in events if event.name == "SHOW"]
+        lines_there += lines
+        lines_there += [f"SHOW {event.value}" for event in events if event.name == "SHOW"]
         if any(event.name in ENDS for event in events):
             break
         for event in halts:
             assert event.at in statements
             halted_in += 1
             it.go(RESUME_STEP if how == "steps" or rng.random() < 0.3 else RESUME_GO)
-            found.append("HALT")
+            lines_there.append("HALT")
     assert how != "steps" or halted_in
-    return found
+    return lines_there
 
 
 def without_halts(lines: list[str], kind: str) -> list[str]:
@@ -141,24 +141,24 @@ def seen_next(it: Debugged, places: list[int]) -> list[str]:
     """Return what a run does and tells, with its halts, from when it was asked for."""
     assert it.places(*places) == OK
     it.events.clear()
-    done = len(it.robot.did)
+    event_count = len(it.robot.did)
     it.start()
-    began_ms, found, halts = it.robot.now_ms, list[str](), 0
+    began_ms, lines, halts = it.robot.now_ms, list[str](), 0
     while it.robot.now_ms < began_ms + 1500:
         is_halted = False
         for event in it.talk(4):
             if event.name in ("SHOW", "HALTED", *ENDS):
                 what = getattr(event, "value", getattr(event, "at", ""))
-                found.append(f"{event.name} {what}")
+                lines.append(f"{event.name} {what}")
                 is_halted = event.name == "HALTED"
         if is_halted:
             halts += 1
             it.go(RESUME_STEP if halts % 3 == 0 else RESUME_GO)
-    did = it.robot.did[done:]
+    did = it.robot.did[event_count:]
     while did and not did[0].endswith("BEEP 31 1"):
         del did[0]  # the end of the run before
     rows = (line.split(" ", 1) for line in did)
-    return [*found, *(f"{int(ms) - began_ms} {what}" for ms, what in rows)]
+    return [*lines, *(f"{int(ms) - began_ms} {what}" for ms, what in rows)]
 
 
 @pytest.mark.parametrize("seed", range(24))
@@ -167,12 +167,12 @@ def test_a_run_after_any_halts_is_as_on_a_fresh_robot(seed: int) -> None:
     it, fresh = Debugged(NEXT), Debugged(NEXT)
     halts_before(it, rng)
     places = rng.sample(statement_starts(it.image.code), rng.choice((0, 0, 1, 2)))
-    seen = []
-    for each in (fresh, it):
-        each.robot.talk(each.session, -each.robot.now_ms % 100)
-        rows = seen_next(each, places)
-        seen.append([row for row in rows if "STOPPED" not in row])  # that is the run before
-    assert seen[0] == seen[1] and "SHOW 9000" in seen[0], places
+    runs = []
+    for robot in (fresh, it):
+        robot.robot.talk(robot.session, -robot.robot.now_ms % 100)
+        rows = seen_next(robot, places)
+        runs.append([row for row in rows if "STOPPED" not in row])  # that is the run before
+    assert runs[0] == runs[1] and "SHOW 9000" in runs[0], places
 
 
 if __name__ == "__main__":

@@ -100,7 +100,7 @@ def stepped(image: Image, uno: Uno) -> Seen:
             elif isinstance(event, HaltedEvent):
                 assert event.at in starts
                 halts += 1
-                wired.done(session.resume(RESUME_STEP))
+                wired.complete(session.resume(RESUME_STEP))
             is_over = is_over or event.name in ("DONE", "FAULT")
     assert halts, "it halts before its first statement"
     changes = [change.cycle for name in MOTORS for change in uno.pins.history(name)]
@@ -115,16 +115,16 @@ def stepped(image: Image, uno: Uno) -> Seen:
     return Seen(shows, settings, is_over, own_ms, halts)
 
 
-def driven(seen: Seen, least_ms: float) -> list[Setting]:
+def driven(steps: Seen, least_ms: float) -> list[Setting]:
     """Return the settings that last, each once in a row, without those that stand."""
-    lasting = [setting for ms, setting in seen.settings if ms >= least_ms and setting != (0, 0)]
+    lasting = [setting for ms, setting in steps.settings if ms >= least_ms and setting != (0, 0)]
     return [setting for setting, _ in groupby(lasting)]
 
 
-def lasted(seen: Seen) -> dict[Setting, float]:
+def lasted(steps: Seen) -> dict[Setting, float]:
     """Return for how long each setting was there in all."""
     result: dict[Setting, float] = {}
-    for ms, setting in seen.settings:
+    for ms, setting in steps.settings:
         if setting != (0, 0) and ms >= SEEN_MS:
             result[setting] = result.get(setting, 0) + ms
     return result
@@ -138,20 +138,20 @@ def is_within(some: list[Setting], more: list[Setting]) -> bool:
 
 def compare(image: Image, uno: Uno) -> bool:
     """Compare a program; return whether it has come to its end."""
-    wanted, seen = expected(image), stepped(image, uno)
-    shown = min(len(wanted.shows), len(seen.shows))
-    assert seen.shows[:shown] == wanted.shows[:shown]
-    assert is_within(driven(seen, SEEN_MS), driven(wanted, 0))
-    assert seen.is_over or wanted.end_ms > OWN_MS or seen.halts == MOST_HALTS
-    if seen.is_over:
-        assert seen.shows == wanted.shows and wanted.is_over
-        theirs, mine = lasted(wanted), lasted(seen)
+    wanted, run = expected(image), stepped(image, uno)
+    shown = min(len(wanted.shows), len(run.shows))
+    assert run.shows[:shown] == wanted.shows[:shown]
+    assert is_within(driven(run, SEEN_MS), driven(wanted, 0))
+    assert run.is_over or wanted.end_ms > OWN_MS or run.halts == MOST_HALTS
+    if run.is_over:
+        assert run.shows == wanted.shows and wanted.is_over
+        theirs, mine = lasted(wanted), lasted(run)
         for setting in theirs.keys() | mine.keys():
             off_ms = abs(theirs.get(setting, 0) - mine.get(setting, 0))
-            most_ms = OFF_MS + OFF_HALT_MS * seen.halts + OFF_SHOW_MS * len(seen.shows)
+            most_ms = OFF_MS + OFF_HALT_MS * run.halts + OFF_SHOW_MS * len(run.shows)
             assert off_ms <= most_ms, setting
-        assert is_within(driven(wanted, LASTING_MS), driven(seen, SEEN_MS))
-    return seen.is_over
+        assert is_within(driven(wanted, LASTING_MS), driven(run, SEEN_MS))
+    return run.is_over
 
 
 def images(first: int) -> Iterator[tuple[int, Image]]:

@@ -32,10 +32,10 @@ def test_spikes_start_nothing_whatever_their_spacing(count: int) -> None:
         for first in range(0, turn, max(50, turn // 5))
         for spacing_ms in range(1, 201)
     ]
-    found = button_events(cases)
-    assert len(found) == len(cases) > 1000
-    assert not [each for each in found if "R" in letters(each) or "H" in letters(each)]
-    assert any(letters(each) for each in found), "the spikes fell between all looks"
+    event_rows = button_events(cases)
+    assert len(event_rows) == len(cases) > 1000
+    assert not [row for row in event_rows if "R" in letters(row) or "H" in letters(row)]
+    assert any(letters(row) for row in event_rows), "the spikes fell between all looks"
 
 
 @pytest.mark.parametrize("turn", TURNS_US)
@@ -45,10 +45,10 @@ def test_a_press_is_told_at_once_and_its_release_late(turn: int) -> None:
     for _ in range(200):
         chatter = sorted(chance.sample(range(1, 5000), 4))
         up_us = chance.randrange(300_000, 500_000)
-        cases.append((turn, 0, [0, *chatter, up_us, *(up_us + each for each in chatter)]))
-    for (_, _, edges), found in zip(cases, button_events(cases), strict=True):
-        assert letters(found) == "PHR"
-        pressed, held, released = (us for us, _ in found)
+        cases.append((turn, 0, [0, *chatter, up_us, *(up_us + offset_us for offset_us in chatter)]))
+    for (_, _, edges), events in zip(cases, button_events(cases), strict=True):
+        assert letters(events) == "PHR"
+        pressed, held, released = (us for us, _ in events)
         assert pressed <= 5000 + turn
         assert held >= pressed + STEADY_US - 1000
         assert released >= edges[5] + STEADY_US - 1000
@@ -63,17 +63,17 @@ def test_a_release_that_does_not_last_is_none() -> None:
         for turn in TURNS_US
         for spacing_ms in range(1, 201)
     ]
-    for found in button_events(cases):
-        assert letters(found) == "PHR"
-        assert found[-1][0] >= 2_000_000 + STEADY_US - 1000
+    for events in button_events(cases):
+        assert letters(events) == "PHR"
+        assert events[-1][0] >= 2_000_000 + STEADY_US - 1000
 
 
 def test_a_press_after_a_spike_is_told() -> None:
     """Its first edge may be taken for the spike's chatter: then it is told when it has lasted."""
     cases = [(100, 0, [0, SPIKE_US, gap_us, 500_000]) for gap_us in range(200, 60_000, 700)]
-    for (_, _, edges), found in zip(cases, button_events(cases), strict=True):
-        assert letters(found) in ("PHR", "PPHR")
-        first = min(us for us, letter in found[1:] if letter in "PH")
+    for (_, _, edges), events in zip(cases, button_events(cases), strict=True):
+        assert letters(events) in ("PHR", "PPHR")
+        first = min(us for us, letter in events[1:] if letter in "PH")
         assert edges[2] <= first <= edges[2] + STEADY_US + 1000
 
 

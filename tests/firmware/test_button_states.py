@@ -46,13 +46,13 @@ FOR_EVER = "held for ever"
 
 @lru_cache
 def letters() -> dict[str, list[tuple[int, str]]]:
-    """Return what the button tells of each press: the millisecond, and P, H or R."""
-    found = button_events([(100, 0, edges) for edges, _ in PRESSES.values()])
+    """Return what the button says about each press: the millisecond, and P, H or R."""
+    event_rows = button_events([(100, 0, edges) for edges, _ in PRESSES.values()])
     rows = {}
-    for name, row in zip(PRESSES, found, strict=True):
+    for name, row in zip(PRESSES, event_rows, strict=True):
         rows[name] = [(us // 1000, letter) for us, letter in row]
         if name == FOR_EVER:
-            rows[name] = [each for each in rows[name] if each[1] != "R"]
+            rows[name] = [row for row in rows[name] if row[1] != "R"]
     return rows
 
 
@@ -70,12 +70,16 @@ def test_the_document_has_every_state() -> None:
 
 
 def test_the_presses_are_what_they_are_called() -> None:
-    found = {name: "".join(letter for _, letter in row) for name, row in letters().items()}
+    letters_by_name = {
+        name: "".join(letter for _, letter in row) for name, row in letters().items()
+    }
     for name, (_, columns) in PRESSES.items():
         is_press = columns != (EDGE,)
         expected = "PH" + "R" * (name != FOR_EVER)
-        assert found[name] == expected if is_press else set(found[name]) <= {"P"}, name
-        assert found[name]
+        assert (
+            letters_by_name[name] == expected if is_press else set(letters_by_name[name]) <= {"P"}
+        ), name
+        assert letters_by_name[name]
 
 
 def played(table: Table, press: str) -> None:
@@ -106,7 +110,7 @@ def test_the_button(state: str, press: str) -> None:
     stops = wanted[EDGE] == "stops it"
     assert was_latched != stops, "a robot that runs, or one that does not"
     starts = SHORT in columns and wanted[SHORT].startswith("starts")
-    assert not any(wanted[each] not in ("-", "stops it") for each in (EDGE, LATE))
+    assert not any(wanted[event] not in ("-", "stops it") for event in (EDGE, LATE))
     if stops:
         assert [what for _, what in moves] == ["MOTORS 0 0"]
         assert moves[0][0] <= first_ms + 2

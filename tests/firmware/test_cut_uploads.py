@@ -13,7 +13,7 @@ import pytest
 
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
-from tests.support.robot_on_host import KIT, computer, happened, held, holding, send, stored
+from tests.support.robot_on_host import KIT, actions_of, computer, held, holding, send, stored
 from tests.support.small_robot import SmallRobot
 from tiniscript.bytecode.image import Image, pack, unpack
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
@@ -59,7 +59,7 @@ def sent_until(robot: HostFirmware, session: Session, count: int) -> bytes:
     return b""
 
 
-def is_over_at(memory: bytes, kind: str, count: int) -> bool:
+def cut_at(memory: bytes, kind: str, count: int) -> bool:
     """Break an upload off after so many bytes; return whether it was over before."""
     robot, session = HostFirmware(KIT, memory), computer()
     robot.wait(200)
@@ -74,7 +74,7 @@ def is_over_at(memory: bytes, kind: str, count: int) -> bool:
         if kind == STOPPED_TWICE:
             robot.step(STOP)
         robot.wait(300)
-        assert not [line for line in happened(robot) if line not in ("MOTORS 0 0",)], count
+        assert not [line for line in actions_of(robot) if line not in ("MOTORS 0 0",)], count
         assert robot.is_latched
     robot.wait(1100)
     next_session = computer(2)
@@ -84,7 +84,7 @@ def is_over_at(memory: bytes, kind: str, count: int) -> bool:
         robot.did.clear()
         robot.push()
         robot.talk(next_session, 300)
-        assert "MOTORS 50 50" in happened(robot) or "MOTORS 80 80" in happened(robot), count
+        assert "MOTORS 50 50" in actions_of(robot) or "MOTORS 80 80" in actions_of(robot), count
     assert robot.until(next_session, next_session.upload(NEW, runs=False)) == OK
     assert held(robot, next_session) == bytes_of(NEW), count
     return False
@@ -94,7 +94,7 @@ def break_off(kind: str, first: int, stride: int) -> int:
     """Break uploads off at each so many bytes; return how many."""
     memory = holding(OLD)[0].memory()
     count = 0
-    while not is_over_at(memory, kind, first + count * stride):
+    while not cut_at(memory, kind, first + count * stride):
         count += 1
     return count
 
@@ -109,13 +109,13 @@ def test_a_program_that_an_upload_has_cost_is_told_no_more() -> None:
     robot, session = HostFirmware(KIT), computer()
     robot.wait(200)
     assert robot.until(session, session.upload(image_of(OLD), saves=False)) == OK
-    before = robot.done(session, session.status())
+    before = robot.complete(session, session.status())
     assert (before.program, before.saved) == (image_of(OLD).checksum, SAVED_MEMORY)
     assert before.length == len(image_of(OLD).code)
     assert sent_until(robot, session, 300)
     next_session = computer(2)
-    hello = robot.done(next_session, next_session.hello())
-    status_reply = robot.done(next_session, next_session.status())
+    hello = robot.complete(next_session, next_session.hello())
+    status_reply = robot.complete(next_session, next_session.status())
     assert (status_reply.saved, status_reply.program, status_reply.length) == (SAVED_NOTHING, 0, 0)
     assert (hello.saved, hello.program, hello.length) == (SAVED_NOTHING, 0, 0)
     assert next_session.robot and next_session.robot.values.program == 0
@@ -146,8 +146,8 @@ class Line:
         self.seq += 1
         number = BY_NAME[name].number
         frame = encode_frame(Frame(number, self.seq, self.epoch, payload))
-        answers = [each for each in self.hears(b"\0" + frame, 20) if each.seq == self.seq]
-        assert [each.number for each in answers] == [number], answers
+        answers = [frame for frame in self.hears(b"\0" + frame, 20) if frame.seq == self.seq]
+        assert [frame.number for frame in answers] == [number], answers
         return answers[0].payload[0]
 
     def hears(self, data: bytes, milliseconds: int) -> list[Frame]:
@@ -228,7 +228,7 @@ def cut_by(
 
 
 @pytest.fixture(scope="module")
-def kept() -> bytes:
+def memory() -> bytes:
     return two_programs()
 
 
@@ -236,19 +236,19 @@ def kept() -> bytes:
 @pytest.mark.parametrize("cut", CUTS)
 @pytest.mark.parametrize("what", BETWEEN)
 def test_an_upload_that_something_has_come_between_is_over(
-    kept: bytes, what: str, cut: str, kind: str
+    memory: bytes, what: str, cut: str, kind: str
 ) -> None:
     """No more of it is taken, and the robot does what it does where nothing more of it comes. What
     runs is watched by the stand-in: no byte of it changes."""
-    line, rest = cut_by(kind, kept, cut, BETWEEN[what])
-    twin, _ = cut_by(kind, kept, cut, BETWEEN[what])
+    line, rest = cut_by(kind, memory, cut, BETWEEN[what])
+    twin, _ = cut_by(kind, memory, cut, BETWEEN[what])
     if what == "an upload":
         rest = rest[1:] if cut == ALL_BUT_ONE else [("COMMIT", bytes(4))]  # of which it has less
     refused = [line.asks(*frame) for frame in rest]
     assert OK not in refused, (refused, rest)
     assert {twin.asks("PING") for _ in rest} == {OK}
-    for each in (line, twin):
-        each.robot.wait(300)
+    for one_line in (line, twin):
+        one_line.robot.wait(300)
     assert line.robot.did == twin.robot.did
     assert line.robot.codes() == twin.robot.codes()
 
@@ -257,14 +257,14 @@ def test_an_upload_that_something_has_come_between_is_over(
 @pytest.mark.parametrize("cut", CUTS)
 @pytest.mark.parametrize("what", BESIDE)
 def test_an_upload_goes_on_beside_what_needs_no_memory(
-    kept: bytes, what: str, cut: str, kind: str
+    memory: bytes, what: str, cut: str, kind: str
 ) -> None:
-    line, rest = cut_by(kind, kept, cut, BESIDE[what])
+    line, rest = cut_by(kind, memory, cut, BESIDE[what])
     assert [line.asks(*frame) for frame in rest] == [OK] * len(rest)
     assert line.robot.codes() == [SECOND.code]
 
 
 if __name__ == "__main__":
     ArgumentParser(description=__doc__).parse_args()
-    for each in KINDS:
-        break_off(each, 0, 1)
+    for kind in KINDS:
+        break_off(kind, 0, 1)

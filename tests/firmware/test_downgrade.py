@@ -93,7 +93,7 @@ class Between:
 
     def hears(self, data: bytes, now_ms: int) -> bytes:
         """Return what the computer gets for what it has sent."""
-        said = b""
+        replies = b""
         if b"\0\0\0\0" in data:
             if not self.cuts_stops:
                 return self.end.passes(20, data)
@@ -103,31 +103,31 @@ class Between:
             frame = decode_frame(packet)
             assert frame
             if self.passes_on(frame):
-                said += self.changed(self.end.passes(20, b"\0" + packet + b"\0"))
+                replies += self.changed(self.end.passes(20, b"\0" + packet + b"\0"))
             else:
                 self.epoch = frame.epoch
-                said += self.done(frame)
+                replies += self.pretended_answer(frame)
         if self.zeros_ms is not None and now_ms >= self.zeros_ms + self.waits_ms:
             epoch = (self.epoch + self.draw.randrange(2)) & 0xFF
-            said += encode_frame(Frame(STOPPED, self.draw.randrange(256), epoch, b"\1", True))
-        return b"\0" * bool(said) + said
+            replies += encode_frame(Frame(STOPPED, self.draw.randrange(256), epoch, b"\1", True))
+        return b"\0" * bool(replies) + replies
 
-    def changed(self, said: bytes) -> bytes:
+    def changed(self, data: bytes) -> bytes:
         """Return the answers of the robot with bits of HELLO cleared, or another id."""
-        found = b""
-        for packet in filter(None, said.split(b"\0")):
+        stream = b""
+        for packet in filter(None, data.split(b"\0")):
             frame = decode_frame(packet)
             if frame and frame.number == HELLO and frame.payload[0] == 0:
                 values = decode_payload(BY_NAME["HELLO"].reply, frame.payload[1:])
                 values["features"] = int(values["features"]) & ~self.cleared
                 values["id"] = self.other_id or values["id"]
                 payload = b"\0" + encode_payload(BY_NAME["HELLO"].reply, values)
-                found += encode_frame(frame._replace(payload=payload))
+                stream += encode_frame(frame._replace(payload=payload))
             else:
-                found += packet + b"\0"
-        return found
+                stream += packet + b"\0"
+        return stream
 
-    def done(self, frame: Frame) -> bytes:
+    def pretended_answer(self, frame: Frame) -> bytes:
         """Return an answer that says done, where nothing was: of the right length."""
         message = next(message for message in BY_NAME.values() if message.number == frame.number)
         least = sum(field.least_bytes for field in message.reply)
@@ -149,8 +149,8 @@ def talk(between: Between, session: Session, request: PendingRequest[Any] | None
     now_ms, end_ms = 0, LIMIT_MS
     while now_ms < end_ms:
         data = session.poll(now_ms)
-        said = between.hears(data, now_ms) if data else b""
-        session.receive(said, now_ms + 1)
+        replies = between.hears(data, now_ms) if data else b""
+        session.receive(replies, now_ms + 1)
         names += [event.name for event in session.events()]
         if (request is not None and request.outcome) or {"STOPPED", "LOST"} & set(names):
             break
@@ -162,8 +162,8 @@ def talk(between: Between, session: Session, request: PendingRequest[Any] | None
 def state_of(end: End) -> int:
     """Return what the robot does; anybody may ask."""
     end.passes(20, b"\0" + encode_frame(Frame(HELLO, 1, 0, bytes([MAJOR, *bytes(5), 1, 2, 3, 4]))))
-    said = end.passes(20, b"\0" + encode_frame(Frame(STATUS, 2, 0)))
-    frames = [decode_frame(packet) for packet in said.split(b"\0") if packet]
+    replies = end.passes(20, b"\0" + encode_frame(Frame(STATUS, 2, 0)))
+    frames = [decode_frame(packet) for packet in replies.split(b"\0") if packet]
     return next(frame.payload[1] for frame in frames if frame and frame.number == STATUS)
 
 
@@ -281,8 +281,8 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
 
 def test_a_stranger_with_an_id_of_its_own_is_not_believed() -> None:
     end, strange = End(), Stranger()
-    found = {one_stranger(end, strange, seed) for seed in range(1, TRIALS + 1)}
-    assert len(found) == 16  # each kind
+    outcomes = {one_stranger(end, strange, seed) for seed in range(1, TRIALS + 1)}
+    assert len(outcomes) == 16  # each kind
 
 
 def test_who_is_accepted_or_has_a_key_here_is_believed() -> None:

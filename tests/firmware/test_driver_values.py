@@ -50,7 +50,7 @@ def wired_as(driver: Driver) -> tuple[str, Wiring]:
     wirings = board.sensors if isinstance(driver, SensorDriver) else board.actuators
     devices = MANY.kit.sensors if isinstance(driver, SensorDriver) else MANY.kit.actuators
     name = f"D{DEVICES.index(driver)}"
-    return name, wirings[[each.name for each in devices].index(name)]
+    return name, wirings[[device.name for device in devices].index(name)]
 
 
 def names(drivers: list[Driver]) -> list[str]:
@@ -75,12 +75,12 @@ def test_whatever_drivers_there_are_each_is_wired_to_pins_that_are_simulated(mot
 @pytest.mark.parametrize("driver", SENSORS, ids=names(list(SENSORS)))
 def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
     name, wiring = wired_as(driver)
-    found = set()
+    readings = set()
     for is_much in (False, True):
         board = started(MANY, SHOWN[driver.used_by.split()[1]].format(name))
         FELT[driver.pins[-1].ability](board, wiring, is_much)
-        found.add(board.ran(START + 100).motors(START + 95))
-    assert len(found) == 2, "its reading is the same whatever it feels"
+        readings.add(board.ran(START + 100).motors(START + 95))
+    assert len(readings) == 2, "its reading is the same whatever it feels"
 
 
 @pytest.mark.sampled("driver")
@@ -94,7 +94,7 @@ def test_what_an_actuator_is_set_to_is_at_its_pins(driver: Driver) -> None:
         board.watch(pin)
     board.ran(START + 2 * SET_MS)
 
-    def seen(after_ms: float) -> list[tuple[str, list[int]]]:
+    def pin_states(after_ms: float) -> list[tuple[str, list[int]]]:
         begins = START + after_ms
         return [
             (
@@ -104,4 +104,6 @@ def test_what_an_actuator_is_set_to_is_at_its_pins(driver: Driver) -> None:
             for pin in pins
         ]
 
-    assert seen(SET_MS - 20) != seen(2 * SET_MS - 20), "its pins are the same whatever it is set to"
+    assert pin_states(SET_MS - 20) != pin_states(2 * SET_MS - 20), (
+        "its pins are the same whatever it is set to"
+    )

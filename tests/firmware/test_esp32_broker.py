@@ -387,16 +387,16 @@ def test_the_last_will_says_who_is_not_there(broker: Mosquitto, is_silent: bool)
 
 def test_what_strangers_say_of_robots_is_bounded(broker: Mosquitto) -> None:
     stranger, teacher = broker.connected(), broker.connected()
-    said = {
+    announcements = {
         "12345678": b"+a/b+#\x1b[2J", "xyz": b"+no id", "1234567": b"+short", "1234567g": b"+no",
         "aaaaaaaa": b"?", "bbbbbbbb": b"", "cccccccc": b"+" + b"x" * 17, "dddddddd": b"+\xff\xfe",
     }  # fmt: skip
-    topics = {f"{ROOT}/odd/{name}": data for name, data in said.items()}
+    topics = {f"{ROOT}/odd/{name}": data for name, data in announcements.items()}
     topics |= {f"{ROOT}/many/{k:08x}": b"+x" for k in range(300)}
     for topic, data in topics.items():
         stranger._client.publish(topic, data, retain=True)
     stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)  # now it has them all
-    assert {each.id for each in teacher.list_robots("odd")} == {"12345678", "dddddddd"}
+    assert {entry.id for entry in teacher.list_robots("odd")} == {"12345678", "dddddddd"}
     assert len(teacher.list_robots("many")) == 250
     for topic in topics:
         stranger._client.publish(topic, b"", retain=True)

@@ -63,9 +63,9 @@ class Room(NamedTuple):
 def school(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Room]:
     folder = tmp_path_factory.mktemp("tls")
     authority = Authority(folder)
-    found = Room(Mosquitto(folder, more=authority.rules(NAME)), authority)
-    yield found
-    found.broker.kill()
+    made_room = Room(Mosquitto(folder, more=authority.rules(NAME)), authority)
+    yield made_room
+    made_room.broker.kill()
 
 
 @pytest.fixture
@@ -119,7 +119,7 @@ def test_who_is_not_trusted_gets_nothing(
     assert broker_settings_of(robot, owner)[1] == state, "it stays while the robot tries again"
     if state != "NO_TLS":
         teacher = room.connected()
-        assert not [each for each in present(robot, teacher) if each.is_here]
+        assert not [presence for presence in present(robot, teacher) if presence.is_here]
         assert ended(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
         until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
 
@@ -243,7 +243,7 @@ def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Roo
         settings = room.settings()._replace(port=cuts.port)
         assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
         until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
-        assert cuts.left[:2] == [0, 0] and cuts.left[2] < 1500
+        assert cuts.bytes_left[:2] == [0, 0] and cuts.bytes_left[2] < 1500
         teacher = room.connected()
         far = remote(robot, keys)
         assert uploaded(robot, [(AtBroker(robot, teacher), far)], far) == "OK"

@@ -48,8 +48,8 @@ def test_what_it_asks_of_tls_is_what_mbedtls_has() -> None:
     """Debian's headers: in version 12 those of 2.28, as in ESP-IDF 4.4."""
     flags, file = flags_of("esp32dev", 2), STAND_INS / "signatures.cpp"
     command = ["g++", "-std=gnu++11", *flags, "-dM", "-E", str(file)]
-    found = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    assert "tiniscript_no_mbedtls" not in found and "MBEDTLS_SSL_MAX_HOST_NAME_LEN" in found
+    macros = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert "tiniscript_no_mbedtls" not in macros and "MBEDTLS_SSL_MAX_HOST_NAME_LEN" in macros
     assert complaints(file, *flags) == ""
 
 
@@ -72,8 +72,8 @@ def test_a_header_that_takes_the_port_away_is_refused(part: str, pin: int, tmp_p
     own.write_text(header.replace(part, f"{part[:-1]}{pin}"), encoding="utf-8")
     flags = (*flags_of("esp32c3", 2), "-DARDUINO_USB_MODE=1", f'-Dtiniscript_own="{own}"')
     file = BOARD / "esp32" / "serial.cpp"
-    said = complaints(file, *flags, "-DARDUINO_USB_CDC_ON_BOOT=1")
-    assert "error" in said and "Pins 18 and 19 are the USB of an ESP32-C3" in said
+    errors = complaints(file, *flags, "-DARDUINO_USB_CDC_ON_BOOT=1")
+    assert "error" in errors and "Pins 18 and 19 are the USB of an ESP32-C3" in errors
     assert complaints(file, *flags) == "", "a board with a USB chip has them free"
 
 
@@ -81,8 +81,8 @@ def test_a_header_that_takes_the_port_away_is_refused(part: str, pin: int, tmp_p
 def test_a_core_with_another_bluetooth_is_told() -> None:
     """Arduino's core 3.3 has NimBLE on an ESP32-C3, which hands on what was written late."""
     flags = (*flags_of("esp32c3", 3), "-DCONFIG_NIMBLE_ENABLED")
-    said = complaints(BOARD / "esp32" / "low_energy.cpp", *flags)
-    assert "error" in said and "wants the core esp32 2.0.17 to 3.2" in said.splitlines()[0]
+    errors = complaints(BOARD / "esp32" / "low_energy.cpp", *flags)
+    assert "error" in errors and "wants the core esp32 2.0.17 to 3.2" in errors.splitlines()[0]
 
 
 # Static RAM of the sketch without Espressif's libraries: those and their radios take about 45 K of
@@ -92,8 +92,8 @@ MOST_RAM = 48 * 1024
 
 def ram_of(isa: Chip, file: str) -> int:
     """Return the bytes of data and bss of a file."""
-    said = subprocess.run([isa.measurer, file], capture_output=True, text=True, check=True).stdout
-    _, data, bss = map(int, said.splitlines()[1].split()[:3])
+    output = subprocess.run([isa.measurer, file], capture_output=True, text=True, check=True).stdout
+    _, data, bss = map(int, output.splitlines()[1].split()[:3])
     return data + bss
 
 
@@ -153,13 +153,13 @@ def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_p
     subprocess.run([*isa.linker, "-r", *objects, "-o", whole], check=True)
     assert ram_of(isa, whole) <= MOST_RAM, "the radios need the rest"
     names = isa.measurer.replace("-size", "-nm")
-    said = subprocess.run([names, "-u", whole], capture_output=True, text=True, check=True).stdout
-    found = {line.split()[-1] for line in said.splitlines()}
-    serial = {name for name in found if "HardwareSerial" in name}
+    output = subprocess.run([names, "-u", whole], capture_output=True, text=True, check=True).stdout
+    symbols = {line.split()[-1] for line in output.splitlines()}
+    serial = {name for name in symbols if "HardwareSerial" in name}
     assert all(any(word in name for word in SERIAL) for name in serial)
-    radio = {name for name in found if RADIO.fullmatch(name)} | OF_CLASSES
-    left = {name for name in found - serial - radio if not LIBRARY.fullmatch(name)}
-    assert left == CORE | OF_VERSION[major] | {"setup", "loop", "esp_spp_disconnect"} & left
+    radio = {name for name in symbols if RADIO.fullmatch(name)} | OF_CLASSES
+    unknown = {name for name in symbols - serial - radio if not LIBRARY.fullmatch(name)}
+    assert unknown == CORE | OF_VERSION[major] | {"setup", "loop", "esp_spp_disconnect"} & unknown
 
 
 def test_every_file_says_for_which_chip_it_is() -> None:
@@ -185,11 +185,11 @@ def test_our_macros_come_after_the_headers_of_the_core() -> None:
 def test_nothing_waits() -> None:
     """But for the tasks of radios: what these make them wait for, they wait for alone."""
     waiting = {"delay", "delayMicroseconds", "pulseIn", "vTaskDelay", "new", "malloc", "flush"}
-    found = {}
+    waiting_calls = {}
     for path in sorted((BOARD / "esp32").glob("*.*")):
-        found[path.name] = waiting & set(re.findall(r"\w+", code_of(path)))
-    assert found.pop("radio.cpp") == {"vTaskDelay"}
-    assert not any(found.values()), found
+        waiting_calls[path.name] = waiting & set(re.findall(r"\w+", code_of(path)))
+    assert waiting_calls.pop("radio.cpp") == {"vTaskDelay"}
+    assert not any(waiting_calls.values()), waiting_calls
 
 
 def test_the_settings_need_no_registry_of_libraries() -> None:

@@ -147,8 +147,8 @@ def test_each_edge_counts_and_a_glitch_does_not() -> None:
     begun = robot.edges()
     robot.edges(*pulses(pins["left"], 10, LONGEST_US), *pulses(pins["right"], 10, 1))
     assert robot.edges() == begun
-    found = robot.edges(*pulses(pins["left"], 10, LONGEST_US + 1), *pulses(pins["right"], 3, 50))
-    assert [(b - a) % 2**16 for a, b in zip(begun, found, strict=True)] == [20, 6]
+    counts = robot.edges(*pulses(pins["left"], 10, LONGEST_US + 1), *pulses(pins["right"], 3, 50))
+    assert [(b - a) % 2**16 for a, b in zip(begun, counts, strict=True)] == [20, 6]
 
 
 def test_two_channels_count_back() -> None:
@@ -182,8 +182,8 @@ def test_pins_that_only_read_count(pins: dict[str, int]) -> None:
     )
     robot, _ = counting(profile)
     begun = robot.edges()
-    found = robot.edges(*pulses(pins["left"], 4, 50), *pulses(pins["right"], 2, 50))
-    assert [(b - a) % 2**16 for a, b in zip(begun, found, strict=True)] == [8, 4]
+    counts = robot.edges(*pulses(pins["left"], 4, 50), *pulses(pins["right"], 2, 50))
+    assert [(b - a) % 2**16 for a, b in zip(begun, counts, strict=True)] == [8, 4]
 
 
 @KINDS

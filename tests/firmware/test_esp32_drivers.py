@@ -13,7 +13,7 @@ from tests.support.esp32_wifi import owned, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import AWAY, Ends, booted, ended, uploaded
-from tests.support.robot_on_host import happened
+from tests.support.robot_on_host import actions_of
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import AUTHORITY_MS, LISTEN_MS
 from tiniscript.link.requests import OK
@@ -42,7 +42,7 @@ def test_an_open_page_that_does_nothing_gives_way(is_owned: bool) -> None:
     assert uploaded(robot, ends, other) == "OTHER_DRIVER", "it may be about to send the next one"
     talk(robot, ends, 60_000)
     assert uploaded(robot, ends, other) == "OK"
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
     assert uploaded(robot, ends, page, SHORT) == "OTHER_DRIVER"
     other.stop(robot.now_ms)
     talk(robot, ends, AUTHORITY_MS + 300)
@@ -62,7 +62,7 @@ def test_whose_program_runs_keeps_the_wheel_while_he_is_heard(
     for _ in range(5):
         talk(robot, ends, 5000)
         assert uploaded(robot, ends, other) == "OTHER_DRIVER"
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
     page.stop(robot.now_ms)
     talk(robot, ends, AUTHORITY_MS + 300)
     assert uploaded(robot, ends, other) == "OK"
@@ -92,7 +92,7 @@ def test_what_runs_alone_is_anybodys_when_its_client_is_not_heard(
     talk(robot, only, 2000)
     assert {event.name for event in other.events()} == {"SHOW"}
     assert uploaded(robot, only, other) == "OK"
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
 
 
 def test_a_page_gives_way_to_nobody_without_a_key() -> None:
@@ -103,9 +103,9 @@ def test_a_page_gives_way_to_nobody_without_a_key() -> None:
     talk(robot, [(None, page)], 5000)
     assert uploaded(robot, [(None, page), (end, stranger)], stranger) == "NOT_OWNER"
     end.leave()
-    typed.said = b"SI|F(60, 80)\n"
+    typed.to_send = b"SI|F(60, 80)\n"
     talk(robot, [(None, page), (LowEnergy(robot), typed)], 1500)
-    assert "MOTORS 80 80" not in happened(robot)
+    assert "MOTORS 80 80" not in actions_of(robot)
 
 
 UPLOAD = "an upload"  # one, of which little arrives in each turn
@@ -174,6 +174,6 @@ def test_behind_the_button_anybody_drives(
     for _ in range(1 + (before is runs)):  # the first press is a stop
         talk(robot, ends, 100, flags=1)
         talk(robot, ends, 300, flags=2)
-    assert happened(robot)[-1] == "MOTORS 80 80", "the button has started it"
+    assert actions_of(robot)[-1] == "MOTORS 80 80", "the button has started it"
     talk(robot, ends, AUTHORITY_MS + 300 if has_passed else 1)
     assert uploaded(robot, ends, other) == "OK"

@@ -50,7 +50,7 @@ ASKS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
 }
 LINES = (b"SI|F(0.1, 80);SHOW(3)\n", b"F(0.1, 30)\n", b"FOO(1)\n", b"HELP\n", b"SI|LOOP(2)\n",
          b"SI|F(1", b"S\n", b"PING|CHECK_CONNECTION\n", b"SB|B(0.2, 40)\n")  # fmt: skip
-# What is told of the program in memory, which none has saved.
+# What is said about the program in memory, which none has saved.
 OF_MEMORY = ("program", "length", "slot", "saved")
 MAKES: list[Make | None] = [None, *TRANSPORTS]  # None: the cable
 NETWORK = 3  # which has several places
@@ -138,19 +138,19 @@ def a_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
         scene.talk(1, rng.choice((1, 2)))
         scene.talk(60)
     elif isinstance(guest.who, Bytes):
-        guest.who.said = rng.choice((rng.choice(LINES), rng.choice(PIECES), bytes(STOP_BYTES)))
+        guest.who.to_send = rng.choice((rng.choice(LINES), rng.choice(PIECES), bytes(STOP_BYTES)))
         scene.talk(rng.choice((2, 30, 300)))
     elif isinstance(guest.who, Session):
         but = {"identify"} if is_soon else set()
         but |= {"a claim"} if guest.what == "stranger" else set()
-        ASKS[rng.choice([each for each in ASKS if each not in but])](guest.who)
+        ASKS[rng.choice([ask for ask in ASKS if ask not in but])](guest.who)
         scene.talk(rng.choice((1, 5, 30, 300)))
 
 
-def seen(scene: Scene, first: int, rng: random.Random) -> list[object]:
+def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
     """Let somebody come to a place, and mostly another one, too; return all that can be seen."""
     robot = scene.robot
-    found: list[object] = []
+    states: list[object] = []
     robot.did.clear()
     scene.nonce = 100
     guests: list[Guest] = []
@@ -162,21 +162,21 @@ def seen(scene: Scene, first: int, rng: random.Random) -> list[object]:
         begun_ms, who = robot.now_ms, rng.choice(guests).who
         name, request = "", None
         if isinstance(who, Session):
-            name = rng.choice([each for each in ASKS if each != "a claim"])
+            name = rng.choice([question for question in ASKS if question != "a claim"])
             request = ASKS[name](who)
         elif isinstance(who, Bytes):
-            who.said = rng.choice(LINES)
+            who.to_send = rng.choice(LINES)
         scene.talk(rng.choice((100, 400, 1500)))
-        found.append((name, answer_without_counts(request, *OF_MEMORY)))
+        states.append((name, answer_without_counts(request, *OF_MEMORY)))
         for _, client, *_ in guests:
             if isinstance(client, Session):
-                found.append([without_counts(event) for event in client.events()])
+                states.append([without_counts(event) for event in client.events()])
         rows = (line.split(" ", 1) for line in robot.did)
-        found.append([(int(ms) - begun_ms, what) for ms, what in rows])
+        states.append([(int(ms) - begun_ms, what) for ms, what in rows])
         robot.did.clear()
     scene.talk(1200)  # an answer in text waits behind a frame that told nobody of the stop
-    said = [client.heard for _, client, *_ in guests if isinstance(client, Bytes)]
-    return [*found, [sorted(re.findall(rb"// [^\r\n]*\r\n", each)) for each in said]]
+    texts = [client.heard for _, client, *_ in guests if isinstance(client, Bytes)]
+    return [*states, [sorted(re.findall(rb"// [^\r\n]*\r\n", data)) for data in texts]]
 
 
 def check(seed: int) -> str:
@@ -191,12 +191,14 @@ def check(seed: int) -> str:
         scene.leave(scene.guests[0])
     both = [scene, Scene(scene.robot.kept())]
     drawn_alike, place = rng.random(), rng.choice(scene.places)
-    found = []
-    for each in both:
-        each.robot.wait(5, bytes(STOP_BYTES))
-        each.robot.wait(wait_ms)
-        found.append(seen(each, place, random.Random(drawn_alike)))
-    assert found[0] == found[1], f"{did}\n{wait_ms}\n{first_difference(*found)}"
+    states_of_both = []
+    for one_scene in both:
+        one_scene.robot.wait(5, bytes(STOP_BYTES))
+        one_scene.robot.wait(wait_ms)
+        states_of_both.append(observe(one_scene, place, random.Random(drawn_alike)))
+    assert states_of_both[0] == states_of_both[1], (
+        f"{did}\n{wait_ms}\n{first_difference(*states_of_both)}"
+    )
     return "at once" if wait_ms < OVER_MS else "later"
 
 

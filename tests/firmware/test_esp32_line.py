@@ -11,7 +11,7 @@ from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import session, talk
 from tests.support.images import image_of
 from tests.support.robot_on_esp32 import Ends, booted, ended
-from tests.support.robot_on_host import happened
+from tests.support.robot_on_host import actions_of
 from tiniscript.link.messages import STOP_ZEROS
 
 NAMES = ["tinibot32", "tinibotc3"]
@@ -37,19 +37,19 @@ def framing(robot: Esp32Robot) -> int:
 @pytest.mark.parametrize("name", NAMES)
 def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(name: str) -> None:
     robot = typed(booted(name))
-    assert happened(robot) == [FORWARD]
+    assert actions_of(robot) == [FORWARD]
     robot.hold_line()
     robot.wait(10)
-    assert happened(robot) == [FORWARD, OFF]
+    assert actions_of(robot) == [FORWARD, OFF]
     robot.wait(3000)
     for _ in range(3):
         robot.hold_line(False)
         robot.wait(1200)
         typed(robot, b"SI|F(60, 80)\r\n")
-        assert happened(robot)[-1] == FORWARD, "a line that is high again has a sender"
+        assert actions_of(robot)[-1] == FORWARD, "a line that is high again has a sender"
         robot.hold_line()
         robot.wait(10)
-        assert happened(robot)[-1] == OFF
+        assert actions_of(robot)[-1] == OFF
     robot.hold_line(False)
     robot.wait(1200)
     assert framing(robot) >= 4
@@ -67,14 +67,14 @@ def test_a_line_that_stays_low_has_no_sender() -> None:
     robot.wait(1500)
     robot.push()
     robot.wait(3000)
-    assert happened(robot)[-1] == FORWARD
+    assert actions_of(robot)[-1] == FORWARD
     robot.push()
     dead = Esp32Robot(kept=robot.kept())
     dead.hold_line()
     dead.wait(500)
     dead.push()
     dead.wait(3000)
-    assert happened(dead)[-1] == FORWARD, "nor has one that was never high"
+    assert actions_of(dead)[-1] == FORWARD, "nor has one that was never high"
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -87,7 +87,7 @@ def test_a_short_disturbance_stops_no_robot(name: str) -> None:
         robot.wait(50)
         robot.step(b"// \r\n")  # what came before does not count any more
     robot.wait(1000)
-    assert happened(robot) == [FORWARD]
+    assert actions_of(robot) == [FORWARD]
 
 
 def test_each_byte_with_a_framing_error_is_a_zero() -> None:
@@ -98,7 +98,7 @@ def test_each_byte_with_a_framing_error_is_a_zero() -> None:
         for _ in range(spoiled):
             robot.spoil_byte()
         robot.wait(FIFO_MS + 2, b"\xff")
-        assert happened(robot)[-1] == (FORWARD if spoiled == 3 else OFF)
+        assert actions_of(robot)[-1] == (FORWARD if spoiled == 3 else OFF)
     assert framing(robot) == 7
 
 
@@ -107,12 +107,12 @@ def test_each_byte_with_a_framing_error_counts_as_soon_as_the_first_one(pause_ms
     """Nothing follows it, and there were others before."""
     robot = typed(booted())
     for _ in range(3):
-        assert happened(robot)[-1] == FORWARD
+        assert actions_of(robot)[-1] == FORWARD
         for _ in range(STOP_ZEROS):
             robot.wait(pause_ms)
             robot.spoil_byte()
         robot.wait(FIFO_MS + 2)
-        assert happened(robot)[-1] == OFF
+        assert actions_of(robot)[-1] == OFF
         robot.wait(1200)
         typed(robot, b"SI|F(60, 80)\r\n")
 
@@ -127,9 +127,9 @@ def test_a_line_with_a_framing_error_in_it_does_nothing(before: bytes) -> None:
         robot.wait(late_ms)
         robot.step(b"F(60, 80)\r\n"[len(before) :])
         robot.wait(200)
-        assert happened(robot) == [], (before, late_ms)
+        assert actions_of(robot) == [], (before, late_ms)
         robot.wait(1200)
-        assert happened(typed(robot)) == [FORWARD], "the next line is another one"
+        assert actions_of(typed(robot)) == [FORWARD], "the next line is another one"
 
 
 def test_bytes_after_a_framing_error_are_no_line_that_is_held() -> None:
@@ -138,4 +138,4 @@ def test_bytes_after_a_framing_error_are_no_line_that_is_held() -> None:
     for _ in range(100):
         robot.step(b"\x01\x02\x04\x08")
     robot.wait(1000)
-    assert happened(robot) == [FORWARD]
+    assert actions_of(robot) == [FORWARD]

@@ -24,7 +24,7 @@ from tests.support.esp32_wifi import far_owner, owned, remote, remote_with_wrong
 from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import AWAY, TRANSPORTS, Ends, Make, ended, uploaded
-from tests.support.robot_on_host import happened
+from tests.support.robot_on_host import actions_of
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.typed_stop import is_typed_stop, stops_at_once
@@ -147,9 +147,9 @@ def test_what_two_clients_say_is_no_stop_of_both(make: Make, pause_ms: int) -> N
             talk(robot, [*ends, (other := make(robot), Bytes(part))], 20)
             other.leave()
             talk(robot, ends, 5 + pause_ms)
-        assert happened(robot)[-1] == "MOTORS 80 80", parts
+        assert actions_of(robot)[-1] == "MOTORS 80 80", parts
     talk(robot, [*ends, (make(robot), Bytes(b"\0" + b"".join(CUT_STOPS[-1]) + b"\0"))], 100)
-    assert happened(robot)[-1] == "MOTORS 0 0", "of one it is a stop"
+    assert actions_of(robot)[-1] == "MOTORS 0 0", "of one it is a stop"
 
 
 # -- what is sent to them -----------------------------------------------------------------------
@@ -246,10 +246,12 @@ def test_a_silent_phone_keeps_nobody_off_bluetooth() -> None:
     assert uploaded(robot, ends, owner) == "OK"
     phone.send(bytes(STOP_BYTES))
     talk(robot, ends, 3 * PLACE_MS)
-    assert happened(robot)[-1] == "MOTORS 80 80", "its session lives, and nothing of the phone does"
+    assert actions_of(robot)[-1] == "MOTORS 80 80", (
+        "its session lives, and nothing of the phone does"
+    )
     owner.stop(robot.now_ms)
     talk(robot, ends, 20)
-    assert happened(robot)[-1] == "MOTORS 0 0"
+    assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 @drawn
@@ -264,7 +266,7 @@ def test_whoever_comes_too_early_costs_nobody_anything() -> None:
         assert other.has_ended and other.taken() == b""
         other.send(b"S\n" + bytes(STOP_BYTES))
         talk(robot, ends, 100)
-    assert not end.has_ended and happened(robot)[-1] == "MOTORS 80 80"
+    assert not end.has_ended and actions_of(robot)[-1] == "MOTORS 80 80"
     end.leave()
     talk(robot, [], 5)
     next_client = remote(robot, keys, 3)
@@ -287,10 +289,10 @@ def test_who_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:
         refused.leave()
         assert uploaded(robot, [(end, owner)], owner) == "OK"
         talk(robot, [(end, owner)], 1500)
-        assert happened(robot)[-1] == "MOTORS 80 80"
+        assert actions_of(robot)[-1] == "MOTORS 80 80"
         end.leave()
         talk(robot, [], 5)
-        assert happened(robot)[-1] == "MOTORS 0 0"
+        assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 def has_client(robot: Esp32Robot) -> bool:
@@ -308,7 +310,7 @@ def test_a_silent_phone_keeps_nobody_off_the_serial_port() -> None:
         talk(robot, [(phone, first)], 5000)
         SerialPort(robot)
         assert has_client(robot), "who speaks stays"
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
     first.stop(robot.now_ms)
     talk(robot, [(phone, first)], 20)
     talk(robot, [(phone, Bytes())], PLACE_MS - 1000)
@@ -323,4 +325,4 @@ def test_a_silent_phone_keeps_nobody_off_the_serial_port() -> None:
     ends: Ends = [(SerialPort(robot), owner)]
     assert uploaded(robot, ends, owner) == "OK"
     talk(robot, ends, 2 * PLACE_MS)
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"

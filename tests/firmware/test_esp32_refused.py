@@ -30,8 +30,8 @@ class StrictBroker:
 
     def __init__(self, granted: bytes = b"\0\0", early: bytes = b"") -> None:
         self.granted, self.early = granted, early
-        self.said: list[bytes] = []  # what was published
-        self.asked = 0  # how often somebody has subscribed
+        self.published: list[bytes] = []  # what was published
+        self.asked = 0  # how many times somebody has subscribed
         self.listener = socket.create_server(("127.0.0.1", 0))
         threading.Thread(target=self._serve, daemon=True).start()
 
@@ -71,7 +71,7 @@ class StrictBroker:
         elif kind == PING:
             end.sendall(b"\xd0\0")
         elif kind == PUBLISH:
-            self.said.append(body)
+            self.published.append(body)
 
 
 @pytest.fixture
@@ -98,10 +98,10 @@ def test_a_broker_that_refuses_what_the_robot_wants_to_hear_is_not_ready(
     robot, owner = using(broker := StrictBroker(granted), brokers)
     until(robot, lambda: broker.asked >= 3)
     assert broker_settings_of(robot, owner)[1] == "REFUSED", "and it is tried again"
-    assert broker.said == [], "nobody is told that the robot is there"
+    assert broker.published == [], "nobody is told that the robot is there"
     broker.granted = b"\0\0"
     until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
-    until(robot, lambda: len(broker.said) == 1)
+    until(robot, lambda: len(broker.published) == 1)
 
 
 @pytest.mark.sampled("granted")
@@ -110,7 +110,7 @@ def test_an_answer_to_something_else_is_none(granted: bytes, brokers: list[Stric
     robot, owner = using(broker := StrictBroker(granted), brokers)
     until(robot, lambda: broker.asked >= 2)
     assert broker_settings_of(robot, owner)[1] == "SEARCHING"
-    assert broker.said == []
+    assert broker.published == []
 
 
 def test_a_stop_before_the_answer_is_a_stop(brokers: list[StrictBroker]) -> None:

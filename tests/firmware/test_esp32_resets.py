@@ -69,4 +69,6 @@ def test_two_chips_with_the_same_noise_are_two_robots() -> None:
             restarted.wait(300)
             assert hello(restarted).id == hello_reply.id, "it is made once"
     assert len(found_ids) == 16
-    assert len({found & 0xFFFF for found in found_ids}) == 8, "what names show is that of one maker"
+    assert len({robot_id & 0xFFFF for robot_id in found_ids}) == 8, (
+        "what names show is that of one maker"
+    )

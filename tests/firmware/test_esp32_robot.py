@@ -9,7 +9,7 @@ import pytest
 
 from tests.machines.esp32 import BROWN_OUT, EMPTY, EXTERNAL, TASK_WATCHDOG, Esp32Robot, Kept
 from tests.support.edited_robots import TEXTS
-from tests.support.robot_on_host import computer, happened, outcome, pushed, send, stored
+from tests.support.robot_on_host import actions_of, computer, outcome, pushed, send, stored
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.frames import Frame, encode_frame
@@ -129,7 +129,7 @@ def test_a_program_drives_and_sounds_and_a_panic_turns_the_motors_off(
     assert buzzer is not None
     send(robot, session, "SI|F(1, 80);B(0.5, 100)")
     robot.talk(session, 1800)
-    assert happened(robot)[:4] == ["MOTORS 80 80", "MOTORS -100 -100", "MOTORS 0 0", "TONE 1047"]
+    assert actions_of(robot)[:4] == ["MOTORS 80 80", "MOTORS -100 -100", "MOTORS 0 0", "TONE 1047"]
     first, second = (int(line.split()[0]) for line in robot.did[:2])
     assert second - first == 1000
     assert [event.name for event in session.events()] == ["DONE"]
@@ -137,14 +137,14 @@ def test_a_program_drives_and_sounds_and_a_panic_turns_the_motors_off(
         robot.did.clear()
         send(robot, session, f"SI|BEEP(0.2, {hertz});F(1, 50)")
         robot.talk(session, 100)
-        assert f"TONE {hertz}" in happened(robot)
+        assert f"TONE {hertz}" in actions_of(robot)
         assert robot.output(buzzer) in (127, 128), hertz
         robot.talk(session, 200)
-        assert happened(robot)[-1] == "TONE 0"
+        assert actions_of(robot)[-1] == "TONE 0"
         assert robot.output(buzzer) == 0, hertz
     send(robot, session, AWAY)
     robot.wait(50)
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
     robot.stick_ledc()
     robot.panic()  # before it prints or dumps anything, by registers alone
     pins = robot.robot.board.motors.pins.values()
@@ -154,12 +154,12 @@ def test_a_program_drives_and_sounds_and_a_panic_turns_the_motors_off(
 def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
     robot, session = switched_on(Esp32Robot()), computer()
     send(robot, session, "SI|F(0.05, 80)")
-    while "TONE 1047" not in happened(robot):
+    while "TONE 1047" not in actions_of(robot):
         robot.talk(session, 1)
     robot.did.clear()
     send(robot, session, "SI|BEEP(0.2, 440);W(1)")
     robot.talk(session, 900)
-    assert [what for what in happened(robot) if "TONE" in what][-2:] == ["TONE 440", "TONE 0"]
+    assert [what for what in actions_of(robot) if "TONE" in what][-2:] == ["TONE 440", "TONE 0"]
 
 
 def test_a_window_of_large_frames_waits_for_a_main_loop_that_writes() -> None:
@@ -199,10 +199,10 @@ def test_a_stop_needs_nothing_of_ledc(name: str) -> None:
     session = computer()
     send(robot, session, AWAY)
     robot.talk(session, 100)
-    assert happened(robot) == ["MOTORS 80 80"]
+    assert actions_of(robot) == ["MOTORS 80 80"]
     robot.stick_ledc()
     robot.step(bytes(4))  # a run of zeros: the link's emergency stop
-    assert happened(robot)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert actions_of(robot)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
     assert robot.is_latched
     pins = robot.robot.board.motors.pins.values()
     assert [robot.output(pin) for pin in pins] == [0] * len(pins)
@@ -220,7 +220,7 @@ def test_a_bluetooth_module_that_nobody_is_connected_to_ends_an_attached_run() -
     robot.talk(session, 100)
     robot.digital(state, False)
     robot.talk(session, 500)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     assert [event.cause for event in session.events() if event.name == "STOPPED"] == [4]
 
 
@@ -231,13 +231,13 @@ def test_other_motors(motors: str) -> None:
     robot = wired(motors, MORE.replace("pin = 13", "pin = 14"))
     run(robot, "SI|M(-40, 60);W(0.1);F(1, 80)")
     robot.wait(300)
-    assert [each for each in happened(robot) if each.startswith("MOTORS")] == [
+    assert [line for line in actions_of(robot) if line.startswith("MOTORS")] == [
         "MOTORS -40 60", "MOTORS 80 80",
     ]  # fmt: skip
     robot.did.clear()
     robot.step(bytes(4))
     robot.wait(40)
-    assert "MOTORS 0 0" in happened(robot)
+    assert "MOTORS 0 0" in actions_of(robot)
     if motors == SERVOS:  # neutral pulses for a second, then none
         assert robot.output(25) > 0
         robot.wait(1100)
@@ -254,7 +254,7 @@ def test_actuators_and_what_a_stop_makes_of_them() -> None:
     assert (robot.output(13), robot.output(16), robot.output(17)) == (0, 0, 255)
     run(robot, "SI|ARM(90);FAN(50);LED(TRUE);F(60, 80)")
     robot.wait(100)
-    assert "SERVO 0 1500" in happened(robot)
+    assert "SERVO 0 1500" in actions_of(robot)
     assert (robot.output(16), robot.output(17)) == (128, 0)
     robot.step(bytes(4))
     robot.wait(10)
@@ -287,7 +287,7 @@ def test_an_echo_that_comes_while_a_page_is_erased_is_asked_for_again() -> None:
     robot.talk(session, 1000)
     shown = [event.value for event in session.events() if event.name == "SHOW"]
     assert len(shown) > 10
-    assert all(49_000 < each < 51_000 for each in shown), shown
+    assert all(49_000 < value < 51_000 for value in shown), shown
 
 
 def test_nvs_is_written_only_while_the_motors_stand() -> None:
@@ -299,7 +299,7 @@ def test_nvs_is_written_only_while_the_motors_stand() -> None:
     assert robot.kept().writes == before
     session.stop(robot.now_ms)
     robot.talk(session, 100)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     stored(robot, session)
     assert 0 < robot.kept().writes - before <= 9
 
@@ -316,7 +316,7 @@ def test_a_full_nvs_is_said_and_the_program_before_stays(room: int) -> None:
     robot.fill_nvs(room)
     send(robot, session, "SB|B(0.5, 60)")
     robot.talk(session, 1000)
-    assert robot.done(session, session.status()).saved == 1  # in memory alone
+    assert robot.complete(session, session.status()).saved == 1  # in memory alone
     assert robot.kept().entries.items() >= kept.entries.items()
     restarted = switched_on(Esp32Robot(kept=robot.kept()))
     assert restarted.is_lit
@@ -330,7 +330,7 @@ def driving(text: str = AWAY) -> Esp32Robot:
     robot, session = switched_on(Esp32Robot()), computer()
     send(robot, session, text)
     robot.talk(session, 100)
-    assert happened(robot) == ["MOTORS 80 80"]
+    assert actions_of(robot) == ["MOTORS 80 80"]
     robot.did.clear()
     return robot
 
@@ -342,11 +342,11 @@ def test_a_main_loop_that_hangs_is_stopped_and_restarted() -> None:
     assert robot.did == []
     robot.hang(1100)
     robot.step(ticks=0)
-    assert happened(robot) == ["MOTORS 0 0", "RESTART"]
+    assert actions_of(robot) == ["MOTORS 0 0", "RESTART"]
     restarted = Esp32Robot(kept=robot.kept(), reset=TASK_WATCHDOG)
     restarted.wait(200)
     session = computer(2)
-    values = restarted.done(session, session.status())
+    values = restarted.complete(session, session.status())
     assert values.fault == STALL
     assert values.fault_program != 0
     assert restarted.is_latched
@@ -370,21 +370,21 @@ def test_a_short_stall_is_a_fault_and_no_restart() -> None:
     robot = driving()
     robot.hang(150)
     robot.wait(20)
-    assert happened(robot)[0] == "MOTORS 0 0"
-    assert "RESTART" not in happened(robot)
+    assert actions_of(robot)[0] == "MOTORS 0 0"
+    assert "RESTART" not in actions_of(robot)
     restarted = Esp32Robot(kept=robot.kept(), reset=TASK_WATCHDOG)
     restarted.wait(200)
     assert restarted.is_latched
 
 
 @pytest.mark.parametrize(
-    ("reset", "said"),
+    ("reset", "number"),
     [(1, 1), (EXTERNAL, 2), (BROWN_OUT, 3), (TASK_WATCHDOG, 4), (5, 4), (4, 4), (3, 0)],
 )
-def test_the_cause_of_a_reset(reset: int, said: int) -> None:
+def test_the_cause_of_a_reset(reset: int, number: int) -> None:
     robot, session = Esp32Robot(reset=reset), computer()
     robot.wait(200)
-    assert robot.done(session, session.hello()).reset == said
+    assert robot.complete(session, session.hello()).reset == number
 
 
 @pytest.mark.parametrize("take", [lambda kept: EMPTY, lambda kept: kept._replace(noinit=b"")])
@@ -393,4 +393,4 @@ def test_what_a_reset_leaves_alone_may_be_anything(take: Callable[[Kept], Kept])
     robot.hang(1200)
     restarted = Esp32Robot(kept=take(robot.kept()), reset=1)
     restarted.wait(300)
-    assert happened(restarted) == [] and restarted.is_latched
+    assert actions_of(restarted) == [] and restarted.is_latched

@@ -88,9 +88,9 @@ def states(robot: Esp32Robot, owner: Session, network: wifi.Network) -> tuple[se
     ends: Ends = [(None, owner)]
     assert ended(robot, ends, owner.join(network)) == "OK"
     talk(robot, ends, 2)
-    seen = {state(robot, owner)[1] for _ in range(20)}
+    states_seen = {state(robot, owner)[1] for _ in range(20)}
     asked = radios(robot)
-    return seen, (state(robot, owner), asked.network, asked.password, asked.is_access_point)
+    return states_seen, (state(robot, owner), asked.network, asked.password, asked.is_access_point)
 
 
 @pytest.mark.sampled("second")
@@ -104,9 +104,9 @@ def test_a_second_network_is_joined_as_a_first_one(first: str, second: str) -> N
     ENDS[first](robot, SCHOOL)
     states(robot, owner, SCHOOL)
     ENDS[second](robot, SECOND)
-    seen, found = states(robot, owner, SECOND)
-    assert found == fresh
-    assert ("REFUSED" in seen) == second.startswith("refused"), seen
+    states_seen, state = states(robot, owner, SECOND)
+    assert state == fresh
+    assert ("REFUSED" in states_seen) == second.startswith("refused"), states_seen
 
 
 @pytest.mark.sampled("reason")
@@ -115,8 +115,8 @@ def test_who_is_let_in_at_last_was_not_refused(reason: int) -> None:
     """As where the signal was weak: the robot has joined, and waits for its address."""
     robot, owner = owned(Keys())
     sent_away(reason, robot, SCHOOL)
-    seen, _ = states(robot, owner, SCHOOL)
-    assert "REFUSED" in seen
+    states_seen, _ = states(robot, owner, SCHOOL)
+    assert "REFUSED" in states_seen
     let_in_late(robot, SCHOOL)
     robot.wait(TRY_MS + 1000)
     assert state(robot, owner) == ("STATION", "SEARCHING")
@@ -202,8 +202,8 @@ def test_damaged_settings_are_none(key: bytes) -> None:
         pending_request = owner.wifi() if key == WIFI_KEY else owner.broker()
         assert ended(restarted, ends, pending_request) == "OK" and pending_request.outcome
         values = pending_request.outcome.values
-        found = wifi.MODES[values.mode], wifi.STATES[values.state], values.network
-        assert found == ("OFF", "OFF", b""), entry
+        settings = wifi.MODES[values.mode], wifi.STATES[values.state], values.network
+        assert settings == ("OFF", "OFF", b""), entry
         assert (radios(restarted).joins == 0) == (key == WIFI_KEY)
         assert ended(restarted, ends, owner.join(SCHOOL)) == "OK"
         assert ended(restarted, ends, owner.use_broker(BROKER)) == "OK"
@@ -248,7 +248,7 @@ class CutBroker:
         self.listening.setblocking(False)
         self.port = self.listening.getsockname()[1]
         self.client: socket.socket | None = None
-        self.said = self.cuts = 0
+        self.sent_count = self.cuts = 0
         self.heard = b""
         self.cut_after: int | None = None
         self.rest = b""
@@ -263,7 +263,7 @@ class CutBroker:
             client.setblocking(False)
             client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             self.part()
-            self.client, self.heard, self.said = client, b"", 0
+            self.client, self.heard, self.sent_count = client, b"", 0
         if self.client is None:
             return
         try:
@@ -290,9 +290,9 @@ class CutBroker:
         data = answers.get(kind, b"")
         if self.client is None or not data:
             return
-        if self.cut_after is not None and self.said + len(data) >= self.cut_after:
+        if self.cut_after is not None and self.sent_count + len(data) >= self.cut_after:
             with suppress(OSError):
-                self.client.send(data[: self.cut_after - self.said] + self.rest)
+                self.client.send(data[: self.cut_after - self.sent_count] + self.rest)
             self.cuts += 1
             self.cut_after = None
             if not self.rest:
@@ -300,7 +300,7 @@ class CutBroker:
             return
         with suppress(OSError):
             self.client.send(data)
-        self.said += len(data)
+        self.sent_count += len(data)
 
     def part(self) -> None:
         if self.client is not None:

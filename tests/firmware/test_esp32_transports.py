@@ -21,7 +21,7 @@ from tests.support.esp32_radio import (
 from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import AWAY, RADIOS, Ends, Make, booted, claimed, ended, uploaded
-from tests.support.robot_on_host import happened
+from tests.support.robot_on_host import actions_of
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, DEAD_MAN_MS, STOP_BYTES
 from tiniscript.link.session import Session
@@ -35,7 +35,7 @@ def test_a_program_over_each_radio(make: Make, major: int) -> None:
     ends: Ends = [(make(robot), client)]
     assert uploaded(robot, ends, client, "SI|SHOW(5);F(0.5, 80)") == "OK"
     talk(robot, ends, 700)
-    assert happened(robot)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert actions_of(robot)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
     assert [event.name for event in client.events()] == ["SHOW", "DONE"]
 
 
@@ -74,12 +74,12 @@ def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
     for refused in (other.live(image_of("F(1, 10)").code), other.start(), other.name(b"mine"),
                     other.upload(image_of(AWAY)), other.undo(), other.trim()):  # fmt: skip
         assert ended(robot, ends, refused) == "OTHER_DRIVER"
-    assert happened(robot) == ["MOTORS 80 80"]
+    assert actions_of(robot) == ["MOTORS 80 80"]
     talk(robot, ends, 1500)
-    assert happened(robot) == ["MOTORS 80 80"], "the driver's session lives beside the other one"
+    assert actions_of(robot) == ["MOTORS 80 80"], "the driver's session lives beside the other one"
     end.send(bytes(STOP_BYTES // 2))
     robot.wait(3)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     talk(robot, ends, 200)
     assert [event.name for event in driver.events()] == ["STOPPED"]
     assert ended(robot, ends, other.start()) == "OTHER_DRIVER"
@@ -160,7 +160,7 @@ def test_the_next_one_drives_when_the_first_is_silent() -> None:
     talk(robot, only, AUTHORITY_MS + 50)
     assert uploaded(robot, only, second) == "OK"
     talk(robot, only, 1500)
-    assert happened(robot)[-1] == "MOTORS 80 80", (
+    assert actions_of(robot)[-1] == "MOTORS 80 80", (
         "the dead-man timer of the first ends nothing of his"
     )
     assert uploaded(robot, ends, first) == "OTHER_DRIVER"
@@ -186,13 +186,13 @@ def test_who_leaves_ends_his_own_run_and_drives_no_more(make: Make) -> None:
     assert uploaded(robot, ends, driver) == "OK"
     end.leave()
     talk(robot, ends[1:], 5)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     assert uploaded(robot, ends[1:], other) == "OK"
     looks, end = session(3, robot), make(robot)
     assert ended(robot, [(end, looks), *ends[1:]], looks.ping()) == "OK"
     end.leave()
     talk(robot, ends[1:], 300)
-    assert happened(robot)[-1] == "MOTORS 80 80", "nothing of others"
+    assert actions_of(robot)[-1] == "MOTORS 80 80", "nothing of others"
 
 
 def test_who_comes_at_once_when_another_one_leaves_is_not_taken_for_that_one() -> None:
@@ -204,7 +204,7 @@ def test_who_comes_at_once_when_another_one_leaves_is_not_taken_for_that_one() -
     end.leave()
     ends: Ends = [(SerialPort(robot), other)]
     talk(robot, ends, 5)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     assert uploaded(robot, ends, other) == "OK"
 
 
@@ -260,7 +260,7 @@ def test_slow_notifications_delay_nobody_else() -> None:
     assert ended(robot, ends, pending_request, 20_000) == "OK"
     slow.stop(robot.now_ms)
     talk(robot, ends, 20)
-    assert happened(robot)[-1] == "MOTORS 0 0", "a stop needs no notification"
+    assert actions_of(robot)[-1] == "MOTORS 0 0", "a stop needs no notification"
 
 
 def test_what_a_congested_stack_does_not_take_comes_later() -> None:
@@ -296,10 +296,10 @@ def test_a_client_that_takes_nothing_stops_nobody() -> None:
     talk(
         robot, [(None, driver), (end, Bytes(b"\0" + encode_frame(Frame(3, 1, 0, b"")) * 40))], 3000
     )
-    assert happened(robot) == ["MOTORS 80 80"]
+    assert actions_of(robot) == ["MOTORS 80 80"]
     end.send(bytes(STOP_BYTES))
     talk(robot, ends[:1], 20)
-    assert happened(robot)[-1] == "MOTORS 0 0"
+    assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 def test_whoever_comes_again_begins_anew() -> None:
@@ -312,7 +312,7 @@ def test_whoever_comes_again_begins_anew() -> None:
         end.send(b"\5\7\7")  # it leaves in the middle of a frame
         end.leave()
         talk(robot, [], 5)
-        assert happened(robot)[-1] == "MOTORS 0 0"
+        assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
@@ -320,18 +320,18 @@ def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
     driver, typed = session(1, robot), Bytes(b"SI|F(0.2, 50)\n")
     end = SerialPort(robot)
     talk(robot, [(end, typed)], 400)
-    assert happened(robot)[:2] == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert actions_of(robot)[:2] == ["MOTORS 50 50", "MOTORS 0 0"]
     assert b"// OK" in typed.heard
     talk(robot, [], AUTHORITY_MS)
     ends: Ends = [(None, driver), (end, typed)]
     assert uploaded(robot, ends, driver) == "OK"
-    typed.said, typed.heard = b"F(0.2, 20)\n", b""
+    typed.to_send, typed.heard = b"F(0.2, 20)\n", b""
     talk(robot, ends, 300)
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
     assert b"Not possible here" in typed.heard
-    typed.said = b"S\n"
+    typed.to_send = b"S\n"
     talk(robot, ends, 50)
-    assert happened(robot)[-1] == "MOTORS 0 0"
+    assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -345,9 +345,9 @@ def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
     talk(robot, [], AUTHORITY_MS)
     ends: Ends = [(make(robot), Bytes(b"SI|F(60, 50)"))]
     talk(robot, ends, 2900)
-    assert "MOTORS 50 50" not in happened(robot)
+    assert "MOTORS 50 50" not in actions_of(robot)
     talk(robot, ends, 300)
-    assert happened(robot)[-1] == "MOTORS 50 50"
+    assert actions_of(robot)[-1] == "MOTORS 50 50"
 
 
 def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
@@ -356,13 +356,16 @@ def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
     first, second = Bytes(b"SI|LOOP(2);"), Bytes()
     ends: Ends = [(None, first), (SerialPort(robot), second)]
     talk(robot, ends, 50)
-    second.said = b"SI|F(0.1, "
+    second.to_send = b"SI|F(0.1, "
     talk(robot, ends, 50)
-    first.said = b"F(0.1, 44);END_LOOP\n"
+    first.to_send = b"F(0.1, 44);END_LOOP\n"
     talk(robot, ends, 20)
-    second.said = b"33)\n"
+    second.to_send = b"33)\n"
     talk(robot, ends, 400)
-    assert [each for each in happened(robot) if "MOTORS" in each] == ["MOTORS 44 44", "MOTORS 0 0"]
+    assert [line for line in actions_of(robot) if "MOTORS" in line] == [
+        "MOTORS 44 44",
+        "MOTORS 0 0",
+    ]
     assert b"// OK" in first.heard and b"Send it again" in second.heard
 
 
@@ -374,14 +377,14 @@ def test_a_stop_of_a_robot_that_stands_ends_what_is_typed_elsewhere(stop: bytes)
     first, second = Bytes(bytes(4)), Bytes()
     ends: Ends = [(None, first), (SerialPort(robot), second)]
     talk(robot, ends, 1500)
-    first.said = b"SI|LOOP(2)\n"
+    first.to_send = b"SI|LOOP(2)\n"
     talk(robot, ends, 1500)
     assert b"END_LOOP" in first.heard
-    second.said = stop
+    second.to_send = stop
     talk(robot, ends, 1500)
-    first.said = b"F(0.1, 44)\nEND_LOOP\n"
+    first.to_send = b"F(0.1, 44)\nEND_LOOP\n"
     talk(robot, ends, 500)
-    assert happened(robot) == []
+    assert actions_of(robot) == []
 
 
 def test_the_button_of_two_who_claim_is_nobodys() -> None:
@@ -417,8 +420,8 @@ def overrun(robot: Esp32Robot) -> int:
     client = session(99, robot)
     status = client.status()
     assert ended(robot, [(None, client)], status) == "OK" and status.outcome
-    found: int = status.outcome.values.overrun
-    return found
+    overrun_count: int = status.outcome.values.overrun
+    return overrun_count
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -428,10 +431,10 @@ def test_what_finds_no_room_is_counted_and_no_stop_is_lost(make: Make) -> None:
         robot = booted()
         end = make(robot)
         talk(robot, [(end, Bytes(b"F(60, 80)\r\n"))], 50)
-        assert happened(robot) == ["MOTORS 80 80"]
+        assert actions_of(robot) == ["MOTORS 80 80"]
         end.send(b"// " + b"x" * 600 + stop)
         robot.wait(3)
-        assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+        assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
         robot.wait(2000)
         assert robot.is_latched and overrun(robot) == 0
         end.send(b"// " + b"x" * 2000)
@@ -448,7 +451,7 @@ def test_a_serial_port_whose_client_takes_nothing_hears_a_stop() -> None:
     robot.wait(100)
     end.send(b"S\r\n")
     robot.wait(3)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
 
 
 def test_an_upload_in_long_packets_of_a_serial_port_loses_nothing() -> None:
@@ -498,7 +501,7 @@ def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: byt
     send(robot, end, text, who)
     talk(robot, [(end, who)], 2500)
     assert who.heard == b"// OK\r\n// DONE\r\n"
-    assert happened(robot) == happened(by_cable) and len(happened(robot)) > 30
+    assert actions_of(robot) == actions_of(by_cable) and len(actions_of(robot)) > 30
     assert overrun(robot) == 0
 
 
@@ -548,7 +551,10 @@ def test_keys_end_no_upload_of_somebody_else() -> None:
     ends: Ends = [(None, first), (LowEnergy(robot), second)]
     assert ended(robot, ends, second.hello()) == "OK"
     long = first.upload(image_of("SI|" + "F(0.01, 80);" * 2500), saves=False)
-    said = 0
+    press_count = 0
     while long.outcome is None:
-        said += ended(robot, ends, second.press(1 + said % 2)) in ("OK", "OTHER_DRIVER")
-    assert long.outcome.status == 0 and said > 0
+        press_count += ended(robot, ends, second.press(1 + press_count % 2)) in (
+            "OK",
+            "OTHER_DRIVER",
+        )
+    assert long.outcome.status == 0 and press_count > 0

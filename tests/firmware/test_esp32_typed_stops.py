@@ -16,7 +16,7 @@ from tests.support.esp32_wifi import joined
 from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import RADIOS, Ends, Make, booted, ended, uploaded
-from tests.support.robot_on_host import happened
+from tests.support.robot_on_host import actions_of
 from tests.support.stop_spellings import ALL, HELD_MS, SILENCE_MS, spellings_after
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME
@@ -33,12 +33,12 @@ def drives(robot: Esp32Robot, driver: Session, end: End | None = None) -> Ends:
     ends: Ends = [(end, driver)]
     assert uploaded(robot, ends, driver) == "OK"
     talk(robot, ends, 10)
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
     return ends
 
 
 def stands(robot: Esp32Robot) -> bool:
-    return happened(robot)[-1] == "MOTORS 0 0"
+    return actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 def stops(robot: Esp32Robot, end: End | None, ends: Ends, data: bytes, what: str) -> None:
@@ -145,10 +145,10 @@ def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
     robot = booted()
     driver, end = session(1, robot), make(robot)
     line = b"F(1,80)\n"
-    for left in range(-1, len(stop) + 1):  # bytes of the stop that find room
+    for bytes_left in range(-1, len(stop) + 1):  # bytes of the stop that find room
         ends = drives(robot, driver)
-        before = (line * ROOM)[: ROOM - left - 1] + b"\n"
-        stops(robot, end, ends, before + stop, f"{left} of {stop!r}")
+        before = (line * ROOM)[: ROOM - bytes_left - 1] + b"\n"
+        stops(robot, end, ends, before + stop, f"{bytes_left} of {stop!r}")
     for lost in range(len(stop)):
         ends = drives(robot, driver)
         end.send(b"(" * ROOM + b"\n" + stop[:lost])
@@ -176,7 +176,7 @@ def test_what_is_lost_stops_nobody(make: Make) -> None:
 
 
 def moves(robot: Esp32Robot) -> list[str]:
-    return [each for each in happened(robot) if each.startswith("MOTORS")]
+    return [line for line in actions_of(robot) if line.startswith("MOTORS")]
 
 
 LINES = b"".join(b"F(1,%d)\n" % (20 + k % 70) for k in range(100))
@@ -199,7 +199,7 @@ def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
         talk(robot, [*ends, (end, who)], 500)
         talk(robot, [(end, who)], 3000)  # the driver has gone
         assert stands(robot), (before[-20:], stop)
-        who.said = b"\r\nSI|F(0.1,33)\n"
+        who.to_send = b"\r\nSI|F(0.1,33)\n"
         talk(robot, [(end, who)], 1500)
         assert moves(robot)[-2:] == ["MOTORS 33 33", "MOTORS 0 0"], (before[-20:], who.heard)
         talk(robot, ends, 1500)
@@ -280,8 +280,8 @@ def test_a_stop_of_a_client_that_leaves_keeps_nobody_from_driving(make: Make) ->
         end = make(robot)
         assert uploaded(robot, [(end, who)], who) == "OK"
         talk(robot, [(end, who)], 20)
-        said = (len(waiting), first, second, left_ms)
-        assert moves(robot)[-1] == "MOTORS 80 80", said
+        outcome = (len(waiting), first, second, left_ms)
+        assert moves(robot)[-1] == "MOTORS 80 80", outcome
         end.leave()
         talk(robot, [], 20)
-        assert moves(robot)[-1] == "MOTORS 0 0", said
+        assert moves(robot)[-1] == "MOTORS 0 0", outcome

@@ -10,7 +10,7 @@ from tests.support.esp32_wifi import owned, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import AWAY, Ends, ended, uploaded
-from tests.support.robot_on_host import happened
+from tests.support.robot_on_host import actions_of
 from tiniscript.link.messages import SAVED, STOP_BYTES
 from tiniscript.link.session import Session
 
@@ -57,7 +57,7 @@ def test_strangers_do_not_drive_a_claimed_robot(fault: int) -> None:
     robot.wait(100)
     robot.step(flags=2)
     robot.wait(500)
-    assert not [line for line in happened(robot) if "MOTORS 80" in line]
+    assert not [line for line in actions_of(robot) if "MOTORS 80" in line]
 
 
 @FAULTS

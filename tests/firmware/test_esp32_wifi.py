@@ -33,7 +33,7 @@ from tests.support.esp32_wifi import (
 from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import AWAY, Ends, booted, ended, uploaded
-from tests.support.robot_on_host import happened
+from tests.support.robot_on_host import actions_of
 from tiniscript.link import wifi
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
@@ -95,13 +95,13 @@ def overheard(
         data = who.poll(robot.now_ms)
         sent += data
         if end is None:
-            said = robot.step(data)
+            reply = robot.step(data)
         else:
             end.send(data)
             robot.step()
-            said = end.taken()
-        replies += said
-        who.receive(said, robot.now_ms)
+            reply = end.taken()
+        replies += reply
+        who.receive(reply, robot.now_ms)
     return sent, replies
 
 
@@ -174,13 +174,13 @@ def test_a_wrong_password_and_a_network_out_of_reach_are_told() -> None:
     """The core says "disconnected" of a wrong password; its event has the reason."""
     robot, owner = joined(Keys())
     ends: Ends = [(None, owner)]
-    for reason, found in (
+    for reason, expected in (
         (8, "SEARCHING"), (15, "REFUSED"), (202, "REFUSED"), (203, "REFUSED"), (204, "REFUSED"),
     ):  # fmt: skip
         robot.radio("x", bytes([reason]))  # 8: it was only left
         in_reach(robot, SCHOOL.name.decode(), "another one")
         talk(robot, ends, 20)
-        assert state(robot, owner) == ("STATION", found), reason
+        assert state(robot, owner) == ("STATION", expected), reason
         in_reach(robot, "", "")
         talk(robot, ends, 20)
         assert state(robot, owner) == ("STATION", "SEARCHING")
@@ -215,9 +215,9 @@ def test_no_two_transports_have_the_same_challenge() -> None:
     first, second = Bytes(asks), Bytes(asks)
     ends: Ends = [(None, first), (LowEnergy(rebooted), second)]
     talk(rebooted, ends, 60)
-    frames = [decode_frame(each.heard.strip(b"\0")) for each in (first, second)]
+    frames = [decode_frame(client.heard.strip(b"\0")) for client in (first, second)]
     [epoch] = {frame.epoch for frame in frames if frame}
-    first.said = second.said = encode_frame(Frame(17, 2, epoch, b"\0"))
+    first.to_send = second.to_send = encode_frame(Frame(17, 2, epoch, b"\0"))
     first.heard = second.heard = b""
     talk(rebooted, ends, 60)
     assert len(first.heard) == 20 and first.heard != second.heard
@@ -236,10 +236,10 @@ def test_the_owner_drives_over_wifi_and_a_stranger_looks_and_stops() -> None:
     for acting in (stranger.start(), stranger.fetch(), stranger.live(image_of("F(1, 9)").code)):
         assert ended(robot, ends, acting) == "NOT_OWNER"
     talk(robot, ends, 1500)
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
     stranger.stop(robot.now_ms)
     talk(robot, ends, 50)
-    assert happened(robot)[-1] == "MOTORS 0 0"
+    assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 def test_a_robot_that_was_given_up_does_not_move_over_wifi() -> None:
@@ -261,9 +261,9 @@ def test_a_robot_that_was_given_up_does_not_move_over_wifi() -> None:
     assert not [line for line in robot.did[before:] if "MOTORS" in line]
     cable = session(3, robot)
     assert uploaded(robot, [(None, cable)], cable) == "OK"
-    typed.said = b"S\n"
+    typed.to_send = b"S\n"
     talk(robot, [(None, cable), *ends], 100)
-    assert [each for each in happened(robot) if "MOTORS" in each][-2:] == [
+    assert [line for line in actions_of(robot) if "MOTORS" in line][-2:] == [
         "MOTORS 80 80", "MOTORS 0 0"]  # fmt: skip
 
 
@@ -275,17 +275,17 @@ def test_a_network_that_drops_ends_the_run_and_the_cable_goes_on() -> None:
     assert uploaded(robot, ends, owner) == "OK"
     in_reach(robot, "", "")
     talk(robot, ends, 10)
-    assert happened(robot)[-1] == "MOTORS 0 0"
+    assert actions_of(robot)[-1] == "MOTORS 0 0"
     assert end.has_ended
     assert ended(robot, ends[1:], cable.ping()) == "OK"
     school_in_reach(robot)
     talk(robot, [], 20)
     next_client, end = remote(robot, keys, 13), Network(robot)
     assert uploaded(robot, [(end, next_client)], next_client) == "OK"
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
     end.leave()
     robot.wait(5)
-    assert happened(robot)[-1] == "MOTORS 0 0", "a client that leaves ends its run at once"
+    assert actions_of(robot)[-1] == "MOTORS 0 0", "a client that leaves ends its run at once"
 
 
 def test_strangers_who_trickle_bytes_keep_no_stop_out() -> None:
@@ -299,11 +299,11 @@ def test_strangers_who_trickle_bytes_keep_no_stop_out() -> None:
             stranger.send(b"X")
             talk(robot, ends, 50)
         assert not end.has_ended and not stranger.has_ended
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
     stopper = Network(robot)
     stopper.send(bytes(4))
     talk(robot, ends, 10)
-    assert happened(robot)[-1] == "MOTORS 0 0"
+    assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 def test_two_strangers_are_not_kept_before_who_comes_later() -> None:
@@ -346,7 +346,7 @@ def test_a_client_that_takes_nothing_stops_nobody() -> None:
         deaf.send(b"\0\2\3\3\0")  # damaged, and then a stop of two zeros less
         deaf.send(b"PING|check_connection\n" * 3)
         talk(robot, ends, 5)
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
 
 
 # -- a chip that restarts whenever WiFi begins --------------------------------------------------

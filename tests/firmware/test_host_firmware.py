@@ -15,9 +15,9 @@ from tests.support.robot_on_host import (
     AWAY,
     KIT,
     LONG,
+    actions_of,
     broken_upload,
     computer,
-    happened,
     holding,
     live,
     send,
@@ -41,7 +41,7 @@ def test_a_program_in_one_frame_drives_at_once() -> None:
     robot, session = switched_on(), computer()
     send(robot, session, "SI|F(1, 80)")
     robot.talk(session, 1200)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
     first, last = (int(line.split()[0]) for line in robot.did[:2])
     assert last - first == 1000
     assert [event.name for event in session.events()] == ["DONE"]
@@ -52,7 +52,7 @@ def test_a_program_in_one_frame_drives_at_once() -> None:
 def test_code_in_one_frame_is_the_program_that_was_compiled(more: str) -> None:
     """Its image, which says what it needs, is made by the robot."""
     robot, session, image = switched_on(), computer(), image_of(f"SI|F(9, 80){more}")
-    assert robot.done(session, session.live(image.code)).program == image.checksum
+    assert robot.complete(session, session.live(image.code)).program == image.checksum
 
 
 def test_after_power_on_nothing_moves_and_the_button_starts_what_is_stored() -> None:
@@ -64,17 +64,17 @@ def test_after_power_on_nothing_moves_and_the_button_starts_what_is_stored() -> 
     assert restarted.did == []
     restarted.push()
     restarted.wait(600)
-    assert happened(restarted) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    assert actions_of(restarted) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 def test_without_frames_the_motors_go_off_in_time() -> None:
     robot, session = driving(700)
     silent_ms = robot.now_ms
     robot.wait(2000)
-    assert happened(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
+    assert actions_of(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
     off_ms = int(robot.did[1].split()[0])
     assert off_ms - silent_ms <= 1050
-    assert robot.done(session, session.status()).fault == 64
+    assert robot.complete(session, session.status()).fault == 64
 
 
 @pytest.mark.parametrize("starts", [1, 256])
@@ -83,7 +83,7 @@ def test_no_run_of_the_button_is_attached(starts: int) -> None:
     robot, session = driving(100)
     assert not robot.is_lit
     robot.talk(session, 1, flags=1)
-    assert happened(robot)[-1] == "MOTORS 0 0" and robot.is_lit
+    assert actions_of(robot)[-1] == "MOTORS 0 0" and robot.is_lit
     robot.talk(session, 100)
     robot.step(flags=2)
     assert [event.cause for event in session.events() if event.name == "STOPPED"] == [3]
@@ -93,10 +93,10 @@ def test_no_run_of_the_button_is_attached(starts: int) -> None:
         robot.push()
     robot.push()
     robot.wait(1500)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"] * starts + ["MOTORS 80 80"]
+    assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"] * starts + ["MOTORS 80 80"]
     robot.step(flags=8)
     robot.wait(100)
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
 
 
 def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:
@@ -105,10 +105,10 @@ def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:
     robot.step(flags=1)
     send(robot, session, AWAY)
     robot.step(flags=32)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     robot.step(flags=2)
     robot.wait(100)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -125,8 +125,8 @@ def test_a_pulled_plug_leaves_one_program_or_the_other(seed: int) -> None:
         assert restarted.is_lit
         restarted.push()
         restarted.wait(400)
-        assert happened(restarted)[0] in ("MOTORS 80 80", "MOTORS -60 -60")
-        assert happened(restarted)[-1] == "FINISHED"
+        assert actions_of(restarted)[0] in ("MOTORS 80 80", "MOTORS -60 -60")
+        assert actions_of(restarted)[-1] == "FINISHED"
 
 
 def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_program() -> None:
@@ -135,12 +135,12 @@ def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_prog
     robot.talk(session, 500)
     request = session.live(image_of("SI|X = 0; SHOW(5 / X)").code)
     assert robot.until(session, request) == OK
-    while "FAULTED" not in happened(robot):
+    while "FAULTED" not in actions_of(robot):
         robot.talk(session, 1)
     broken_upload(robot, session)
     robot.push()
     robot.wait(400)
-    assert happened(robot)[-3:] == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    assert actions_of(robot)[-3:] == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 @pytest.mark.parametrize("is_live", [False, True])
@@ -148,12 +148,12 @@ def test_a_fault_at_once_names_the_program(is_live: bool) -> None:
     """A program in one frame starts before its checksum is known."""
     robot, session = switched_on(), computer()
     image = image_of("SI|X = 1 / 0")
-    values = robot.done(session, session.live(image.code) if is_live else session.upload(image))
+    values = robot.complete(session, session.live(image.code) if is_live else session.upload(image))
     robot.talk(session, 300)
     faults = [event.program for event in session.events() if event.name == "FAULT"]
     assert faults == [image.checksum]
     assert values.program == image.checksum
-    state = robot.done(session, session.status())
+    state = robot.complete(session, session.status())
     assert state.fault_program == image.checksum
     assert state.program == (0 if is_live else image.checksum)
 
@@ -163,7 +163,7 @@ def test_a_robot_tells_which_program_it_holds_before_it_is_saved(text: str) -> N
     """In one frame, and in several."""
     robot, session = holding()
     send(robot, session, text)
-    values = robot.done(session, session.status())
+    values = robot.complete(session, session.status())
     assert values.program == image_of(text).checksum
     assert values.saved != SAVED_STORED
 
@@ -179,14 +179,14 @@ def test_a_program_of_one_frame_may_use_every_sensor_of_the_kit() -> None:
 @pytest.mark.parametrize("noise", [0, 0xFFFF0000, 0x12345678])
 def test_random_numbers_are_others_at_another_time(noise: int) -> None:
     """Also where the noise of a board is always the same."""
-    found = set()
+    values = set()
     for wait_ms in range(300, 320):
         robot, session = HostFirmware(KIT, seed=noise), computer()
         robot.wait(wait_ms)
-        robot.done(session, session.live(image_of("SI|SHOW(RANDOM(1, 10000))").code))
+        robot.complete(session, session.live(image_of("SI|SHOW(RANDOM(1, 10000))").code))
         robot.talk(session, 50)
-        found |= {event.value for event in session.events() if event.name == "SHOW"}
-    assert len(found) >= 9, "every second millisecond has numbers of its own"
+        values |= {event.value for event in session.events() if event.name == "SHOW"}
+    assert len(values) >= 9, "every second millisecond has numbers of its own"
 
 
 # -- code that arrives while another one runs: it replaces that whole, or changes nothing ---------
@@ -204,7 +204,7 @@ def test_a_line_that_replaces_a_run_begins_at_its_own_beginning(is_line: bool) -
     robot.did.clear()
     live(robot, session, "SI|F(0.1, 60); Y = TIME; SHOW(Y < 0.2); SHOW(5)")
     robot.talk(session, 300)
-    moves = [line for line in happened(robot) if line.startswith("MOTORS")]
+    moves = [line for line in actions_of(robot) if line.startswith("MOTORS")]
     assert moves[-2:] == ["MOTORS 60 60", "MOTORS 0 0"] and "MOTORS 40 40" not in moves
     shown = [event.value for event in session.events() if event.name == "SHOW"]
     assert shown == [1, 5000]
@@ -225,6 +225,6 @@ def test_a_damaged_line_changes_nothing_of_the_one_that_runs(at: int) -> None:
     for byte in wire if at < -1 else wire[:-1]:  # or it is cut before its end
         robot.step(bytes([byte]))
     robot.talk(session, 600)
-    moves = [line for line in happened(robot) if line.startswith("MOTORS")]
+    moves = [line for line in actions_of(robot) if line.startswith("MOTORS")]
     assert "MOTORS 50 50" in moves and "MOTORS 90 90" not in moves
     assert [event.value for event in session.events() if event.name == "SHOW"] == [7000]

@@ -20,7 +20,7 @@ from tests.support.kept_programs import (
     later_version_image,
     saved,
 )
-from tests.support.robot_on_host import computer, happened, send, switched_on
+from tests.support.robot_on_host import actions_of, computer, send, switched_on
 from tiniscript.bytecode.image import REFUSALS, pack, unpack, with_checksum
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -64,7 +64,7 @@ def test_the_next_program_replaces_it() -> None:
     assert saved(robot, session) == "STORED"
     restarted, session = met(robot.memory())
     assert saved(restarted, session) == "STORED"
-    assert restarted.done(session, session.fetch()).image[15:] == image.code
+    assert restarted.complete(session, session.fetch()).image[15:] == image.code
 
 
 @pytest.mark.parametrize("place", [FIRST, SECOND])
@@ -88,10 +88,10 @@ def test_a_program_with_a_longer_header_is_run() -> None:
     longer = pack("SB", image.devices, image.code, b"what a later version says")
     robot, session = met(eeprom_with((FIRST, 3, longer)))
     assert saved(robot, session) == "STORED"
-    assert robot.done(session, session.fetch()).image == longer
+    assert robot.complete(session, session.fetch()).image == longer
     robot.push()
     robot.wait(300)
-    assert happened(robot)[:2] == ["MOTORS 60 60", "MOTORS 0 0"]
+    assert actions_of(robot)[:2] == ["MOTORS 60 60", "MOTORS 0 0"]
 
 
 def test_name_and_trim_outlive_an_update() -> None:
@@ -112,11 +112,11 @@ def test_a_trim_that_other_firmware_has_kept_is_none(trim: bytes) -> None:
     robot, session = met(eeprom_with((4, 3, struct_pack("<I", zlib.crc32(body)) + body)))
     assert session.robot is not None
     assert (session.robot.id, session.robot.name) == (77, "Ada")
-    values = robot.done(session, session.trim())
+    values = robot.complete(session, session.trim())
     assert (values.wheels, values.balance, values.least) == (0, 0, 0)
     sound = body[:-3] + b"\1\5\7"
     robot, session = met(eeprom_with((4, 3, struct_pack("<I", zlib.crc32(sound)) + sound)))
-    assert robot.done(session, session.trim()).least == 7
+    assert robot.complete(session, session.trim()).least == 7
 
 
 @pytest.mark.parametrize("pace", [(0xFFFF, 0xFFFF), (900, 100), (500, 500), (0, 0)])
@@ -125,7 +125,7 @@ def test_a_pace_that_other_firmware_has_kept_is_none(pace: tuple[int, int]) -> N
     body = bytes(15) + struct_pack("<4H", *pace, *pace)
     record = struct_pack("<I", zlib.crc32(body)) + body
     robot, session = met(eeprom_with((4 + 2 * EACH, 3, record)))
-    values = robot.done(session, session.trim())
+    values = robot.complete(session, session.trim())
     assert values.pace == struct_pack("<4H", *pace, *pace), "it is read"
     send(robot, session, "SI|F(20 CM, 60)", saves=False)
     robot.talk(session, 1000)

@@ -412,16 +412,16 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
     assert owner_of(table, table.session(keys, nonce=4)) == OWNED_BY_YOU, (
         "later they forget nothing"
     )
-    for milliseconds, found in ((9800, OWNED_BY_YOU), (10_800, FREE)):
+    for milliseconds, owner in ((9800, OWNED_BY_YOU), (10_800, FREE)):
         table = Owned(table.robot.memory(), seed=milliseconds)
         table.pass_time(None, 1, HELD)  # as a button that was down before the reset
         table.pass_time(None, milliseconds - 1)
         table.pass_time(None, 1, RELEASED)
         session = table.session(keys)
-        if found == FREE and table.seals:  # our own keys say otherwise, until they are forgotten
+        if owner == FREE and table.seals:  # our own keys say otherwise, until they are forgotten
             assert table.outcome(session, session.hello()) == str(UNPROVEN)
             session = table.session()
-        assert owner_of(table, session) == found
+        assert owner_of(table, session) == owner
     other = table.session(Keys(200), nonce=3)
     assert table.claim(other, KEY_TEACHER) == "OK"
 
@@ -491,12 +491,12 @@ def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds:
             frame = Frame(BY_NAME["IDENTIFY"].number, its_seq, session._epoch)
             robot.step(b"\0" + encode_frame(frame))
             begun_ms = robot.now_ms
-            seen = [robot.is_lit]
+            was_lit = [robot.is_lit]
             for _ in range((before_ms if not is_second else STEPS * STEP_MS + 500) - 1):
                 robot.step()
-                seen.append(robot.is_lit)
+                was_lit.append(robot.is_lit)
         wanted = [k // STEP_MS % 2 == 0 for k in range(STEPS * STEP_MS)] + [says] * 500
-        assert seen == wanted, before_ms
+        assert was_lit == wanted, before_ms
         beeps = [line.split() for line in robot.did if "BEEP" in line]
         assert beeps == [
             [str(begun_ms + k * STEP_MS), "BEEP", str(hertz), "200"] for k, hertz in enumerate(tune)

@@ -22,9 +22,9 @@ from tests.support.kept_programs import (
 )
 from tests.support.robot_on_host import (
     KIT,
+    actions_of,
     broken_upload,
     computer,
-    happened,
     holding,
     pushed,
     send,
@@ -43,7 +43,7 @@ PAUSES = "SI|LOOP(FOREVER);F(0.05, 80);W(0.004);END_LOOP"
 
 
 def marks(robot: HostFirmware) -> list[str]:
-    return [line for line in happened(robot) if "MARK" in line or "MEASURED" in line]
+    return [line for line in actions_of(robot) if "MARK" in line or "MEASURED" in line]
 
 
 # -- motors ---------------------------------------------------------------------------------------
@@ -133,9 +133,9 @@ def test_a_name_that_is_not_ok_yet_is_the_old_one_or_the_new_one(cut_ms: int) ->
     assert robot.until(session, session.name(b"OLD")) == OK
     request = session.name(b"NEW")
     robot.talk(session, cut_ms)
-    found = name_after_power_off(robot)
-    assert found in ("OLD", "NEW")
-    assert request.outcome is None or found == "NEW"
+    name = name_after_power_off(robot)
+    assert name in ("OLD", "NEW")
+    assert request.outcome is None or name == "NEW"
 
 
 def test_a_trim_is_ok_when_it_is_kept() -> None:
@@ -143,7 +143,7 @@ def test_a_trim_is_ok_when_it_is_kept() -> None:
     for trim in (b"\1\5\7", b"\1\5\1", b"\0\0\0"):
         assert robot.until(session, session.trim(trim)) == OK
         restarted, other = switched_on(robot.memory()), computer(2)
-        values = restarted.done(other, other.trim())
+        values = restarted.complete(other, other.trim())
         assert bytes((values.wheels, values.balance, values.least)) == trim
     send(robot, session, DRIVES, saves=False)
     assert robot.until(session, session.trim(b"\1\2\3")) == STATUSES["SAVING"]
@@ -171,7 +171,7 @@ def test_a_plug_pulled_while_a_pace_is_kept_leaves_a_whole_one() -> None:
 
 def trim_after_power_off(robot: HostFirmware) -> Trim:
     restarted, other = switched_on(robot.memory()), computer(2)
-    return trim_from_reply(restarted.done(other, other.trim()))
+    return trim_from_reply(restarted.complete(other, other.trim()))
 
 
 def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:
@@ -271,7 +271,7 @@ def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
         text = f"SI|F(0.1, {power}); " + "SHOW(1); " * 20
         send(robot, session, text)
         robot.talk(session, 800)
-        assert f"MOTORS {power} {power}" in happened(robot)
+        assert f"MOTORS {power} {power}" in actions_of(robot)
         assert saved(robot, session) == "LOW_SUPPLY"
     assert program_after_power_off(robot) == bytes_of("SB|F(0.2, 80)")
     broken_upload(robot, session)
@@ -350,12 +350,12 @@ def test_a_program_is_fetched_whole_and_started_while_a_name_is_written() -> Non
     robot, session = holding(text)
     writing_a_name(robot, session)
     another = computer(4)
-    assert robot.done(another, another.fetch()).image == bytes_of(text)
+    assert robot.complete(another, another.fetch()).image == bytes_of(text)
     robot.talk(another, 1000)
     other = writing_a_name(robot, another, b"ANOTHER ONE")
     robot.push(1)
     robot.talk(other, 7000)
-    assert happened(robot)[0] == "MOTORS 80 80" and happened(robot)[-1] == "FINISHED"
+    assert actions_of(robot)[0] == "MOTORS 80 80" and actions_of(robot)[-1] == "FINISHED"
 
 
 def test_a_robot_that_writes_says_busy_to_fetch() -> None:
@@ -378,4 +378,4 @@ def test_a_stop_ends_a_start_that_waits_for_the_memory() -> None:
     robot.push(1)
     other.stop(robot.now_ms)
     robot.talk(other, 2000)
-    assert [line for line in happened(robot) if line.startswith("MOTORS")] == []
+    assert [line for line in actions_of(robot) if line.startswith("MOTORS")] == []

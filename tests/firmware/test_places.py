@@ -80,7 +80,7 @@ def listener(nonce: int = 1) -> Session:
     return session
 
 
-def heard(robot: HostFirmware, session: Session, milliseconds: int) -> list[Event]:
+def events_after(robot: HostFirmware, session: Session, milliseconds: int) -> list[Event]:
     robot.talk(session, milliseconds)
     return session.events()
 
@@ -93,10 +93,10 @@ def test_a_session_that_wants_it_hears_each_place_of_each_run_once() -> None:
     robot, session = switched_on(), computer()
     image = image_of(DRIVE)
     assert robot.until(session, session.upload(image, saves=False)) == OK
-    assert place_events_of(heard(robot, session, 3000)) == [], "it has not asked"
+    assert place_events_of(events_after(robot, session, 3000)) == [], "it has not asked"
     session.tells_places = True
     assert robot.until(session, session.start()) == OK
-    events = heard(robot, session, 3000)
+    events = events_after(robot, session, 3000)
     place_events = place_events_of(events)
     assert [place_event.at for place_event in place_events] == sorted(
         {event.at for event in place_events}
@@ -107,21 +107,23 @@ def test_a_session_that_wants_it_hears_each_place_of_each_run_once() -> None:
     assert [event.name for event in events].count("DONE") == 1
     for run in (3, 4):
         assert robot.until(session, session.start()) == OK
-        assert place_events_of(heard(robot, session, 500))[0].run == run
+        assert place_events_of(events_after(robot, session, 500))[0].run == run
         session.stop(robot.now_ms)
-        assert place_events_of(heard(robot, session, 1500)) == [], "after a stop there is none"
+        assert place_events_of(events_after(robot, session, 1500)) == [], (
+            "after a stop there is none"
+        )
 
 
 def test_what_the_button_starts_and_a_line_have_places_too() -> None:
     robot, session = switched_on(), listener()
     waits = image_of("SB" + DRIVE[2:])
     assert robot.until(session, session.upload(waits, saves=False)) == OK
-    assert place_events_of(heard(robot, session, 1500)) == []
+    assert place_events_of(events_after(robot, session, 1500)) == []
     robot.push()
-    assert place_events_of(heard(robot, session, 1500))[0].program == waits.checksum
+    assert place_events_of(events_after(robot, session, 1500))[0].program == waits.checksum
     line = image_of("SI|L(3, 20)")
     assert robot.until(session, session.live(line.code)) == OK
-    assert place_events_of(heard(robot, session, 500))[0].program == line.checksum
+    assert place_events_of(events_after(robot, session, 500))[0].program == line.checksum
 
 
 def test_a_sealed_session_hears_places_sealed() -> None:
@@ -133,12 +135,12 @@ def test_a_sealed_session_hears_places_sealed() -> None:
     image = image_of(DRIVE)
     assert table.robot.until(session, session.upload(image, saves=False)) == OK
     received = b""
-    found: list[Event] = []
+    events: list[Event] = []
     for _ in range(900):
         data = session.poll(table.robot.now_ms)
         received += data
         session.receive(table.robot.step(data), table.robot.now_ms)
-        found += session.events()
+        events += session.events()
     frames = [decode_frame(part) for part in received.split(b"\0") if part]
     assert frames and all(frame and frame.is_sealed for frame in frames)
-    assert {place_event.program for place_event in place_events_of(found)} == {image.checksum}
+    assert {place_event.program for place_event in place_events_of(events)} == {image.checksum}

@@ -36,9 +36,7 @@ def test_pins_do_the_same_at_the_same_times_while_readings_are_told(seed: int) -
     apart = apart_ms(alone.did, reporting.did)
     assert apart < inf, f"all do the same in the same order: {text}"
     assert apart <= MOST_APART_MS or not is_steady(text, seed), text
-    shown = [
-        [event for event in each.events if event.name == "SHOW"] for each in (alone, reporting)
-    ]
+    shown = [[event for event in run.events if event.name == "SHOW"] for run in (alone, reporting)]
     assert abs(len(shown[0]) - len(shown[1])) <= max(2, len(shown[0]) // 20)
     assert not alone.readings
 
@@ -62,7 +60,7 @@ def test_what_is_not_told_is_said_of_its_sensor(seed: int) -> None:
                 assert event == all_of_it[at], "nothing is left out before it"
                 at += 1
             else:  # it is what was read last
-                before = [k for k, each in enumerate(all_of_it) if each.ms <= event.ms]
+                before = [k for k, reading in enumerate(all_of_it) if reading.ms <= event.ms]
                 assert before and before[-1] >= at and all_of_it[before[-1]].value == event.value
                 at = before[-1] + 1
 

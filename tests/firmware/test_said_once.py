@@ -359,12 +359,12 @@ def test_all_that_happens_is_told_once(kind: str, part: int) -> None:
 def test_an_end_is_told_of_its_own_run_though_another_waits_for_the_line(
     is_fault_first: bool, kind: str
 ) -> None:
-    done, fault = "SI|X = 1;W(0.002)", "SI|X = 1;SHOW(1 / (X - X))"
+    finished_text, fault = "SI|X = 1;W(0.002)", "SI|X = 1;SHOW(1 / (X - X))"
     waited = 0
     for delay_ms in range(1, 40):
         client = Client(random.Random(delay_ms), kind)
         client.pace(21)
-        first, pressed = (fault, done) if is_fault_first else (done, fault)
+        first, pressed = (fault, finished_text) if is_fault_first else (finished_text, fault)
         client.ask(PROGRAM, bytes((0,)) + client.known(pressed, Program(0, 0)))
         client.passes(ANSWERS_MS)
         client.ask(LIVE, bytes((RUN,)) + client.known(first, Program(0, 0)))

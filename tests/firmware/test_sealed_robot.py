@@ -70,8 +70,8 @@ def test_a_firmware_without_seals_does_as_before() -> None:
     sent, _ = recorded(table, session, SHORT)
     assert not any(frame.is_sealed for frame in map(decode_frame, sent) if frame)
     sealed = Seal(bytes(16)).seal_frame(Frame(BY_NAME["START"].number, 1, 0, b"\0"))
-    said = table.answer(sealed)
-    assert said and said.payload[0] == STATUSES["NOT_SEALED"]
+    reply = table.answer(sealed)
+    assert reply and reply.payload[0] == STATUSES["NOT_SEALED"]
 
 
 def test_what_is_not_sealed_has_no_authority() -> None:
@@ -84,12 +84,12 @@ def test_what_is_not_sealed_has_no_authority() -> None:
             continue
         payload = bytes(sum(field.least_bytes for field in message.request))
         frame = Frame(message.number, (session._seq + 1) & 0xFF, session._epoch, payload)
-        said = table.answer(frame)
-        assert said and said.payload[0] == STATUSES["NOT_OWNER"] and not said.is_sealed, message
+        reply = table.answer(frame)
+        assert reply and reply.payload[0] == STATUSES["NOT_OWNER"] and not reply.is_sealed, message
     for which in (0, 1):
         claim = Frame(16, (session._seq + 1) & 0xFF, session._epoch, bytes([which]))
-        said = table.answer(claim)
-        assert said and said.payload[0] == STATUSES["NOT_OWNER"]
+        reply = table.answer(claim)
+        assert reply and reply.payload[0] == STATUSES["NOT_OWNER"]
     assert state_of(table, session) == STATE_RUNNING
 
 
@@ -100,8 +100,8 @@ def test_an_answer_is_told_again_to_nobody_else() -> None:
     request = session.fetch()
     assert table.outcome(session, request) == "OK"
     frame = Frame(BY_NAME["FETCH"].number, session._seq, session._epoch, b"\0\0")
-    said = table.answer(frame)
-    assert said and said.payload == bytes([STATUSES["NOT_OWNER"], 0, 0])
+    reply = table.answer(frame)
+    assert reply and reply.payload == bytes([STATUSES["NOT_OWNER"], 0, 0])
 
 
 def test_a_stranger_keeps_no_program_running() -> None:
@@ -141,8 +141,12 @@ def test_a_relay_cannot_say_that_it_worked() -> None:
             Frame(frame.number, frame.seq, frame.epoch, bytes(22), True, True),
             frame._replace(is_reply=True),
         ]
-        for each in [*map(encode_frame, forged), *(each + b"\0" for each in replies + sent), data]:
-            session.receive(each, table.robot.now_ms)
+        for packet in [
+            *map(encode_frame, forged),
+            *(packet + b"\0" for packet in replies + sent),
+            data,
+        ]:
+            session.receive(packet, table.robot.now_ms)
             assert request.outcome is None
         if chance.random() < 0.2:
             lost = bytes([STATUSES["NOT_OWNER"], 0, 0])
@@ -162,8 +166,8 @@ def refused_by_a_stranger(table: Owned, session: Session, is_cut: bool) -> Reply
         frame = decode_frame(data.strip(b"\0")) if data else None
         if frame and frame.number == BY_NAME["AUTHENTICATE"].number and len(frame.payload) > 1:
             for name in ("WRONG_KEY", "STALE", "NOT_OWNER"):
-                said = frame._replace(payload=bytes([STATUSES[name], 4, 0]), is_reply=True)
-                session.receive(b"\0" + encode_frame(said), table.robot.now_ms)
+                reply = frame._replace(payload=bytes([STATUSES[name], 4, 0]), is_reply=True)
+                session.receive(b"\0" + encode_frame(reply), table.robot.now_ms)
             data = b"" if is_cut else data
         session.receive(table.robot.step(data), table.robot.now_ms)
     return request.outcome
@@ -314,8 +318,8 @@ def test_another_session_with_the_same_numbers_is_another_seal() -> None:
     for seed in (0x12345678, 7):  # the same noise at the start, and another one
         later = Owned(memory, seed=seed)
         assert owner_of(later, later.session(keys, nonce=4)) == OWNED_BY_YOU
-        for each in sent * 3:
-            later.robot.wait(5, b"\0" + each + b"\0")
+        for data in sent * 3:
+            later.robot.wait(5, b"\0" + data + b"\0")
         assert not [line for line in later.robot.did if "MOTORS" in line]
 
 
@@ -323,8 +327,8 @@ def test_a_stranger_is_told_all_that_is_for_all_beside_a_seal() -> None:
     table, session, _ = opened()
     for name, payload in (("PING", b""), ("STATUS", b""), ("IDENTIFY", b"")):
         frame = Frame(BY_NAME[name].number, (session._seq + 9) & 0xFF, session._epoch, payload)
-        said = table.answer(frame)
-        assert said and said.payload[0] == 0 and not said.is_sealed
+        reply = table.answer(frame)
+        assert reply and reply.payload[0] == 0 and not reply.is_sealed
     assert table.tries(session) == "OK"
     stranger = table.session(nonce=50)
     assert owner_of(table, stranger) == OWNED_BY_OTHER
@@ -332,8 +336,8 @@ def test_a_stranger_is_told_all_that_is_for_all_beside_a_seal() -> None:
 
 def test_frames_of_the_wire_open_nothing(frames: int = 2500) -> None:
     """As `python -m tests.firmware.test_sealed_robot 100000`, which does more of the same."""
-    found = attacked(frames, 1)
-    assert found["accepted"] == 0 and found["stops"] > 1
+    counts = attacked(frames, 1)
+    assert counts["accepted"] == 0 and counts["stops"] > 1
 
 
 # -- by command -----------------------------------------------------------------------------------
@@ -349,7 +353,7 @@ def attacked(frames: int, seed: int) -> Counter[str]:
     old = recorded_frames[-1:]
     robot = table.robot
     thief = Thief(chance, old)
-    found: Counter[str] = Counter(accepted=0)
+    counts: Counter[str] = Counter(accepted=0)
     memory = robot.memory()
     for count in range(frames):
         if count % 500 == 0:
@@ -357,26 +361,26 @@ def attacked(frames: int, seed: int) -> Counter[str]:
                 table.pass_time(session, 300)
                 robot.wait(20, bytes(8) if chance.random() < 0.5 else b"\0" + _stop(chance) + b"\0")
                 assert robot.is_latched, f"frame {count} of seed {seed}: a stop is not obeyed"
-                found["stops"] += 1
+                counts["stops"] += 1
             thief.old += thief.sent[-3:]
             session = table.session(_keys, nonce=chance.getrandbits(32))
             recorded_frames, replies = recorded(table, session, SHORT)
-            thief.sent = [each for each in recorded_frames if _is_sealed(each)]
-            thief.replies = [each for each in replies if _is_sealed(each)]
+            thief.sent = [frame for frame in recorded_frames if _is_sealed(frame)]
+            thief.replies = [data for data in replies if _is_sealed(data)]
             table.pass_time(session, 300)
             robot.did.clear()
         if count % 200 == 100:  # the seal lives on
             assert table.outcome(session, session.status()) == "OK", f"seed {seed}, frame {count}"
         how, data = thief.frame(session._epoch, (session._seq + 1 + count % 3) & 0xFF)
-        found[how] += 1
+        counts[how] += 1
         sent = robot.wait(2, b"\0" + data + b"\0")
-        said = [part for part in sent.split(b"\0") if part]
-        found["accepted"] += sum(grants_key_request(each) or _is_sealed(each) for each in said)
-        found["accepted"] += len([line for line in robot.did if "MOTORS" in line])
+        packets = [part for part in sent.split(b"\0") if part]
+        counts["accepted"] += sum(grants_key_request(data) or _is_sealed(data) for data in packets)
+        counts["accepted"] += len([line for line in robot.did if "MOTORS" in line])
         robot.did.clear()
-    found["accepted"] += robot.memory() != memory
+    counts["accepted"] += robot.memory() != memory
     assert table.tries(session) == "OK"
-    return found
+    return counts
 
 
 def _is_sealed(wire: bytes) -> bool:

@@ -119,7 +119,7 @@ def types(scene: Scene, text: str) -> list[str]:
 
 
 STARTS: dict[str, Callable[[Scene, str], list[str]]] = {
-    each.__name__: each for each in (uploads, saves, pushes, types)
+    action.__name__: action for action in (uploads, saves, pushes, types)
 }
 
 # What ends the first. ------------------------------------------------------------------------
@@ -208,7 +208,7 @@ def story(rng: random.Random, starts: str, kind: str) -> Story:
     return tale._replace(beside=beside, lasts="button" in beside and rng.random() < 0.5)
 
 
-def seen(scene: Scene, tale: Story) -> tuple[list[str], list[str]]:
+def run_second(scene: Scene, tale: Story) -> tuple[list[str], list[str]]:
     """Return what the second program does, with times from its mark on, and what is heard."""
     robot = scene.robot
     if not isinstance(robot, Esp32Robot):
@@ -264,19 +264,19 @@ def after(tale: Story, scene: Scene) -> Scene:
     return scene
 
 
-# What is still told of the first: its end, or that it was not saved, or a block that was open.
+# What is still said about the first: its end, or that it was not saved, or a block that was open.
 OF_THE_FIRST = ("MissedEvent", "StartedEvent", "// Started again", "// The old program is lost.")
 
 
 def without_the_first(heard: list[str]) -> list[str]:
-    return [each for each in heard if not each.startswith(OF_THE_FIRST)]
+    return [line for line in heard if not line.startswith(OF_THE_FIRST)]
 
 
 def fitting(rng: random.Random, starts: str, kind: str) -> tuple[Story, list[str], list[str]]:
     """Return a story whose second one this robot can begin, and what a fresh one does and says."""
     for _ in range(20):
         tale = story(rng, starts, kind)
-        want, wanted_words = seen(Scene(kind), tale)
+        want, wanted_words = run_second(Scene(kind), tale)
         if want:
             return tale, want, wanted_words
     raise AssertionError(f"{kind}: of 20 programs none begins by {starts}")
@@ -286,16 +286,16 @@ def check(seed: int, starts: str, kind: str) -> str:
     tale, want, wanted_words = fitting(random.Random(f"{seed} {starts} {kind}"), starts, kind)
     scene = after(tale, Scene(kind, random.Random(seed).choice(CLOCKS_MS)))
     goes_on = not scene.robot.is_latched  # until the second begins
-    did, heard = seen(scene, tale)
+    did, heard = run_second(scene, tale)
     heard, wanted_words = without_the_first(heard), without_the_first(wanted_words)
     if tale.beside == "the button is down":
-        heard = [each for each in heard if "StoppedEvent(cause=3" not in each]
+        heard = [line for line in heard if "StoppedEvent(cause=3" not in line]
     if goes_on and heard == ["// Still saving. Send it again."]:
         return "it says why not"  # what is saved is what drives
     if goes_on:
         heard = heard[max(0, len(heard) - len(wanted_words)) :]
-    said = f"{kind} {tale}\n{did}\n{heard}\nnot\n{want}\n{wanted_words}"
-    assert did == want and heard == wanted_words, said
+    explanation = f"{kind} {tale}\n{did}\n{heard}\nnot\n{want}\n{wanted_words}"
+    assert did == want and heard == wanted_words, explanation
     return tale.ends
 
 
@@ -311,8 +311,8 @@ def test_the_second_program_is_as_on_a_fresh_robot(starts: str, kind: str, part:
     if (kind, starts) == ("an esp32", "pushes"):
         starts = "uploads"  # its button takes longer than ours, `test_button` has it
     many = SOME[kind]
-    found = Counter(check(seed, starts, kind) for seed in range(part * many, (part + 1) * many))
-    assert found["it says why not"] <= many / 2, found
+    counts = Counter(check(seed, starts, kind) for seed in range(part * many, (part + 1) * many))
+    assert counts["it says why not"] <= many / 2, counts
 
 
 # -- a start that waits for the memory --------------------------------------------------------
@@ -324,8 +324,8 @@ def waiting_start() -> tuple[Scene, bytes]:
     scene.robot = robot = HostFirmware(KIT, write_ms=12)
     robot.wait(300)
     scene.opened()
-    kept = image_of("SI|" + "F(0.1, 80); B(0.1, 60);" * 30, KIT)
-    assert robot.until(scene.session, scene.session.upload(kept)) == OK
+    image = image_of("SI|" + "F(0.1, 80); B(0.1, 60);" * 30, KIT)
+    assert robot.until(scene.session, scene.session.upload(image)) == OK
     while saved(robot, scene.session) != "STORED":
         robot.talk(scene.session, 100)
     scene.session.stop(robot.now_ms)
@@ -336,7 +336,7 @@ def waiting_start() -> tuple[Scene, bytes]:
     robot.talk(scene.session, 15)  # it saves it, which takes longer
     robot.step(flags=1)
     robot.codes()
-    return scene, kept.code
+    return scene, image.code
 
 
 def test_what_the_button_has_asked_for_begins_once() -> None:
@@ -403,25 +403,25 @@ def driven(scene: Scene, starts: str, text: str) -> tuple[list[str], int, float,
     """Return what a program does, how long that takes, and how far the wheels go."""
     robot = scene.robot
     robot.did.clear()
-    left, right = robot.gone()
+    left, right = robot.wheel_edges()
     STARTS[starts](scene, text)
     rows: list[list[str]] = []
     while not rows or rows[-1][1] not in ("FINISHED", "FAULTED"):
         passed(scene, starts, 100)
-        said = [line.split(" ", 1) for line in robot.did]
-        marks = [k for k, row in enumerate(said) if row[1] in MARKED]
-        rows = said[marks[-1] :] if marks else []
+        events = [line.split(" ", 1) for line in robot.did]
+        marks = [k for k, row in enumerate(events) if row[1] in MARKED]
+        rows = events[marks[-1] :] if marks else []
         assert robot.now_ms < 120_000, text
     passed(scene, starts, 700)  # until its wheels stand
     took_ms = int(rows[-1][0]) - int(rows[0][0])
-    its_left, its_right = robot.gone()
+    its_left, its_right = robot.wheel_edges()
     return [what for _, what in rows], took_ms, its_left - left, its_right - right
 
 
 def stands(robot: HostFirmware) -> bool:
-    before = robot.gone()
+    before = robot.wheel_edges()
     robot.wait(50)
-    return all(abs(a - b) < 0.05 for a, b in zip(before, robot.gone(), strict=True))
+    return all(abs(a - b) < 0.05 for a, b in zip(before, robot.wheel_edges(), strict=True))
 
 
 def check_ways(seed: int) -> str:
@@ -436,34 +436,34 @@ def check_ways(seed: int) -> str:
     )
     scene = after(tale, with_discs())
     is_over, stood = scene.robot.is_latched, stands(scene.robot)
-    did, took_ms, *went = driven(scene, tale.starts, tale.second)
+    did, took_ms, *distances_cm = driven(scene, tale.starts, tale.second)
     want, its_ms, *far = driven(with_discs(), tale.starts, tale.second)
-    said = f"{tale}\n{did} {took_ms} {went}\nnot\n{want} {its_ms} {far}"
-    assert did == want and abs(took_ms - its_ms) < NEAR_MS * len(want), said
+    explanation = f"{tale}\n{did} {took_ms} {distances_cm}\nnot\n{want} {its_ms} {far}"
+    assert did == want and abs(took_ms - its_ms) < NEAR_MS * len(want), explanation
     if is_over:
         near = NEAR_EDGES if stood else ROLLS_EDGES
-        assert all(abs(a - b) < near for a, b in zip(went, far, strict=True)), said
+        assert all(abs(a - b) < near for a, b in zip(distances_cm, far, strict=True)), explanation
     return "from a run" if not is_over else "from where it stood" if stood else "from a move"
 
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(PARTS))
 def test_ways_after_anything_are_as_on_a_fresh_robot(part: int) -> None:
-    found = Counter(check_ways(seed) for seed in range(part * 60, (part + 1) * 60))
-    assert found["from where it stood"] > 20 and found["from a move"] > 0, found
+    counts = Counter(check_ways(seed) for seed in range(part * 60, (part + 1) * 60))
+    assert counts["from where it stood"] > 20 and counts["from a move"] > 0, counts
 
 
 def most_ahead(scene: Scene) -> float:
     """Return how far one wheel is ahead of the other at most in a straight move."""
     robot = scene.robot
     uploads(scene, "F(60 CM, 60)")
-    left, right = robot.gone()
-    found = 0.0
+    left, right = robot.wheel_edges()
+    most_mm = 0.0
     for _ in range(60):
         robot.talk(scene.session, 20)
-        its_left, its_right = robot.gone()
-        found = max(found, abs(its_left - left - its_right + right))
-    return found
+        its_left, its_right = robot.wheel_edges()
+        most_mm = max(most_mm, abs(its_left - left - its_right + right))
+    return most_mm
 
 
 @pytest.mark.parametrize("wheels", [1, 2])
@@ -485,19 +485,19 @@ def ends_of_move(scene: Scene, wheels: int, from_edges: float) -> tuple[float, .
     """Return how far the wheels go in a move; some are held for a moment as soon as the left one
     has gone so far."""
     robot = scene.robot
-    before = robot.gone()
+    before = robot.wheel_edges()
     robot.did.clear()
     uploads(scene, "F(12 CM, 60)")
     held_ms = 0
     while not robot.did[-1].endswith("FINISHED"):
-        if robot.gone()[0] - before[0] > from_edges:
+        if robot.wheel_edges()[0] - before[0] > from_edges:
             held_ms += 1
         robot.hold(wheels if 0 < held_ms < 200 else 0)
         robot.talk(scene.session, 1)
         assert robot.now_ms < 60_000
     robot.hold(0)
     robot.talk(scene.session, 700)
-    return tuple(now - then for now, then in zip(robot.gone(), before, strict=True))
+    return tuple(now - then for now, then in zip(robot.wheel_edges(), before, strict=True))
 
 
 @pytest.mark.parametrize("wheels", [1, 2, 3])

@@ -14,7 +14,7 @@ from tests.machines.host_firmware import HostFirmware
 from tests.support.button_states import STATES, Table, keeps_trim, saves
 from tests.support.images import image_of
 from tests.support.pty_robot import drives_now
-from tests.support.robot_on_host import AWAY, KIT, computer, happened, live, send, switched_on
+from tests.support.robot_on_host import AWAY, KIT, actions_of, computer, live, send, switched_on
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME
@@ -36,10 +36,10 @@ def ran(robot: HostFirmware, session: Session, text: str, last: str, millisecond
         robot.wait(milliseconds)
     else:
         robot.talk(session, milliseconds)
-    assert happened(robot)[-1] == last
+    assert actions_of(robot)[-1] == last
 
 
-def left(robot: HostFirmware, session: Session) -> None:
+def leave(robot: HostFirmware, session: Session) -> None:
     live(robot, session, AWAY)
     robot.step(flags=8)
 
@@ -52,7 +52,7 @@ BETWEENS: dict[str, Callable[[HostFirmware, Session], object]] = {
     "faulted": lambda robot, session: ran(robot, session, "SI|X = 0; SHOW(5 / X)", "FAULTED", 300),
     "lost": lambda robot, session: ran(robot, session, AWAY, "FAULTED", 1500),
     "still running": lambda robot, session: live(robot, session, "SI|F(0.3, 80)"),
-    "left": left,
+    "left": leave,
 }
 
 
@@ -66,10 +66,10 @@ def test_a_button_that_was_down_meanwhile_starts_nothing(between: str) -> None:
     robot.did.clear()
     robot.talk(session, 1, flags=2)
     robot.talk(session, 500)
-    assert [line for line in happened(robot) if line.startswith("MOTORS")] in ([], ["MOTORS 0 0"])
+    assert [line for line in actions_of(robot) if line.startswith("MOTORS")] in ([], ["MOTORS 0 0"])
     robot.push()
     robot.wait(10)
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert actions_of(robot)[-1] == "MOTORS 80 80"
 
 
 def test_a_button_that_goes_up_in_the_same_moment_as_a_stop_starts_nothing() -> None:
@@ -90,13 +90,13 @@ def test_a_push_that_stops_starts_nothing_and_the_next_one_does_after_a_stop() -
     for _ in range(3):
         robot.push()
         robot.wait(10)
-        assert happened(robot)[-1] == "MOTORS 80 80"
+        assert actions_of(robot)[-1] == "MOTORS 80 80"
         robot.step(flags=1)
         robot.wait(10)
         robot.step(bytes(8))
         robot.step(flags=2)
         robot.wait(200)
-        assert happened(robot)[-1] == "MOTORS 0 0"
+        assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 @pytest.mark.parametrize("how", ["zeros", "STOP"])
@@ -107,9 +107,9 @@ def test_a_stop_works_every_time(how: str) -> None:
     stop = bytes(8) if how == "zeros" else b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 7, 0))
     for _ in range(300):  # more often than a number of 8 bits can tell
         robot.push(2)
-        assert happened(robot)[-1] == "MOTORS 80 80"
+        assert actions_of(robot)[-1] == "MOTORS 80 80"
         robot.wait(20, stop)
-        assert happened(robot)[-1] == "MOTORS 0 0"
+        assert actions_of(robot)[-1] == "MOTORS 0 0"
         assert robot.is_latched
         del robot.did[:-1]
 
@@ -172,22 +172,22 @@ def test_a_stop_in_every_state(state: str, way: str) -> None:
     robot = table.robot
     was_running = not robot.is_latched
     WAYS[way](robot)
-    moves = [line for line in happened(robot) if line.startswith("MOTORS")]
+    moves = [line for line in actions_of(robot) if line.startswith("MOTORS")]
     assert set(moves) <= {"MOTORS 0 0"} and (moves or not was_running)
     assert robot.is_latched
     before = len(robot.did)
     table.talk(1500)
-    later = [line for line in happened(robot)[before:] if line.startswith("MOTORS")]
+    later = [line for line in actions_of(robot)[before:] if line.startswith("MOTORS")]
     assert set(later) <= {"MOTORS 0 0"}, "nothing begins by itself"
     if state == "is saving its program":
         restarted = after_power_off(table)
         restarted.push()
         restarted.wait(50)
-        assert happened(restarted)[-1] == f"MOTORS {table.program} {table.program}"
+        assert actions_of(restarted)[-1] == f"MOTORS {table.program} {table.program}"
     robot.push()
     table.talk(50)
     if table.program:
-        assert happened(robot)[-1] == f"MOTORS {table.program} {table.program}"
+        assert actions_of(robot)[-1] == f"MOTORS {table.program} {table.program}"
     else:
         assert robot.is_latched
 
@@ -209,7 +209,7 @@ def test_a_stop_at_any_time_of_a_save(state: Callable[[Table], None], after_ms: 
         assert request.outcome and request.outcome.values.least in (0, 1)
     later.push()
     later.talk(session, 50)
-    assert happened(later)[-1] == f"MOTORS {table.program} {table.program}"
+    assert actions_of(later)[-1] == f"MOTORS {table.program} {table.program}"
 
 
 def drives(robot: HostFirmware) -> bool:

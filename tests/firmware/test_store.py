@@ -78,10 +78,10 @@ def test_with_the_plug_in() -> None:
 
 def test_no_byte_is_erased_twice_by_a_save() -> None:
     """Each of the image once, the generation and three marks; that these go away takes no erase."""
-    found = run(compiled(parts(SOURCES), FLAGS), 2, (str(CODE_BYTES), "400"))
-    assert found.saves == 16
-    assert found.most_erases == 1
-    assert found.most_writes == CODE_BYTES + HEADER_BYTES + 1 + 3 + 3
+    wear = run(compiled(parts(SOURCES), FLAGS), 2, (str(CODE_BYTES), "400"))
+    assert wear.saves == 16
+    assert wear.most_erases == 1
+    assert wear.most_writes == CODE_BYTES + HEADER_BYTES + 1 + 3 + 3
 
 
 @pytest.mark.sampled(of="layouts of the store", keep=2)
@@ -129,9 +129,9 @@ def test_on_a_chip(size: int, ticks: int) -> None:
     request = struct_pack("<H", ticks)
     for image in (first, second):
         request += struct_pack("<H", len(image)) + image
-    *said, start, save = avr_bench.run(avr_bench.build("store"), request)
+    *lines, start, save = avr_bench.run(avr_bench.build("store"), request)
     saved, saving = f"STATE {SAVED}", f"STATE {SAVING}"
-    assert said == [
+    assert lines == [
         *expected_lines(b""),
         *(saved, *expected_lines(first)),
         *(saving, *expected_lines(first)),

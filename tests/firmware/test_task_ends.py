@@ -9,7 +9,7 @@ import pytest
 from tests.machines.esp32 import Esp32Robot
 from tests.support.edited_robots import TEXTS
 from tests.support.images import image_of
-from tests.support.robot_on_host import happened
+from tests.support.robot_on_host import actions_of
 from tests.support.task_states import STATES
 from tiniscript.link.messages import STATE_FAULTED, STATE_STOPPED
 from tiniscript.link.requests import OK
@@ -52,7 +52,7 @@ def test_all_tasks_end(state: str, end: str) -> None:
     send(state)
     driven = {"a task waits": [], "the body of a WHEN moves": ["MOTORS -40 -40"]}
     begun = driven.get(state, ["MOTORS 80 80"])
-    assert happened(robot) == begun
+    assert actions_of(robot) == begun
     assert (0 < shows(session) < 300) == (state == "a SHOW finds no room")  # of 400
     robot.did.clear()
 
@@ -62,13 +62,13 @@ def test_all_tasks_end(state: str, end: str) -> None:
     assert robot.is_latched
     shows(session)
     robot.talk(session, 2000)
-    moves = [each for each in happened(robot) if each.startswith("MOTORS")]
+    moves = [line for line in actions_of(robot) if line.startswith("MOTORS")]
     assert moves == ["MOTORS 0 0"] * len(begun)
     assert shows(session) == 0
-    values = robot.done(session, session.status())
+    values = robot.complete(session, session.status())
     assert (values.state, values.fault) == (STATE_FAULTED if fault else STATE_STOPPED, fault)
 
     robot.analog(LIGHT_L, 0)
     robot.did.clear()
     send("the main task moves")
-    assert happened(robot) == ["MOTORS 80 80"] and not robot.is_latched
+    assert actions_of(robot) == ["MOTORS 80 80"] and not robot.is_latched

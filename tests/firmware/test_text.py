@@ -19,8 +19,8 @@ from tests.support.images import image_of
 from tests.support.robot_on_host import (
     KIT,
     LONG,
+    actions_of,
     computer,
-    happened,
     outcome,
     pushed,
     send,
@@ -123,29 +123,29 @@ def test_what_is_said_after_a_stop_is_no_rest_of_what_was_said_before(stop: str)
         for byte in line.encode():
             robot.step(bytes((byte,)))
         robot.step(b"\n", ticks=rng.randrange(1, 6))  # each is a line of an answer
-        said = []
-        for each in (robot, fresh):
-            STOPS[stop](each)
-            each.wait(2500)
-            said.append(typed(each, line + "\n", 1500))
-            each.wait(2500)
-        assert said[0] == said[1] != [], line
+        answers = []
+        for host_firmware in (robot, fresh):
+            STOPS[stop](host_firmware)
+            host_firmware.wait(2500)
+            answers.append(typed(host_firmware, line + "\n", 1500))
+            host_firmware.wait(2500)
+        assert answers[0] == answers[1] != [], line
 
 
 @pytest.mark.parametrize("ignored", ["LOOP(2)", "SI|IF(TRUE)", "DEF A", "F(1,", "FOO(1)", "HELP"])
 def test_a_line_that_is_ignored_after_a_stop_leaves_nothing(ignored: str) -> None:
     robot, fresh = switched_on(), switched_on()
     for line in ("F(0.1,50)", "END_LOOP", "SI|F(0.1,50)", "F(0.1,50)", *SAID_AGAIN):
-        said = []
-        for each in (robot, fresh):
-            typed(each, "S\n", 20)
-            if each is robot:
-                typed(each, ignored + "\n", 20)
-            each.wait(2500)
-            each.did.clear()
-            said.append((typed(each, line + "\n", 1200), happened(each)))
-            each.wait(2500)
-        assert said[0] == said[1], line
+        answers = []
+        for host_firmware in (robot, fresh):
+            typed(host_firmware, "S\n", 20)
+            if host_firmware is robot:
+                typed(host_firmware, ignored + "\n", 20)
+            host_firmware.wait(2500)
+            host_firmware.did.clear()
+            answers.append((typed(host_firmware, line + "\n", 1200), actions_of(host_firmware)))
+            host_firmware.wait(2500)
+        assert answers[0] == answers[1], line
 
 
 @pytest.mark.sampled(of="other builds of the firmware")
@@ -173,7 +173,7 @@ def test_typed_tasks_and_ways_run() -> None:
     robot = switched_on()
     text = "SI|F(FOREVER, 60); WHEN(TRUE); B(9 cm, 60); W(1); END_WHEN"
     assert typed(robot, text + "\n", 500) == ["// OK"]
-    assert happened(robot) == ["MOTORS 60 60", "MOTORS -60 -60", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 60 60", "MOTORS -60 -60", "MOTORS 0 0"]
     assert typed(robot, "S\n", 500) == ["// STOPPED"]
 
 
@@ -199,13 +199,13 @@ def test_a_line_that_is_open_goes_on_with_any_sign(
             "// Waiting for )", "// Waiting for END_LOOP",
         }  # fmt: skip
     assert typed(robot, last + end, 400)[-2:] == ["// OK", "// DONE"]
-    assert happened(robot)[1:] == LINE
+    assert actions_of(robot)[1:] == LINE
 
 
 def test_backspace_edits_what_is_typed() -> None:
     robot = switched_on()
     assert typed(robot, "SO\b\bSI|G\bFO\x7f(0.2,50)\n", 400) == ["// OK", "// DONE"]
-    assert happened(robot) == LINE
+    assert actions_of(robot) == LINE
     assert typed(robot, "F(0.2,50)\b\n", 400) == ["// 10: Unknown sign"]
 
 
@@ -217,7 +217,7 @@ def test_after_a_second_nothing_belongs_to_a_key_that_has_begun(begun: str, stop
     assert typed(robot, "F(60, 80)\n", 100) == ["// OK"]
     typed(robot, begun, 1100)
     typed(robot, f"{stop}\n", 300)
-    assert happened(robot)[-1] == "MOTORS 0 0"
+    assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
@@ -239,7 +239,7 @@ def done_after(robot: HostFirmware, text: str | bytes, milliseconds: int = 1200)
     """Return what the robot does after a line."""
     robot.did.clear()
     typed(robot, text, milliseconds)
-    return happened(robot)
+    return actions_of(robot)
 
 
 # -- a line, and the program that the robot holds -------------------------------------------------
@@ -248,7 +248,7 @@ def done_after(robot: HostFirmware, text: str | bytes, milliseconds: int = 1200)
 def test_a_line_moves_and_its_end_is_told() -> None:
     robot = switched_on()
     assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
-    assert happened(robot) == LINE
+    assert actions_of(robot) == LINE
     first, last = (int(line.split()[0]) for line in robot.did[:2])
     assert last - first == 200
     assert done_after(robot, "f ( 0.2 , 50 )\r") == LINE
@@ -268,8 +268,8 @@ def test_a_wrong_line_changes_nothing(line: str) -> None:
     assert pushed(robot) == ["MOTORS -60 -60"]
     robot.did.clear()
     for _ in range(2):
-        (said,) = typed(robot, line + "\n", 1500)
-        assert re.match(r"// \d+: ", said)
+        (answer,) = typed(robot, line + "\n", 1500)
+        assert re.match(r"// \d+: ", answer)
         assert robot.did == []
     held = status(robot, session)
     assert (held.saved, held.state) == (SAVED_MEMORY, STATE_RUNNING)
@@ -294,7 +294,7 @@ def test_sb_waits_for_the_button_and_is_gone_with_the_power() -> None:
     for _ in range(2):
         robot.push()
         robot.wait(400)
-    assert happened(robot) == LINE * 2
+    assert actions_of(robot) == LINE * 2
     assert done_after(robot, "SI|R(0.1,40)\n")[0] == "MOTORS 40 -40"
     assert pushed(robot) == LINE, "a line that runs at once leaves the button's program"
     assert status(robot, session).saved == SAVED_MEMORY
@@ -319,7 +319,7 @@ def test_what_stops_it_latches(how: str) -> None:
     silent before the stop."""
     robot, _ = holding()
     typed(robot, "SI|F(30,50)\n", 3000)
-    assert happened(robot) == ["MOTORS 50 50"]
+    assert actions_of(robot) == ["MOTORS 50 50"]
     if how == "button":
         robot.push()
     elif how == "zeros":
@@ -329,10 +329,10 @@ def test_what_stops_it_latches(how: str) -> None:
     robot.wait(100)
     for _ in range({"STOP": 0, "s\n": 1}.get(how, 4)):  # typed here: lines soon count again
         typed(robot, "SI|F(1,50)\n", 700)
-    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
     robot.wait(1500)
     assert typed(robot, "F(1,50)\n", 1100) == ["// It was stopped. Begin with SI|"]
-    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
     assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
     assert pushed(robot) == SAVED_BACK
 
@@ -349,7 +349,7 @@ def test_a_stop_ends_a_block_that_is_open_also_where_the_robot_stands(
     assert typed(robot, "SI|LOOP(2)\n", 1500) == ["// Waiting for END_LOOP"]
     robot.wait(1500, stop)
     typed(robot, "F(1,50)\nEND_LOOP\n", 1500)
-    assert happened(robot) == []
+    assert actions_of(robot) == []
     assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
 
 
@@ -361,18 +361,18 @@ def test_a_line_is_silent_after_a_stop_when_nothing_at_all_arrives(noise: bytes)
     for _ in range(5):
         typed(robot, noise, 500)
     typed(robot, b"\0SI|F(1,50)\n", 1500)
-    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
     assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
 
 
 def test_it_has_no_dead_man_timer_and_a_longest_time() -> None:
     robot = switched_on(max_run_ms=5000)
     typed(robot, "SI|F(30,50)\n", 4900)
-    assert happened(robot) == ["MOTORS 50 50"]
+    assert actions_of(robot) == ["MOTORS 50 50"]
     robot.step(flags=8)  # nobody is connected
-    assert happened(robot) == ["MOTORS 50 50"]
+    assert actions_of(robot) == ["MOTORS 50 50"]
     assert robot.wait(300) == b"// FAULT MAX_RUN\r\n"
-    assert happened(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
+    assert actions_of(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
 
 
 def test_a_fault_is_told_recorded_and_kept() -> None:
@@ -380,7 +380,7 @@ def test_a_fault_is_told_recorded_and_kept() -> None:
     held = status(robot, session).program
     robot.wait(4000)
     assert typed(robot, "SI|X=0;F(0.1,50);X=1/X\n", 300) == ["// OK", "// FAULT DIVIDE_BY_ZERO"]
-    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FAULTED"]
+    assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FAULTED"]
     values = status(robot, session)
     # nothing is fused in a robot's own code: its checksum is that of no image of the compiler
     assert values.fault == 2 and values.program == held
@@ -406,11 +406,11 @@ def test_s_in_an_open_block_ends_what_runs_also_without_the_end_of_its_line(text
     typed(robot, RUNS_ON, 300)
     typed(robot, "LOOP(2)\n", 300)
     assert typed(robot, text, 900) == []
-    assert happened(robot) == ["MOTORS 50 50"]
+    assert actions_of(robot) == ["MOTORS 50 50"]
     assert robot.wait(200) == b"// Waiting for END_LOOP\r\n"
-    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
     assert typed(robot, "\nF(0.1,30)\nEND_LOOP\n", 400) == ["// OK", "// DONE"]
-    assert happened(robot)[2:] == ["MOTORS 30 30", "MOTORS 0 0"] * 2 + ["FINISHED"]
+    assert actions_of(robot)[2:] == ["MOTORS 30 30", "MOTORS 0 0"] * 2 + ["FINISHED"]
 
 
 @pytest.mark.parametrize("parts", [("S", "HOW(1)"), ("STO", "RE=1"), ("ST", "ART")])
@@ -445,17 +445,17 @@ def test_frames_during_and_after_text() -> None:
     assert status(robot, session).state == 1
     assert robot.until(session, session.live(image_of("SI|F(0.1, 80)").code)) == OK
     robot.talk(session, 300)
-    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0", "MOTORS 80 80", "MOTORS 0 0",
+    assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0", "MOTORS 80 80", "MOTORS 0 0",
                                "FINISHED"]  # fmt: skip
     robot.did.clear()
     typed(robot, "SI|F(30,50)\n", 20)
     send(robot, session, "SI|F(0.1, 80)")
     robot.talk(session, 300)
-    assert happened(robot)[-2:] == ["MOTORS 0 0", "FINISHED"]
-    assert "MOTORS 80 80" in happened(robot)
+    assert actions_of(robot)[-2:] == ["MOTORS 0 0", "FINISHED"]
+    assert "MOTORS 80 80" in actions_of(robot)
     robot.did.clear()
     typed(robot, "SI|F(0.2,50)\n", 300)
-    assert happened(robot) == LINE
+    assert actions_of(robot) == LINE
 
 
 @pytest.mark.parametrize("burst", [True, False])
@@ -474,7 +474,7 @@ def test_a_live_line_right_after_text_is_what_its_frame_says(less: int, burst: b
     robot.talk(session, 300)
     assert robot.until(session, request) == OK
     assert outcome(request).values.program == image.checksum
-    assert happened(robot)[-3:] == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    assert actions_of(robot)[-3:] == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 @pytest.mark.parametrize("text", [b"", b"W(9)\n\0", b"FOO\nW(9)\n\0"])
@@ -504,12 +504,12 @@ def test_an_upload_while_text_arrives(line: str) -> None:
     robot.talk(session, 10)
     for byte in line.encode():
         session.receive(robot.step(bytes((byte,))), robot.now_ms)
-    found = robot.until(session, request)
+    outcome = robot.until(session, request)
     # in one frame's place it may start, and an S that comes later stops it
-    assert found in (OK, STATUSES["NOT_BEGUN"], STATUSES["STALE"], STATUSES["LATCHED"])
+    assert outcome in (OK, STATUSES["NOT_BEGUN"], STATUSES["STALE"], STATUSES["LATCHED"])
     robot.talk(session, 6000)
     image = fetched(robot, session)
-    if found == OK:
+    if outcome == OK:
         assert image.endswith(image_of(LONG).code)
     elif not line.startswith("SB"):
         assert image == before
@@ -536,9 +536,9 @@ def test_text_while_a_program_is_being_saved(start: str) -> None:
 
 def test_values_wait_for_room_and_none_is_lost() -> None:
     robot = switched_on()
-    said = typed(robot, "SI|X=0;LOOP(50);X=X+1.001;SHOW(X);END_LOOP;SHOW(X>1)\n", 3000)
+    answers = typed(robot, "SI|X=0;LOOP(50);X=X+1.001;SHOW(X);END_LOOP;SHOW(X>1)\n", 3000)
     values = [f"// {(k + 1) * 1.001:.3f}" for k in range(50)]
-    assert said == [
+    assert answers == [
         "// OK",
         *(value.rstrip("0").rstrip(".") for value in values),
         "// TRUE",
@@ -629,7 +629,7 @@ def test_the_obstacle_program_in_lines(end: str) -> None:
     robot.wait(2500)
     robot.sense(0, 0, 9_000)
     robot.wait(1000)
-    assert happened(robot)[-1] == "MOTORS 60 -60"
+    assert actions_of(robot)[-1] == "MOTORS 60 -60"
     assert typed(robot, OBSTACLE.rstrip("\n").replace("\n", end) + end)[-1] == "// OK"
 
 
@@ -655,10 +655,10 @@ def on_a_slow_line() -> HostFirmware:
 
 def answered(robot: HostFirmware, line: str) -> bytes:
     """Return what the robot says to a line, to its end."""
-    said = robot.wait(1, f"{line}\n".encode())
+    answer = robot.wait(1, f"{line}\n".encode())
     while part := robot.wait(2500):
-        said += part
-    return said
+        answer += part
+    return answer
 
 
 @pytest.mark.sampled("cut")
@@ -707,9 +707,9 @@ def test_of_a_program_whose_bytes_found_no_room_nothing_is_run(seed: int) -> Non
         rows += [f"F(0.01,{rng.randrange(20, 90)})" for _ in range(rng.randrange(1, 6))]
         text = "\n".join([*rows, "END_LOOP", ""]).encode()
         at_once = rng.randrange(len(text))
-        said = robot.step(text[:at_once], flags=16)
-        said += "\n".join(typed(robot, text[at_once:], 300)).encode()
-        is_lost = b"// Bytes were lost. Begin again." in said
+        answer = robot.step(text[:at_once], flags=16)
+        answer += "\n".join(typed(robot, text[at_once:], 300)).encode()
+        is_lost = b"// Bytes were lost. Begin again." in answer
         times_lost += is_lost
         assert not is_lost or not robot.did, text
     assert 0 < times_lost < 12
@@ -742,7 +742,7 @@ def test_a_line_of_a_program_may_come_late_and_indented(blanks: str) -> None:
     typed(robot, "SI|LOOP(2)\n", 1500)
     typed(robot, f"{blanks}F(0.2,50)\n", 1500)
     assert typed(robot, "END_LOOP\n", 700) == ["// OK", "// DONE"]
-    assert happened(robot) == LINE[:2] * 2 + LINE[2:]
+    assert actions_of(robot) == LINE[:2] * 2 + LINE[2:]
 
 
 @pytest.mark.parametrize(

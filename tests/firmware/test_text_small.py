@@ -12,7 +12,7 @@ import pytest
 from tests.firmware import test_text, test_text_fuzz
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
-from tests.support.robot_on_host import computer, happened, pushed, send, stored, switched_on
+from tests.support.robot_on_host import actions_of, computer, pushed, send, stored, switched_on
 from tests.support.text_robot import (
     LINE,
     SAVED_BACK,
@@ -74,7 +74,7 @@ def test_sb_keeps_the_button_until_the_next_line() -> None:
     for _ in range(2):
         robot.push()
         robot.wait(400)
-    assert happened(robot) == LINE * 2
+    assert actions_of(robot) == LINE * 2
     robot.did.clear()
     assert typed(robot, "SI|R(0.1,40)\n", 300) == ["// OK", LOST, "// DONE"]
     assert pushed(robot) == SAVED_BACK
@@ -90,12 +90,12 @@ def test_a_new_line_ends_what_runs_when_it_is_whole() -> None:
     send(robot, session, "SI|F(30, 60)", saves=False, is_detached=True)
     robot.wait(4000)
     typed(robot, "SI|R(0.2, 40);W(0.1)")
-    assert happened(robot)[-1] == "MOTORS 60 60"
+    assert actions_of(robot)[-1] == "MOTORS 60 60"
     assert typed(robot, "\n", 600) == ["// OK", LOST, "// DONE"]
-    assert happened(robot)[-4:] == ["MOTORS 0 0", "MOTORS 40 -40", "MOTORS 0 0", "FINISHED"]
+    assert actions_of(robot)[-4:] == ["MOTORS 0 0", "MOTORS 40 -40", "MOTORS 0 0", "FINISHED"]
     typed(robot, "SI|F(30,50)\n", 300)
     typed(robot, "SI|X = " + "1.2345 + " * 12)
-    assert happened(robot)[-2:] == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert actions_of(robot)[-2:] == ["MOTORS 50 50", "MOTORS 0 0"]
     assert typed(robot, "0; SHOW(X)\n", 100) == ["// OK", "// 14.82", "// DONE"]
 
 
@@ -121,7 +121,7 @@ def test_a_request_while_a_block_is_open_finds_the_stored_program() -> None:
     assert fetched(robot, session) == before
     assert robot.until(session, session.start()) == OK
     robot.talk(session, 400)
-    assert happened(robot) == SAVED_BACK
+    assert actions_of(robot) == SAVED_BACK
 
 
 @pytest.mark.sampled("at_ms", keep=3)
@@ -143,9 +143,9 @@ def test_a_line_while_a_program_is_saved_leaves_what_runs(
     robot, session = switched_on(), computer()
     send(robot, session, "SI|F(5, 60)", saves=True, is_detached=True)
     robot.wait(3500)
-    assert happened(robot) == ["MOTORS 60 60"]
+    assert actions_of(robot) == ["MOTORS 60 60"]
     assert typed(robot, "SB|F(0.1,50); S\n", 100) == ["// Still saving. Send it again."]
-    assert happened(robot) == ["MOTORS 60 60"]
+    assert actions_of(robot) == ["MOTORS 60 60"]
     robot.wait(3000)
     stored(robot, session)
     image = fetched(robot, session)
@@ -168,16 +168,16 @@ def test_a_line_while_a_program_is_saved_says_so_also_after_a_stop() -> None:
         ("ST\n", False), ("STO;P(\n", True), ("SS\n", True), ("STOPP\n", False),
         ("X\n", False), (";\n", False), ("F(1,50)\n", False),
     ],
-    ids=lambda each: repr(each)[1:-1],
+    ids=lambda value: repr(value)[1:-1],
 )  # fmt: skip
 def test_s_alone_stops_what_tsc_live_runs(line: str, stops: bool) -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.live(image_of("SI|F(5, 60)").code)) == OK
-    assert happened(robot) == ["MOTORS 60 60"]
+    assert actions_of(robot) == ["MOTORS 60 60"]
     typed(robot, line, 0)
     for _ in range(600):  # a heartbeat after a line is text, and repeated
         robot.talk(session, 1)
-    assert happened(robot)[:2] == ["MOTORS 60 60"] + ["MOTORS 0 0"] * stops
+    assert actions_of(robot)[:2] == ["MOTORS 60 60"] + ["MOTORS 0 0"] * stops
     assert (status(robot, session).state == STATE_STOPPED) == stops
 
 

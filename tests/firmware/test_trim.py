@@ -24,20 +24,20 @@ def level(power: int, least: int, weakened: int) -> int:
         return 0
     low = level_of(least)
     missing = low + level_of(max(weakened, 0))
-    found = low + level_of(abs(power)) * (256 - missing) // 256
+    duty = low + level_of(abs(power)) * (256 - missing) // 256
     if missing == 0:
-        found = level_of(abs(power))
-    return found if power > 0 else -found
+        duty = level_of(abs(power))
+    return duty if power > 0 else -duty
 
 
 def levels(wheels: int, balance: int, least: int) -> list[tuple[int, int]]:
-    found = []
+    pairs = []
     for power in POWERS:
         left, right = level(power, least, balance), level(power, least, -balance)
         left = -left if wheels & LEFT_REVERSED else left
         right = -right if wheels & RIGHT_REVERSED else right
-        found.append((right, left) if wheels & EXCHANGED else (left, right))
-    return found
+        pairs.append((right, left) if wheels & EXCHANGED else (left, right))
+    return pairs
 
 
 def trim_of(wheels: int, balance: int, least: int) -> bytes:

@@ -78,7 +78,7 @@ def switched_on(sketch: Path, baud: int) -> Uno:
     return uno
 
 
-def said(uno: Uno, since: int) -> str:
+def answer_lines(uno: Uno, since: int) -> str:
     return bytes(byte.value for byte in uno.sent_bytes[since:]).decode("latin-1")
 
 
@@ -87,7 +87,7 @@ def drive(uno: Uno) -> None:
     uno.run_ms(SILENCE_MS + 50)
     uno.send(RUNS)
     uno.run_ms(SILENCE_MS + 100)
-    assert states(uno) == FORWARD, said(uno, 0)[-200:]
+    assert states(uno) == FORWARD, answer_lines(uno, 0)[-200:]
 
 
 def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: bool = False) -> float:
@@ -261,7 +261,7 @@ def test_a_remote_that_repeats_is_heard_again_after_a_second(
         assert states(uno) == OFF
         again_ms = repeat_until_it_drives(uno, 3000)
         assert SILENCE_MS - 100 < again_ms <= SILENCE_MS + 2 * EACH_MS
-        assert said(uno, before).count(PAUSE) == 1, "what is dropped is told once"
+        assert answer_lines(uno, before).count(PAUSE) == 1, "what is dropped is told once"
 
 
 def test_after_the_stop_sequence_a_second_of_silence_is_needed(
@@ -274,7 +274,7 @@ def test_after_the_stop_sequence_a_second_of_silence_is_needed(
         uno.run_ms(50)
         assert states(uno) == OFF
         assert repeat_until_it_drives(uno, 3000) == 3000
-        assert said(uno, before).count(PAUSE) == 1
+        assert answer_lines(uno, before).count(PAUSE) == 1
         uno.run_ms(SILENCE_MS)
         assert repeat_until_it_drives(uno, 3000) == EACH_MS
 
@@ -286,14 +286,16 @@ def test_in_an_open_block_a_spelling_belongs_to_the_program(
     uno, _ = driving_at
     for line, is_stopped in ((b"S", False), (b"STOP;STOP", False), (b"STOP NOW", True)):
         with uno.try_out():
-            for each in (b"SI|LOOP(2)", line):
-                uno.send(each + b"\r\n")
+            for data in (b"SI|LOOP(2)", line):
+                uno.send(data + b"\r\n")
                 uno.run_ms(100)
             assert states(uno) == OFF, line
             before = len(uno.sent_bytes)
             uno.send(b"F(0.1,80)\r\nEND_LOOP\r\n")
             uno.run_ms(200)
-            assert ("// OK" in said(uno, before)) is not is_stopped, said(uno, before)
+            assert ("// OK" in answer_lines(uno, before)) is not is_stopped, answer_lines(
+                uno, before
+            )
 
 
 # -------------------------------------------------------------------------------------------------
@@ -304,7 +306,7 @@ def check_latched(uno: Uno) -> None:
     before = len(uno.sent_bytes)
     uno.send(b"F(1,80)\n")
     uno.run_ms(200)
-    assert states(uno) == OFF and "// It was stopped." in said(uno, before), "it is latched"
+    assert states(uno) == OFF and "// It was stopped." in answer_lines(uno, before), "it is latched"
 
 
 def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> None:
@@ -319,7 +321,7 @@ def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> No
     before = len(uno.sent_bytes)
     uno.send(OBSTACLE_LINES[-1].encode() + b"\r\n")
     uno.run_ms(60)
-    assert states(uno) == FORWARD and said(uno, before) == "// OK\r\n"
+    assert states(uno) == FORWARD and answer_lines(uno, before) == "// OK\r\n"
 
 
 def test_a_mistake_that_waits_to_be_said_is_forgotten_by_the_next_line(
@@ -331,7 +333,7 @@ def test_a_mistake_that_waits_to_be_said_is_forgotten_by_the_next_line(
     before = len(uno.sent_bytes)
     uno.send(b"FOO\nFOO\nIF(TRUE)\nS\n")
     uno.run_ms(SILENCE_MS + 500)
-    first, *others = said(uno, before).splitlines()
+    first, *others = answer_lines(uno, before).splitlines()
     assert first == "// 1: Unknown word"
     assert set(others) <= {first, "// Waiting for ENDIF"} and others[-1] != first
 
@@ -406,12 +408,12 @@ def quick_uno(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Uno]:
 
 def lines_said(uno: Uno, data: bytes) -> list[str]:
     """Return the lines that the robot says to this, until it is silent and no program runs."""
-    before, seen = len(uno.sent_bytes), -1
+    before, sent_count = len(uno.sent_bytes), -1
     uno.send(data)
-    while seen != len(uno.sent_bytes):
-        seen = len(uno.sent_bytes)
+    while sent_count != len(uno.sent_bytes):
+        sent_count = len(uno.sent_bytes)
         uno.run_ms(QUIET_MS)
-    return said(uno, before).splitlines()
+    return answer_lines(uno, before).splitlines()
 
 
 @pytest.mark.sampled("line")
@@ -421,18 +423,18 @@ def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
     them, and while it answers it reads none."""
     uno, data = quick_uno, line.encode() + b"\r\n"
     with uno.try_out():
-        one = [each for each in lines_said(uno, data) if each not in ("// DONE", "// 1", LOST)]
+        one = [line for line in lines_said(uno, data) if line not in ("// DONE", "// 1", LOST)]
         for count in (TWENTY // 2, TWENTY):
             with uno.try_out():
                 many = lines_said(uno, data * count)
-                answers = sum(each in one for each in many)
+                answers = sum(line in one for line in many)
                 is_told = LOST in many or MUTE in many
                 assert is_told or answers == len(one) * count, many
                 assert is_told or count < TWENTY, "as twenty lines are, some are lost"
                 before = len(uno.sent_bytes)
                 uno.send(b"SI|SHOW(7)\n")
                 uno.run_ms(100)
-                assert said(uno, before).endswith("// 7\r\n// DONE\r\n")
+                assert answer_lines(uno, before).endswith("// 7\r\n// DONE\r\n")
 
 
 def test_a_line_of_227_bytes_is_pasted_whole(quick_uno: Uno) -> None:
@@ -445,8 +447,8 @@ if __name__ == "__main__":
     drawn = random.Random(given.seed)
     with tempfile.TemporaryDirectory() as folder:
         for rate in BAUDS:
-            made = build(rate, Path(folder))
+            simulator = build(rate, Path(folder))
             for first in range(0, given.count // 2, 500):
                 some = min(500, given.count // 2 - first)
-                slowest = stop_after_random_bytes(made, rate, drawn, some)
+                slowest = stop_after_random_bytes(simulator, rate, drawn, some)
                 print(f"{some} stops at {rate} baud, the slowest {slowest:.1f} ms", flush=True)

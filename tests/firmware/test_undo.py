@@ -28,9 +28,9 @@ from tests.support.kept_programs import (
 from tests.support.robot_on_host import (
     KIT,
     LONG,
+    actions_of,
     broken_upload,
     computer,
-    happened,
     held,
     outcome,
     send,
@@ -95,7 +95,7 @@ def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> 
         assert held(robot, session) == good
     robot.push()
     robot.talk(session, 400)
-    assert "MOTORS 50 50" in happened(robot)
+    assert "MOTORS 50 50" in actions_of(robot)
     assert program_after_power_off(robot) == good
     # the next program goes beside the one that it can run
     send(robot, session, C)
@@ -118,7 +118,7 @@ def test_a_robot_begins_with_the_newest_program_that_it_can_run(
     assert robot.is_lit == has_good
     robot.push()
     robot.talk(session, 400)
-    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"] * has_good
+    assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"] * has_good
     send(robot, session, C, runs=False)
     stored(robot, session)
     assert program_after_power_off(robot) == bytes_of(C)
@@ -132,7 +132,7 @@ def test_a_program_that_is_not_saved_makes_way_for_the_saved_one() -> None:
     send(robot, session, C, saves=False)
     robot.talk(session, 500)
     memory = robot.memory()
-    assert robot.done(session, session.undo()).saved == SAVED_STORED
+    assert robot.complete(session, session.undo()).saved == SAVED_STORED
     assert held(robot, session) == bytes_of(B)
     robot.talk(session, 500)
     assert robot.memory() == memory, "nothing is written"
@@ -149,7 +149,7 @@ def test_a_program_that_is_not_saved_stays_where_nothing_is() -> None:
     assert held(robot, session) == bytes_of(A)
     robot.push()
     robot.talk(session, 400)
-    assert "MOTORS 50 50" in happened(robot)
+    assert "MOTORS 50 50" in actions_of(robot)
 
 
 # -- in the middle of something -------------------------------------------------------------------
@@ -239,13 +239,13 @@ def test_pulled_out_at_any_moment_it_has_one_of_the_two(cut_ms: int) -> None:
     request = session.undo()
     robot.talk(session, cut_ms)
     memory = robot.memory()
-    found = []
+    programs = []
     for nonce in (5, 6):
         restarted, other = switched_on(memory), computer(nonce)
-        found.append(held(restarted, other))
+        programs.append(held(restarted, other))
         memory = restarted.memory()
-    assert found[0] == found[1]
-    assert found[0] in (bytes_of(A), bytes_of(B))
+    assert programs[0] == programs[1]
+    assert programs[0] in (bytes_of(A), bytes_of(B))
     is_answered = request.outcome is not None
     robot.talk(session, 1000)
     assert program_after_power_off(robot) == bytes_of(A)
@@ -314,14 +314,14 @@ def robot_in_state(state: str, has_draft: bool = True) -> tuple[Table, Session]:
 
 def after_power_off(table: Table) -> bytes:
     """Return the program that it holds at the next two starts, the same, for who has its key."""
-    memory, found = table.robot.memory(), []
+    memory, programs = table.robot.memory(), []
     for nonce in (31, 32):
         robot = switched_on(memory, seed=nonce)
         asks = Session(nonce, 9600, KIT.fingerprint, keys=table.keys)
-        found.append(held(robot, asks))
+        programs.append(held(robot, asks))
         memory = robot.memory()
-    assert found[0] == found[1]
-    return found[0]
+    assert programs[0] == programs[1]
+    return programs[0]
 
 
 def program_of(power: int) -> bytes:
@@ -352,7 +352,7 @@ def test_undo_in_every_state(state: str, has_draft: bool) -> None:
     assert held(robot, session) == now
     assert robot.is_latched, "what runs ends"
     robot.talk(session, 1500)
-    moves = {line for line in happened(robot) if line.startswith("MOTORS")}
+    moves = {line for line in actions_of(robot) if line.startswith("MOTORS")}
     assert moves == ({"MOTORS 0 0"} if was_running else set()), "nothing starts"
     stored(robot, session)
     assert after_power_off(table) == now
@@ -369,8 +369,8 @@ def test_two_at_once_are_two(state: str) -> None:
     table, session = robot_in_state(state)
     robot, previous = table.robot, back_in(state)
     requests = [session.undo(), session.undo()]
-    found = [robot.until(session, request) for request in requests]
-    assert found == [OK if previous else NO_PREVIOUS] * 2
+    outcomes = [robot.until(session, request) for request in requests]
+    assert outcomes == [OK if previous else NO_PREVIOUS] * 2
     programs = [outcome(pending_request).values.program for pending_request in requests if previous]
     assert len(set(programs)) == len(programs)
     stored(robot, session)
@@ -383,11 +383,13 @@ def test_two_at_once_are_two(state: str) -> None:
 def test_a_plug_that_is_pulled_leaves_a_program_that_was_there(state: str, cut_ms: int) -> None:
     table, session = robot_in_state(state)
     robot = table.robot
-    kept = {after_power_off(table), program_of(EARLIER), program_of(SAVED)}
-    kept |= {program_of(OTHER)} if state == "is bringing back the previous program" else set()
+    programs_there = {after_power_off(table), program_of(EARLIER), program_of(SAVED)}
+    programs_there |= (
+        {program_of(OTHER)} if state == "is bringing back the previous program" else set()
+    )
     session.undo()
     robot.talk(session, cut_ms)
-    assert after_power_off(table) in kept
+    assert after_power_off(table) in programs_there
 
 
 def test_a_stranger_brings_nothing_back() -> None:

@@ -33,7 +33,7 @@ BUSY = "{ cli(); __builtin_avr_delay_cycles(170000); sei(); }"  # over 10 ms
 
 def counted(wired: Wired) -> tuple[int, ...]:
     """Return the damaged and dropped messages, framing errors and overruns that the robot tells."""
-    values = wired.done(wired.session.status())
+    values = wired.complete(wired.session.status())
     return values.damaged, values.dropped, values.framing, values.overrun
 
 

@@ -86,7 +86,7 @@ def test_a_measured_robot_keeps_how_fast_it_is(sketch: Path, memory: Path) -> No
     uno.kill()
     with switched_on(sketch, memory) as restarted:
         wired = computer(restarted, 2)
-        assert trim_from_reply(wired.done(wired.session.trim())) == Trim(pace=pace)
+        assert trim_from_reply(wired.complete(wired.session.trim())) == Trim(pace=pace)
         assert drive_ms(restarted, "SI|F(20 CM, 60)") == pytest.approx(804, abs=2)
         assert drive_ms(restarted, "SI|R(90 DEG, 60)") == pytest.approx(417, abs=2)
 
@@ -140,7 +140,7 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
         wired.run(140)
     assert sorted(taken)[len(taken) * 3 // 4] <= LIVE_CYCLES
     assert max(taken) <= LATE_CYCLES
-    assert wired.done(wired.session.status()).damaged == 0
+    assert wired.complete(wired.session.status()).damaged == 0
 
 
 def low_for(uno: Uno, ms: float) -> None:
@@ -172,12 +172,12 @@ def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: 
     assert states(uno) == FORWARD
     uno.drive("radio", True)
     wired.run(60)
-    left = uno.cycle + CYCLES_PER_MS
+    left_cycle = uno.cycle + CYCLES_PER_MS
     low_for(uno, 51)
     wired.run(100)
     assert states(uno) == OFF
     off = max(uno.pins[name].cycle for name in MOTORS)
-    assert 49.5 * CYCLES_PER_MS <= off - left < 53 * CYCLES_PER_MS
+    assert 49.5 * CYCLES_PER_MS <= off - left_cycle < 53 * CYCLES_PER_MS
     wired.run(300)
     stops = [event.cause for event in wired.session.events() if event.name == "STOPPED"]
     assert stops == [CABLE]
@@ -252,10 +252,10 @@ def test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset(uno: Uno) -> None
 
 def test_what_tasks_show_is_of_their_own_shows(uno: Uno) -> None:
     """All of them wait for the wire, which takes 18 ms for each value."""
-    found = compile_text(SHOWS, KIT)
-    places, wired = source_map.map_of_compiled(found), computer(uno)
-    finder = ShowFinder({checksum(found.image): places})
-    assert wired.until(wired.session.upload(unpack(found.image))) == OK
+    compilation = compile_text(SHOWS, KIT)
+    places, wired = source_map.map_of_compiled(compilation), computer(uno)
+    finder = ShowFinder({checksum(compilation.image): places})
+    assert wired.until(wired.session.upload(unpack(compilation.image))) == OK
     events: list[Event] = []
     while not any(event.name == "DONE" for event in events):
         wired.run(20)

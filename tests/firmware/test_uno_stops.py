@@ -52,7 +52,7 @@ def test_a_stop_is_at_the_pins_in_12_us(
         together = stopped.worst_case_cycles()
     with capsys.disabled():
         slowest_us, together_us = (
-            each / CYCLES_PER_MS * 1000 for each in (max(stopped.stop_cycles), together)
+            cycles / CYCLES_PER_MS * 1000 for cycles in (max(stopped.stop_cycles), together)
         )
         print(f"\n  {slowest_us:.1f} us; all at once {together_us:.1f} us", end=" ")
     assert together <= MOST_CYCLES + more_cycles

@@ -23,20 +23,22 @@ def until_saved(wired: Wired, limit_ms: int = 4000) -> int:
     """Return how the program is kept, when that is decided."""
     end_ms = wired.now_ms + limit_ms
     while wired.now_ms < end_ms:
-        found = saved(wired)
-        if found in (LOW, STORED):
-            return found
+        saved_count = saved(wired)
+        if saved_count in (LOW, STORED):
+            return saved_count
         wired.run(20)
     raise AssertionError("still saving")
 
 
 @BOARDS
-@pytest.mark.parametrize(("volts", "found"), [(5, STORED), (4.05, STORED), (3.95, LOW), (3, LOW)])
-def test_it_saves_from_four_volts_on(robot: Uno, volts: float, found: int) -> None:
+@pytest.mark.parametrize(
+    ("volts", "millivolts"), [(5, STORED), (4.05, STORED), (3.95, LOW), (3, LOW)]
+)
+def test_it_saves_from_four_volts_on(robot: Uno, volts: float, millivolts: int) -> None:
     wired = computer(robot)
     robot.supply(volts)
     send(wired, SAVES)
-    assert until_saved(wired) == found
+    assert until_saved(wired) == millivolts
 
 
 def marks(uno: Uno, since: int) -> list[int]:
@@ -145,13 +147,13 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
             shown += [event.value for event in wired.session.events()
                       if event.name == "SHOW"]  # fmt: skip
         assert wired.session.is_running
-        kept = [event for event in uno.events if event.kind == "eeprom" and event.cycle > begun]
-        left = [
+        writes = [event for event in uno.events if event.kind == "eeprom" and event.cycle > begun]
+        outputs = [
             pin_change.cycle
             for pin_change in uno.pins.history("trigger")
             if pin_change.state == "low"
         ]
-    assert len(kept) > 300
+    assert len(writes) > 300
     assert len(shown) > 30
     distances = [value for value in shown if value not in (200_000, 800_000)]
     assert len(distances) > 10
@@ -159,4 +161,4 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
     wrong = [value for value in distances if abs(value - 1000 * distance_cm) > 6 * STEP]
     assert not wrong
     assert {200_000, 800_000} < set(shown)
-    assert min(b - a for a, b in pairwise(left) if a > begun) >= 30 * CYCLES_PER_MS
+    assert min(b - a for a, b in pairwise(outputs) if a > begun) >= 30 * CYCLES_PER_MS

@@ -30,7 +30,7 @@ PACED = Trim(is_exchanged=True, least=3, pace=Pace(10, 20, 30, 40))
 
 def hello_of(wired: Wired) -> HelloReply:
     """Return what HELLO says of the robot."""
-    return wired.done(wired.session.hello())
+    return wired.complete(wired.session.hello())
 
 
 @pytest.mark.sampled("board")
@@ -51,7 +51,7 @@ def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: 
     with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept) as uno:
         uno.run_ms(300)
         wired = computer(uno)
-        assert wired.done(wired.session.trim(PACED.data()))
+        assert wired.complete(wired.session.trim(PACED.data()))
         for number, text in enumerate((AWAY, LATER)):
             wired = computer(uno, 2 + 2 * number)
             send(wired, text)
@@ -81,7 +81,7 @@ def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: 
         hello_reply = hello_of(wired)
         assert (hello_reply.reset, hello_reply.fault) == (1, STALL)
         assert hello_reply.fault_program == image_of(text).checksum
-        assert trim_from_reply(wired.done(wired.session.trim())) == PACED
+        assert trim_from_reply(wired.complete(wired.session.trim())) == PACED
 
 
 @pytest.mark.sampled(of="hangs of an Uno")

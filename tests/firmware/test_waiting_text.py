@@ -17,7 +17,7 @@ from tests.machines.host_firmware import HostFirmware
 from tests.support.button_states import SmallRobot
 from tests.support.campaign import wanted
 from tests.support.images import image_of
-from tests.support.robot_on_host import KIT, computer, happened
+from tests.support.robot_on_host import KIT, actions_of, computer
 from tiniscript import compile_text
 from tiniscript.bytecode.image import HEADER_BYTES
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
@@ -180,7 +180,7 @@ def test_one_letter_makes_no_move_of_a_number(text: bytes) -> None:
     assert robot.until(session, request) == OK
     robot.talk(session, 50)
     assert [event.value for event in session.events() if event.name == "SHOW"] == [-1337933387]
-    assert happened(robot) == ["FINISHED"]
+    assert actions_of(robot) == ["FINISHED"]
 
 
 if __name__ == "__main__":

@@ -67,7 +67,7 @@ def check(seed: int) -> str:
             status = table.outcome(session, session.upload(image_of(text)))
             assert status == "OK", f"{seed} {status}"
             robot.talk(session, 3500)
-            saved = robot.done(session, session.status()).saved
+            saved = robot.complete(session, session.status()).saved
             is_kept = saved == SAVED_STORED
             program.asked(bytes_of(text), is_kept)
         elif what == "claim":
@@ -101,10 +101,10 @@ def check(seed: int) -> str:
     # A robot that cannot keep who it is has no key of anybody.
     assert whose in owner.may_be or worn_of(worn, IDENTITY) == 2, f"{seed} {worn}"
     assert later.robot and later.robot.name.encode() in name.may_be, f"{seed} {worn} {later.robot}"
-    trim_reply = restarted.robot.done(later, later.trim())
+    trim_reply = restarted.robot.complete(later, later.trim())
     assert trim_reply.pace in pace.may_be, f"{seed} {worn}"
     assert pack("<BbB", *trim_reply[:3]) in trim.may_be, f"{seed} {worn}"
-    has_program = restarted.robot.done(later, later.status()).length != 0
+    has_program = restarted.robot.complete(later, later.status()).length != 0
     image = held(restarted.robot, later) if has_program else b""
     assert image in program.may_be, f"{seed} {worn}"
     return outcome
@@ -113,8 +113,8 @@ def check(seed: int) -> str:
 @pytest.mark.sampled("part", keep=2)
 @pytest.mark.parametrize("part", range(10))
 def test_what_is_said_of_what_is_kept_is_true(part: int) -> None:
-    found = Counter(check(seed) for seed in range(part * 30, part * 30 + 30))
-    assert found["it says what is not kept"] > 1 and found["all is kept"] > 1, found
+    counts = Counter(check(seed) for seed in range(part * 30, part * 30 + 30))
+    assert counts["it says what is not kept"] > 1 and counts["all is kept"] > 1, counts
 
 
 if __name__ == "__main__":

@@ -87,10 +87,10 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
         assert states(uno) == OFF
         process("upload", program, "--port", uno.pty).gives(0)
         uno.pause()
-        left = [change for change in uno.pins.history("left") if change.state == "pwm"]
-        assert len(left) == 1
-        off = [change for change in uno.pins.history("left") if change.cycle > left[0].cycle]
-        assert off[0].cycle - left[0].cycle == pytest.approx(300 * CYCLES_PER_MS, rel=0.02)
+        outputs = [change for change in uno.pins.history("left") if change.state == "pwm"]
+        assert len(outputs) == 1
+        off = [change for change in uno.pins.history("left") if change.cycle > outputs[0].cycle]
+        assert off[0].cycle - outputs[0].cycle == pytest.approx(300 * CYCLES_PER_MS, rel=0.02)
         assert states(uno) == OFF
 
 
@@ -176,7 +176,7 @@ def test_a_mega_that_was_reset_is_waited_for(
         mega.go(speed=3.0)
         for words in (["doctor", "--identify"], ["doctor", "--ports", "--ask"]):
             for _ in range(TRIES):  # on a busy computer it is late; each try resets it
-                done = process(*words, "--port", mega.pty)
-                if "tinibot" in done.out:
+                result = process(*words, "--port", mega.pty)
+                if "tinibot" in result.out:
                     break
-            assert "tinibot" in done.out, (done.out, done.err)
+            assert "tinibot" in result.out, (result.out, result.err)

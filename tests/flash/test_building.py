@@ -17,7 +17,7 @@ import pytest
 from tests.machines.bootloaders import bootloader
 from tests.machines.uno import needed
 from tests.support.casefile import ROOT
-from tests.support.command import Done, Tsc, process
+from tests.support.command import CommandResult, Tsc, process
 from tests.support.copies import linked
 from tests.support.edited_robots import TEXTS
 from tests.support.flashed_boards import ENDS, command, copied, interrupted, new_board, tsc
@@ -58,18 +58,18 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
     variables, why = prepared()
     need(why or ("" if shutil.which("avrdude") else "no avrdude on this computer"))
     with new_board(bootloader("uno")) as uno:
-        done = tsc(clone, "--port", uno.pty, "--robot", str(own), **variables)
-        assert done.code == 0, done.err
-        assert "PlatformIO is building the firmware of mine for the uno" in done.err
-        first = done.out.splitlines()[0]
+        result = tsc(clone, "--port", uno.pty, "--robot", str(own), **variables)
+        assert result.code == 0, result.err
+        assert "PlatformIO is building the firmware of mine for the uno" in result.err
+        first = result.out.splitlines()[0]
         assert first.startswith("The firmware for mine was written to the uno and verified: ")
         info = process("doctor", "--json", "--port", uno.pty)
         assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in info.out, info.err
-    kept = ready.files(ready.firmware_cache())
-    assert [(each.title, each.board) for each in kept] == [("mine", "uno")]
+    files = ready.files(ready.firmware_cache())
+    assert [(file.title, file.board) for file in files] == [("mine", "uno")]
     second_build = tsc(clone, "--build", "--robot", str(own))  # PlatformIO could build nothing now
     assert (second_build.code, second_build.err) == (0, "")
-    assert second_build.out == f"mine on uno: ready, {kept[0].flash_bytes:,} bytes\n"
+    assert second_build.out == f"mine on uno: ready, {files[0].flash_bytes:,} bytes\n"
     source = clone.parent / "vm_arduino" / "src" / "main.cpp"
     source.unlink()
     source.write_text("?", encoding="utf-8")
@@ -130,25 +130,25 @@ def test_a_firmware_with_breakpoints_is_kept_beside_the_other_one(clone: Path) -
     variables, why = prepared()
     need(why)
     for _ in range(2):
-        done = tsc(clone, "--build", "--breakpoints", "--chip", "uno", **variables)
-        assert done.code == 0, done.err
-        assert "no longer reads typed lines of text" in done.err
-        assert done.out.startswith("tinibot on uno: ready, ")
+        result = tsc(clone, "--build", "--breakpoints", "--chip", "uno", **variables)
+        assert result.code == 0, result.err
+        assert "no longer reads typed lines of text" in result.err
+        assert result.out.startswith("tinibot on uno: ready, ")
         variables = {}  # PlatformIO could build nothing now
-    assert [each.title for each in ready.files(ready.firmware_cache())] == ["tinibot_breakpoints"]
+    assert [file.title for file in ready.files(ready.firmware_cache())] == ["tinibot_breakpoints"]
     assert "tinibot on uno: not built yet" in tsc(clone, "--list").out
 
 
-@pytest.mark.parametrize(("words", "said"), [
+@pytest.mark.parametrize(("words", "message"), [
     (("--chip", "mega"), "the firmware for the mega always has breakpoints"),
     (("--robot", "tinibot32"), "the firmware for the esp32dev always has breakpoints"),
     (("--robot", "tinibot2", "--chip", "uno"), "discs on its wheels"),
 ])  # fmt: skip
 def test_breakpoints_that_leave_nothing_out_or_have_no_room_are_refused(
-    clone: Path, words: tuple[str, ...], said: str
+    clone: Path, words: tuple[str, ...], message: str
 ) -> None:
-    done = tsc(clone, "--build", "--breakpoints", *words)
-    assert (done.code, done.out) == (2, "") and said in done.err
+    result = tsc(clone, "--build", "--breakpoints", *words)
+    assert (result.code, result.out) == (2, "") and message in result.err
 
 
 def test_the_header_that_somebody_has_made_is_not_the_robot(
@@ -223,10 +223,10 @@ def test_a_file_that_is_not_whole_is_built_anew(text: str, whole: bool) -> None:
 
 def test_the_cache_does_not_grow_for_ever() -> None:
     for number in range(ready.MOST_FILES + 5):
-        kept = ready.store("a/robot of mine", "uno", f"{number:016x}", b":00000001FF\n")
-        os.utime(kept.path, ns=(number, number))
-    found = ready.files(ready.firmware_cache())
-    assert len(found) == ready.MOST_FILES and found[-1].digest == f"{ready.MOST_FILES + 4:016x}"
+        file = ready.store("a/robot of mine", "uno", f"{number:016x}", b":00000001FF\n")
+        os.utime(file.path, ns=(number, number))
+    files = ready.files(ready.firmware_cache())
+    assert len(files) == ready.MOST_FILES and files[-1].digest == f"{ready.MOST_FILES + 4:016x}"
     assert {path.suffix for path in ready.firmware_cache().iterdir()} == {".hex"}
 
 
@@ -256,7 +256,7 @@ def make(name, rows):
 """
 
 
-def built(clone: Path, variables: dict[str, str], *words: str) -> Done:
+def built(clone: Path, variables: dict[str, str], *words: str) -> CommandResult:
     path = variables["PYTHONPATH"] + os.pathsep + str(clone)
     return tsc(clone, "--build", *words, **{**variables, "PYTHONPATH": path})
 
@@ -265,33 +265,33 @@ OFFLINE = 'print("Platform Manager: Installing atmelavr\\nHTTPClientError: "); s
 
 
 def test_offline_it_says_what_to_do(clone: Path, tmp_path: Path) -> None:
-    done = built(clone, pretending(tmp_path, OFFLINE), "--lang", "es")
-    done.gives(2, "¿Tiene internet esta computadora?", "(HTTPClientError)", out="")
-    log = Path(done.err.split()[-1])
+    result = built(clone, pretending(tmp_path, OFFLINE), "--lang", "es")
+    result.gives(2, "¿Tiene internet esta computadora?", "(HTTPClientError)", out="")
+    log = Path(result.err.split()[-1])
     assert log.parent == ready.firmware_cache() and "Installing atmelavr" in log.read_text()
     assert not ready.files(ready.firmware_cache())
 
 
-@pytest.mark.sampled("body", "said", keep=2)
-@pytest.mark.parametrize(("body", "said"), [
+@pytest.mark.sampled("body", "reason", keep=2)
+@pytest.mark.parametrize(("body", "reason"), [
     ('print("Compiling a\\nsrc/a.cpp:3:1: error: no such thing"); sys.exit(1)', "no such thing"),
     ('print("Compiling a\\nLinking"); sys.exit(0)', "Linking"),  # and there is no file
     ("sys.exit(7)", "exit code 7"),
     ('os.write(1, b"Compiling \\xff\\x1b[2J error\\n" * 100_000); sys.exit(1)', "error"),
 ])  # fmt: skip
 def test_a_build_that_fails_has_its_reason(
-    body: str, said: str, clone: Path, tmp_path: Path
+    body: str, reason: str, clone: Path, tmp_path: Path
 ) -> None:
-    done = built(clone, pretending(tmp_path, body)).gives(2, said, out="")
-    assert "\x1b" not in done.err
+    result = built(clone, pretending(tmp_path, body)).gives(2, reason, out="")
+    assert "\x1b" not in result.err
 
 
 def test_a_firmware_that_the_board_does_not_hold_is_refused_before_it_is_written(
     clone: Path, tmp_path: Path
 ) -> None:
-    done = built(clone, pretending(tmp_path, TOO_LARGE))
-    done.gives(2, "does not fit on", "33000 > 32256", out="")
-    assert "upgrade" not in done.err
+    result = built(clone, pretending(tmp_path, TOO_LARGE))
+    result.gives(2, "does not fit on", "33000 > 32256", out="")
+    assert "upgrade" not in result.err
     assert not ready.files(ready.firmware_cache())
 
 
@@ -309,8 +309,8 @@ if name == "{chip}":
 make(name, ":00000001FF\\n")
 """
     words = ("--chip", chip, "--lang", "es")
-    done = built(clone, pretending(tmp_path, body), *words).gives(0)
-    assert done.err.count(f"queda {lacks}") == 1, done
+    result = built(clone, pretending(tmp_path, body), *words).gives(0)
+    assert result.err.count(f"queda {lacks}") == 1, result
     assert len(list(ready.firmware_cache().glob("*.hex"))) == 1
 
 
@@ -339,9 +339,9 @@ def test_own_settings_build_nothing_else(clone: Path, tmp_path: Path) -> None:
         variables[f"PLATFORMIO_{name}"] = "other"
     variables["PLATFORMIO_CORE_DIR"] = "kept"
     built(clone, variables)
-    seen = (ready.firmware_cache() / "build.log").read_text().split()[1:]
-    assert "PLATFORMIO_CORE_DIR" in seen and "PLATFORMIO_SETTING_ENABLE_TELEMETRY" in seen
-    assert not [name for name in seen if re.search("FLAGS|SRC|BUILD|WORKSPACE|ENVS", name)]
+    lines = (ready.firmware_cache() / "build.log").read_text().split()[1:]
+    assert "PLATFORMIO_CORE_DIR" in lines and "PLATFORMIO_SETTING_ENABLE_TELEMETRY" in lines
+    assert not [name for name in lines if re.search("FLAGS|SRC|BUILD|WORKSPACE|ENVS", name)]
 
 
 def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Path) -> None:
@@ -364,8 +364,8 @@ def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Pat
 def test_where_nothing_can_be_kept_it_says_so(clone: Path, tmp_path: Path) -> None:
     body = f'{MAKES}\nmake("uno", ":00000001FF\\n")'
     (tmp_path / "cache").write_text("a file")
-    done = built(clone, pretending(tmp_path, body))
-    done.gives(2, "make room there", str(tmp_path / "cache"))
+    result = built(clone, pretending(tmp_path, body))
+    result.gives(2, "make room there", str(tmp_path / "cache"))
 
 
 def test_a_file_that_cannot_be_removed_yet_fails_no_build(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -406,9 +406,9 @@ def test_without_platformio_it_says_how_to_get_it(
     monkeypatch.setattr(install_advice, "install_command", lambda extra: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setenv("HOME", str(tmp_path))
-    done = tsc("firmware", "--build").gives(2, out="")
-    assert f'pip install -e "{ROOT}[firmware]"' in done.err.replace(f"{sys.executable} -m ", "")
-    assert "PlatformIO" in done.err
+    result = tsc("firmware", "--build").gives(2, out="")
+    assert f'pip install -e "{ROOT}[firmware]"' in result.err.replace(f"{sys.executable} -m ", "")
+    assert "PlatformIO" in result.err
 
 
 @pytest.mark.parametrize("place", ["bin/pio", ".platformio/penv/bin/pio"])
@@ -431,7 +431,7 @@ def test_a_package_without_sources_says_how_to_get_them(tmp_path: Path) -> None:
 # -- how far it is
 
 
-@pytest.mark.parametrize(("said", "seen"), [
+@pytest.mark.parametrize(("expected", "progress"), [
     ("Processing uno (board: uno)\n", None),
     ("Platform Manager: Installing atmelavr\n", StepProgress(FETCHING, 0, "atmelavr")),
     ("Tool Manager: Installing platformio/toolchain-atmelavr @ ~1.70300.0\nDownloading 0% 10%",
@@ -441,8 +441,8 @@ def test_a_package_without_sources_says_how_to_get_them(tmp_path: Path) -> None:
     ("Building in release mode\nCompiling a\nCompiling b\n", StepProgress(COMPILING, 20)),
     ("Compiling a\n" * 50, StepProgress(COMPILING, 99)),
 ])  # fmt: skip
-def test_how_far_it_is(said: str, seen: StepProgress | None) -> None:
-    assert building.parse_progress(said, 10) == seen
+def test_how_far_it_is(expected: str, progress: StepProgress | None) -> None:
+    assert building.parse_progress(expected, 10) == progress
 
 
 def test_all_sources_are_not_yet_all_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -456,12 +456,14 @@ def test_all_sources_are_not_yet_all_of_it(tmp_path: Path, monkeypatch: pytest.M
         encoding="utf-8",
     )
     monkeypatch.setattr(building, "platformio", lambda: [sys.executable, str(script)])
-    sources, found = building.sources(), list[StepProgress]()
+    sources, steps = building.sources(), list[StepProgress]()
     assert sources is not None
     with pytest.raises(building.CannotBuild):
-        building.build(sources, robots.load("tinibot"), found.append)
-    assert {seen.phase for seen in found} <= {COMPILING}, "nothing is left out for what fails so"
-    assert 60 < found[-1].percent < 90
+        building.build(sources, robots.load("tinibot"), steps.append)
+    assert {progress.phase for progress in steps} <= {COMPILING}, (
+        "nothing is left out for what fails so"
+    )
+    assert 60 < steps[-1].percent < 90
 
 
 # -- a robot with an ESP32: PlatformIO builds and writes it
@@ -479,7 +481,7 @@ assert os.path.exists("partitions.csv") and "esp32dev" in words
 """
 
 
-def written(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> Done:
+def written(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> CommandResult:
     main_end, its_end = os.openpty()
     port = os.ttyname(its_end)
     variables = pretending(tmp_path, ESP32)
@@ -493,8 +495,8 @@ def written(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> Done:
 
 
 def test_an_esp32_is_built_and_written_in_one_command(clone: Path, tmp_path: Path) -> None:
-    done = written(clone, tmp_path)
-    done.gives(3, "no robot responds", out="firmware for tinibot32 was written to the esp32dev")
+    result = written(clone, tmp_path)
+    result.gives(3, "no robot responds", out="firmware for tinibot32 was written to the esp32dev")
 
 
 @pytest.mark.parametrize("code", [1, -9])

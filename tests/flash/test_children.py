@@ -26,17 +26,17 @@ class Broken(Exception):
     """The look at it has failed."""
 
 
-def looks_on(said: str) -> None:
+def looks_on(text: str) -> None:
     """It may go on."""
 
 
-def breaks(said: str) -> None:
-    if "begun" in said:
+def breaks(text: str) -> None:
+    if "begun" in text:
         raise Broken
 
 
-def presses(said: str) -> None:
-    if "begun" in said:
+def presses(text: str) -> None:
+    if "begun" in text:
         raise KeyboardInterrupt
 
 
@@ -70,8 +70,8 @@ def test_nothing_is_left_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
         noted = tmp_path / f"{round_}"
         words = ["sh", "-c", PARENT.format(end), "sh", str(noted)]
         if failure is None:
-            code, said = children.run(words, None, look)
-            assert said == "begun\n" and (code == 0) == (way == "it ends well")
+            code, text = children.run(words, None, look)
+            assert text == "begun\n" and (code == 0) == (way == "it ends well")
         else:
             with pytest.raises(failure):
                 children.run(words, None, look, None, lambda _: way != FIRST_ITS_END, 0.2)

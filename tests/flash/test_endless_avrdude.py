@@ -30,27 +30,27 @@ def ended(folder: Path, body: str) -> tuple[WriteResult, list[StepProgress | Non
     """
     program = folder / "avrdude.py"
     program.write_text(body, encoding="utf-8")
-    found: list[StepProgress | None] = []
+    steps: list[StepProgress | None] = []
 
-    def look(seen: StepProgress | None) -> None:
-        found.append(seen)
-        if seen:
+    def look(progress: StepProgress | None) -> None:
+        steps.append(progress)
+        if progress:
             (folder / "seen").touch()
 
-    return avrdude.write([sys.executable, str(program)], UNO, "x", folder, look), found
+    return avrdude.write([sys.executable, str(program)], UNO, "x", folder, look), steps
 
 
-@pytest.mark.parametrize("said", ["avrdude: warning\n", "x" * 4096, "\x1b[31m", "#"])
-def test_one_that_writes_for_ever(tmp_path: Path, said: str) -> None:
-    assert ended(tmp_path, WRITES.format(said=said))[0].outcome == avrdude.ENDLESS
+@pytest.mark.parametrize("message", ["avrdude: warning\n", "x" * 4096, "\x1b[31m", "#"])
+def test_one_that_writes_for_ever(tmp_path: Path, message: str) -> None:
+    assert ended(tmp_path, WRITES.format(said=message))[0].outcome == avrdude.ENDLESS
 
 
 def test_its_progress_is_kept_until_then(tmp_path: Path) -> None:
     waits = f"import os\nwhile not os.path.exists({str(tmp_path / 'seen')!r}): pass\n"
     body = f'print("{HALF}", flush=True)\n' + waits + WRITES.format(said=" waiting\n")
-    how, found = ended(tmp_path, body)
+    how, steps = ended(tmp_path, body)
     assert how.outcome == avrdude.ENDLESS
-    assert StepProgress(avrdude.WRITING, 50) in found
+    assert StepProgress(avrdude.WRITING, 50) in steps
 
 
 def test_one_that_says_a_little_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -117,8 +117,8 @@ def test_its_children_end_with_it(tmp_path: Path, rest: str) -> None:
 
 
 def test_the_sentence_says_what_to_do() -> None:
-    for said in in_all("flash_endless"):
-        assert "avrdude" in said and "{port}" in said
+    for sentence in in_all("flash_endless"):
+        assert "avrdude" in sentence and "{port}" in sentence
 
 
 def test_ctrl_c_while_one_is_started_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:

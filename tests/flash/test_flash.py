@@ -73,11 +73,11 @@ def test_a_new_board_becomes_a_robot(
     board: str, robot: str, option: str, bytes_least: int, package: Path
 ) -> None:
     with new_board(bootloader(board)) as uno:
-        done = tsc(package, "--port", uno.pty, "--robot", robot, "--chip", option).gives(0)
-        first, second = done.out.splitlines()[:2]
-        said = f"The firmware for {robot} was written to the {board} and verified: "
-        assert first.startswith(said)
-        assert int(first.removeprefix(said).split()[0].replace(",", "")) > bytes_least
+        result = tsc(package, "--port", uno.pty, "--robot", robot, "--chip", option).gives(0)
+        first, second = result.out.splitlines()[:2]
+        message = f"The firmware for {robot} was written to the {board} and verified: "
+        assert first.startswith(message)
+        assert int(first.removeprefix(message).split()[0].replace(",", "")) > bytes_least
         assert second.startswith(f"{robot} on {uno.pty}, id ")
 
 
@@ -101,9 +101,9 @@ def changed_optiboot(folder: Path, old: str, new: str) -> Bootloader:
 def test_another_chip_is_refused(package: Path, tmp_path: Path) -> None:
     of = changed_optiboot(tmp_path, "putch(SIGNATURE_1)", "putch(0x94)")  # an ATmega168P's
     with new_board(of) as uno:
-        done = tsc(package, "--port", uno.pty, "--lang", "es")
-        assert done.code == 3
-        assert f"la placa en {uno.pty} no es un uno" in done.err
+        result = tsc(package, "--port", uno.pty, "--lang", "es")
+        assert result.code == 3
+        assert f"la placa en {uno.pty} no es un uno" in result.err
 
 
 def test_a_memory_that_does_not_keep_it_is_seen(package: Path, tmp_path: Path) -> None:
@@ -152,9 +152,9 @@ def test_a_nano_is_tried_with_both_of_its_bootloaders(
 ) -> None:
     silent = 'print("avrdude: stk500_getsync() attempt 1 of 10: not in sync: resp=0x00")'
     body = f'{silent}\nopen({str(tmp_path / "bauds")!r}, "a").write(baud + " ")\nsys.exit(1)'
-    done = tsc(package, "--port", board.pty, "--chip", "nano", **fake(tmp_path, body))
-    assert done.code == 3
-    assert "trying an older Nano" in done.err and "Is it a nano" in done.err
+    result = tsc(package, "--port", board.pty, "--chip", "nano", **fake(tmp_path, body))
+    assert result.code == 3
+    assert "trying an older Nano" in result.err and "Is it a nano" in result.err
     assert (tmp_path / "bauds").read_text() == "115200 57600 "
 
 
@@ -201,9 +201,9 @@ def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
 
 
 def test_without_avrdude_it_says_where_to_get_it(package: Path, tmp_path: Path) -> None:
-    done = tsc(package, "--port", "x", PATH=str(tmp_path), HOME=str(tmp_path))
-    assert done.code == 2
-    assert "avrdude" in done.err and firmware_command.INSTALLS[sys.platform] in done.err
+    result = tsc(package, "--port", "x", PATH=str(tmp_path), HOME=str(tmp_path))
+    assert result.code == 2
+    assert "avrdude" in result.err and firmware_command.INSTALLS[sys.platform] in result.err
 
 
 # -- avrdude
@@ -230,7 +230,7 @@ def test_the_avrdude_of_another_program_is_found(
     assert avrdude.find_avrdude() == [str(program), "-C", str(inside / "avrdude.conf")]
 
 
-@pytest.mark.parametrize(("how", "said"), [
+@pytest.mark.parametrize(("how", "name"), [
     (avrdude.NOBODY, "avrdude: stk500_getsync() attempt 10 of 10: not in sync: resp=0xc9"),
     (avrdude.NOBODY, "avrdude: stk500v2_ReceiveMessage(): timeout"),
     (avrdude.NOBODY, "avrdude error: unable to open programmer arduino on port /dev/ttyUSB0"),
@@ -249,9 +249,9 @@ def test_the_avrdude_of_another_program_is_found(
     (avrdude.FAILED, "avrdude: cannot find its settings"),
     (avrdude.FAILED, ""),
 ])  # fmt: skip
-def test_what_avrdude_says_has_a_name(how: str, said: str) -> None:
+def test_what_avrdude_says_has_a_name(how: str, name: str) -> None:
     for code in (1, 255, -9, -15):  # also where it was ended from outside
-        assert avrdude.result_of(code, said).outcome == how
+        assert avrdude.result_of(code, name).outcome == how
 
 
 def test_every_end_has_its_sentence() -> None:
@@ -259,7 +259,7 @@ def test_every_end_has_its_sentence() -> None:
         assert has_text(f"flash_{how}")
 
 
-@pytest.mark.parametrize(("said", "seen"), [
+@pytest.mark.parametrize(("expected", "progress"), [
     ("", None),
     ("Reading | ##################### | 100% 0.00s\n", None),  # the signature
     ("Reading | ##### | 100% 0.00s\nWriting | ", ("writing", 0)),
@@ -268,12 +268,12 @@ def test_every_end_has_its_sentence() -> None:
      ("reading", 2)),
     ("Writing 15630 bytes flash | #####", ("writing", 10)),
 ])  # fmt: skip
-def test_how_far_it_is(said: str, seen: object) -> None:
-    assert avrdude.parse_progress(said) == seen
+def test_how_far_it_is(expected: str, progress: object) -> None:
+    assert avrdude.parse_progress(expected) == progress
 
 
 def test_what_cannot_be_run_is_no_crash(tmp_path: Path) -> None:
-    ended = avrdude.write([str(tmp_path / "none")], UNO, "x", tmp_path, lambda seen: None)
+    ended = avrdude.write([str(tmp_path / "none")], UNO, "x", tmp_path, lambda progress: None)
     assert ended.outcome == avrdude.FAILED and "No such file" in ended.output
 
 
@@ -285,12 +285,12 @@ def test_a_firmware_is_the_same_however_it_is_built(
     package: Path, tmp_path: Path, with_platformio: None
 ) -> None:
     """As `pio run` builds a shipped robot, and as `tsc firmware` builds any, in another folder."""
-    made = firmware_files.build(robots.load("tinibot"), tmp_path)
-    assert made.name.startswith("tinibot-uno-")
+    path = firmware_files.build(robots.load("tinibot"), tmp_path)
+    assert path.name.startswith("tinibot-uno-")
     halting = firmware_files.build(robots.load("tinibot"), tmp_path, has_breakpoints=True)
     assert halting.name.startswith("tinibot_breakpoints-uno-")
     one, other = (file.read_text().split() for file in (
-        made, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
+        path, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
     assert one == other
 
 
@@ -312,8 +312,8 @@ def test_breakpoints_are_built_where_they_take_the_place_of_the_reader_of_text()
     """Of each robot on each board that lacks one of both."""
     for robot in firmware_files.shipped_robots():
         halting = [
-            each for each in firmware_files.halting_robots()
-            if (each.name, each.board.chip) == (robot.name, robot.board.chip)
+            halting for halting in firmware_files.halting_robots()
+            if (halting.name, halting.board.chip) == (robot.name, robot.board.chip)
         ]  # fmt: skip
         is_small = robot.board.chip in ("uno", "nano")
         assert len(halting) == (is_small and not robot.board.discs), robot
@@ -328,17 +328,17 @@ def test_the_licence_of_the_core_goes_with_it(tmp_path: Path) -> None:
 
 
 def test_what_came_with_the_package_is_listed(package: Path) -> None:
-    done = tsc(package, "--list").gives(0)
+    result = tsc(package, "--list").gives(0)
     files = ready.files(package / "tiniscript" / "flash" / "ready")
-    assert [(each.title, each.board) for each in files] == [
+    assert [(file.title, file.board) for file in files] == [
         ("grabber", "mega"), ("tinibot", "nano"), ("tinibot", "uno")
     ]  # fmt: skip
-    for each in files:
-        assert f"{each.title} on {each.board}: ready, {each.flash_bytes:,} bytes" in done.out
-    assert "liner on nano: not built yet" in done.out
+    for file in files:
+        assert f"{file.title} on {file.board}: ready, {file.flash_bytes:,} bytes" in result.out
+    assert "liner on nano: not built yet" in result.out
 
 
-@pytest.mark.parametrize(("words", "said"), [
+@pytest.mark.parametrize(("words", "message"), [
     ([], "on which port"),
     (["--port", ""], "--port takes a port's name"),
     (["--port", "socket://localhost:1"], "is a wireless or network port."),
@@ -348,8 +348,8 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
     (["--port", "x", "--robot", "mine.toml"], "There is no file mine.toml"),
     (["--build", "--robot", "nobody"], "nobody"),
 ])  # fmt: skip
-def test_wrong_use_is_said(words: list[str], said: str, tsc: Tsc) -> None:
+def test_wrong_use_is_said(words: list[str], message: str, tsc: Tsc) -> None:
     is_told_without = "--chip" in words or "--robot" in words
     need("" if is_told_without or shutil.which("avrdude") else "no avrdude on this computer")
-    done = tsc("firmware", "--yes", *words)
-    assert done.code in (2, 3) and said in done.err
+    result = tsc("firmware", "--yes", *words)
+    assert result.code in (2, 3) and message in result.err

@@ -31,9 +31,9 @@ class Clock:
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    found = Clock()
-    monkeypatch.setattr(avrdude, "monotonic", found)
-    return found
+    made_clock = Clock()
+    monkeypatch.setattr(avrdude, "monotonic", made_clock)
+    return made_clock
 
 
 def output(rng: random.Random, whole_s: float, longest_s: float) -> list[tuple[float, str]]:
@@ -41,19 +41,19 @@ def output(rng: random.Random, whole_s: float, longest_s: float) -> list[tuple[f
     parts = [SIGNATURE, "Writing | ", *"#" * BAR_MARKS, " |\nReading | ", *"#" * BAR_MARKS, " |\n"]
     gaps_s = [rng.random() ** 4 for _ in parts]
     total = sum(gaps_s)
-    at_s, found = 0.0, []
+    at_s, lines = 0.0, []
     for gap_s, part in zip(gaps_s, parts, strict=True):
         at_s += min(gap_s / total * whole_s, longest_s)
-        found.append((at_s, part))
-    return found
+        lines.append((at_s, part))
+    return lines
 
 
 def watched(
     clock: Clock, parts: list[tuple[float, str]], until_s: float
 ) -> tuple[WriteResult | None, float]:
     """Return how the watch has ended it, or None, and when."""
-    seen: list[StepProgress | None] = []
-    watch = avrdude._Watch(seen.append)
+    all_progress: list[StepProgress | None] = []
+    watch = avrdude._Watch(all_progress.append)
     began_s = clock.now_s
     while clock.now_s - began_s < until_s:
         passed_s = clock.now_s - began_s
@@ -62,7 +62,11 @@ def watched(
         except avrdude._GivenUp as over:
             return over.result, passed_s
         clock.now_s += LOOK_S
-    percents = [each.percent + 100 * (each.phase == avrdude.READING) for each in seen if each]
+    percents = [
+        progress.percent + 100 * (progress.phase == avrdude.READING)
+        for progress in all_progress
+        if progress
+    ]
     assert percents == sorted(percents) and percents[-1] == 200
     return None, until_s
 

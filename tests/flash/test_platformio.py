@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines import host
-from tests.support.command import Done
+from tests.support.command import CommandResult
 from tests.support.needs import need
 from tests.support.platformio import OFFLINE, SKETCH, copied, pio, prepared
 from tiniscript import compile_text, robots
@@ -80,8 +80,8 @@ def test_a_test_case_that_fails_is_one_and_has_its_name(native: Path) -> None:
 
 
 def test_no_test_case_fails(native: Path) -> None:
-    done = pio(native, "test", "-e", "native", "-a", "--test-case=no such case")
-    done.gives(1, out="no test case has run")
+    result = pio(native, "test", "-e", "native", "-a", "--test-case=no such case")
+    result.gives(1, out="no test case has run")
 
 
 def test_early_end_fails(native: Path) -> None:
@@ -180,13 +180,13 @@ def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     project: Path, new: str, old: str
 ) -> None:
     """What differs is how it is uploaded: as PlatformIO's board for such Nanos."""
-    made: list[bytes] = []
+    builds: list[bytes] = []
     held: list[int] = []
     for name in (new, old):
         log = pio(project, "run", "-e", name).gives(0).out
         held += map(int, re.findall(r"Flash: .*bytes from (\d+)", log))
-        made.append((project / ".pio" / "build" / name / "firmware.hex").read_bytes())
-    assert made[0] == made[1]
+        builds.append((project / ".pio" / "build" / name / "firmware.hex").read_bytes())
+    assert builds[0] == builds[1]
     assert "nanoatmega328new" in pio(project, "project", "config").out.partition(f"env:{new}\n")[2]
     assert held == [30_720] * 2
 
@@ -225,7 +225,7 @@ def test_test_sketch_has_a_program_that_every_robot_can_run() -> None:
 # -- the bootstrap ------------------------------------------------------------------------------
 
 
-def offline(*words: str, **variables: str) -> Done:
+def offline(*words: str, **variables: str) -> CommandResult:
     completed = subprocess.run(
         [*OFFLINE, "--offline", *words],
         env={**os.environ, **variables},
@@ -233,15 +233,15 @@ def offline(*words: str, **variables: str) -> Done:
         text=True,
         check=False,
     )
-    return Done(completed.returncode, completed.stdout, completed.stderr)
+    return CommandResult(completed.returncode, completed.stdout, completed.stderr)
 
 
 def test_own_installation_is_left_alone(project: Path, tmp_path: Path) -> None:
     manifest = tmp_path / "platforms" / "native" / "platform.json"
     manifest.parent.mkdir(parents=True)
     manifest.write_text("{}")
-    done = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
-    done.gives(0, "platforms of its own (native)", out="")
+    result = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+    result.gives(0, "platforms of its own (native)", out="")
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == [manifest]
 
 
@@ -250,10 +250,10 @@ def test_every_platform_has_its_version_and_another_one_is_refused(
 ) -> None:
     settings = (project / "platformio.ini").read_text(encoding="utf-8")
     named = re.findall(r"(?m)^platform = (.*)", settings)
-    assert named and all(re.fullmatch(r"\w+ @ \d+\.\d+\.\d+", each) for each in named)
+    assert named and all(re.fullmatch(r"\w+ @ \d+\.\d+\.\d+", package) for package in named)
     with changed(project / "platformio.ini", ("= atmelavr @ 5.1.0", "= atmelavr @ 5.0.0")):
-        done = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
-    done.gives(2, "wants atmelavr @ 5.0.0, the stand-in is one for 5.1.0", out="")
+        result = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+    result.gives(2, "wants atmelavr @ 5.0.0, the stand-in is one for 5.1.0", out="")
 
 
 def test_command_runs_in_the_project(project: Path) -> None:

@@ -93,14 +93,14 @@ def fuzz(program: Path, folder: Path, runs: int, seed: int) -> Found:
     # no stack is kept of each allocation: where an access is wrong says enough
     options = {**os.environ, "ASAN_OPTIONS": "malloc_context_size=0"}
     completed = subprocess.run(command, capture_output=True, errors="replace", env=options)
-    said = completed.stderr + completed.stdout
+    output = completed.stderr + completed.stdout
     if completed.returncode == 0:
-        count = DONE.search(said)
-        assert count, said[-2000:]
+        count = DONE.search(output)
+        assert count, output[-2000:]
         return Found(int(count[1]), "", b"")
-    wrong = re.findall(r"WRONG .*|MISUSE .*|ERROR: .*|runtime error: .*", said)
+    wrong = re.findall(r"WRONG .*|MISUSE .*|ERROR: .*|runtime error: .*", output)
     data = crash.read_bytes() if crash.exists() else b""
-    return Found(0, "; ".join(wrong[:3]) or said[-2000:], data)
+    return Found(0, "; ".join(wrong[:3]) or output[-2000:], data)
 
 
 # -- the first inputs -----------------------------------------------------------------------------
@@ -108,9 +108,9 @@ def fuzz(program: Path, folder: Path, runs: int, seed: int) -> Found:
 
 def seeds(name: str) -> Iterator[bytes]:
     """Yield inputs as `vm_arduino/extras/fuzz` reads them."""
-    made = {"machine": machine_seeds, "link": link_seeds, "store": store_seeds,
+    seed_makers = {"machine": machine_seeds, "link": link_seeds, "store": store_seeds,
             "mqtt": mqtt_seeds}  # fmt: skip
-    yield from made[name.removeprefix("large_")]()
+    yield from seed_makers[name.removeprefix("large_")]()
 
 
 def machine_seeds() -> Iterator[bytes]:
@@ -152,8 +152,8 @@ def store_seeds() -> Iterator[bytes]:
 
 def mqtt_seeds() -> Iterator[bytes]:
     """Messages of the robot's writer, and what a broker says."""
-    said = ("20020000", "20020005", "d000", "9003000100", "3101ff", "30ffffffff7f", "3003000561")
-    for text in said:
+    packets = ("20020000", "20020005", "d000", "9003000100", "3101ff", "30ffffffff7f", "3003000561")
+    for text in packets:
         data = bytes.fromhex(text)
         yield bytes([0x40 + len(data)]) + data + bytes([0x42]) + b"\xd0\0"
     for topic, payload in ((20, 40), (64, 512), (65, 1), (1, 513), (0, 0)):
@@ -182,11 +182,11 @@ def main() -> int:
         return 2
     with tempfile.TemporaryDirectory() as folder:
         inputs = first_inputs(options.name, Path(folder))
-        found = fuzz(harness(options.name), inputs, options.runs, options.seed)
-    if found.wrong:
-        print(f"{found.wrong}\ninput: {found.input.hex()}")
+        report = fuzz(harness(options.name), inputs, options.runs, options.seed)
+    if report.wrong:
+        print(f"{report.wrong}\ninput: {report.input.hex()}")
         return 1
-    print(f"{found.runs} runs of {options.name}, nothing wrong; seed {options.seed}")
+    print(f"{report.runs} runs of {options.name}, nothing wrong; seed {options.seed}")
     return 0
 
 

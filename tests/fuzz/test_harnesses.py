@@ -37,6 +37,6 @@ def test_nothing_is_wrong(name: str, tmp_path: Path) -> None:
     inputs = first_inputs(name, tmp_path)
     for number, text in enumerate(FOUND.get(name, ())):
         (inputs / f"found-{number}").write_bytes(bytes.fromhex(text))
-    found = fuzz(harness(name), inputs, RUNS[name], SEED)
-    assert not found.wrong, f"{found.wrong}\ninput: {found.input.hex()}"
-    assert found.runs >= RUNS[name]
+    report = fuzz(harness(name), inputs, RUNS[name], SEED)
+    assert not report.wrong, f"{report.wrong}\ninput: {report.input.hex()}"
+    assert report.runs >= RUNS[name]

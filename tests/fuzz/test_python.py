@@ -48,9 +48,9 @@ PIECES = (
 
 @lru_cache
 def _texts(pattern: str) -> list[str]:
-    found = [path.read_text(encoding="utf-8") for path in sorted(ROOT.glob(pattern))]
-    assert found, pattern
-    return found
+    texts = [path.read_text(encoding="utf-8") for path in sorted(ROOT.glob(pattern))]
+    assert texts, pattern
+    return texts
 
 
 def changed_texts(pattern: str) -> SearchStrategy[str]:
@@ -124,11 +124,13 @@ def check_answers(items: list[tuple[int, int, bytes, bool]]) -> None:
     assert all(request.outcome is not None for request in requests)
 
 
-def check_message(found: object) -> None:
+def check_message(value: object) -> None:
     """A line of a shared port is a request that a session takes, or no message."""
     try:
-        for each in MessageReader(1 << 20).read_messages(json.dumps(found).encode() + b"\n"):
-            ask = request_maker(each, 1000)
+        for read_message in MessageReader(1 << 20).read_messages(
+            json.dumps(value).encode() + b"\n"
+        ):
+            ask = request_maker(read_message, 1000)
             session = Session(7, 9600, KIT.fingerprint)
             ask(session)
             for now_ms in range(0, 300, 50):
@@ -148,7 +150,7 @@ def check_line(data: bytes) -> None:
 
 # -- what is made ---------------------------------------------------------------------------------
 
-NUMBERS = [each.number for each in MESSAGES]
+NUMBERS = [message.number for message in MESSAGES]
 ITEMS = st.tuples(
     st.one_of(st.sampled_from(NUMBERS), st.integers(0, 63)),
     st.one_of(st.just(0), st.integers(-3, 40)),
@@ -168,7 +170,7 @@ VALUES = st.recursive(
     ),
     max_leaves=5,
 )  # fmt: skip
-FIELDS = sorted({name for each in RIGHT for name in each})
+FIELDS = sorted({name for message in RIGHT for name in message})
 NEAR = st.builds(
     lambda right, other: {**right, **other},
     st.sampled_from(RIGHT),
@@ -196,8 +198,8 @@ def make(kind: str, count: int, number: int) -> None:
     """Check so many things of a kind, the same for the same number."""
     check, strategy = KINDS[kind]
 
-    def one(each: Any) -> None:
-        check(each)
+    def one(value: Any) -> None:
+        check(value)
 
     checked = settings(
         max_examples=count, deadline=None, database=None,

@@ -41,29 +41,31 @@ SOURCES = sources()
 @pytest.mark.parametrize("language", languages.languages()[1:])
 def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(language: str, name: str) -> None:
     """And each translation is of the English text that is there now."""
-    found = languages.merged_catalogue(name, language)
-    assert found.problems == []
-    assert [at for at, entry in found.entries.items() if entry.translation and entry.is_stale] == []
-    assert [at for at, entry in found.entries.items() if entry.seen_hash == UNKNOWN_HASH] == [], (
-        f"python -m tools.languages --seen {language}"
-    )
+    catalogue = languages.merged_catalogue(name, language)
+    assert catalogue.problems == []
+    assert [
+        at for at, entry in catalogue.entries.items() if entry.translation and entry.is_stale
+    ] == []
+    assert [
+        at for at, entry in catalogue.entries.items() if entry.seen_hash == UNKNOWN_HASH
+    ] == [], f"python -m tools.languages --seen {language}"
     if read_language(FOLDER / language / ABOUT_FILE).is_complete:
         wanted = {at for at, entry in SOURCES[name].entries.items() if not entry.is_same}
-        said = {at for at, entry in found.entries.items() if entry.is_translated}
-        assert wanted <= said
+        translated = {at for at, entry in catalogue.entries.items() if entry.is_translated}
+        assert wanted <= translated
 
 
 @pytest.mark.parametrize("language", languages.languages()[1:])
 def test_a_language_is_in_step(language: str, tmp_path: Path) -> None:
     """What the tool writes is what is there."""
     own = Translation(language, sources())
-    was = {path.name: path.read_bytes() for path in own.folder.iterdir() if path.is_file()}
+    bytes_before = {path.name: path.read_bytes() for path in own.folder.iterdir() if path.is_file()}
     assert [path for path, problems in own.problems() if problems] == []
     assert [*own.follow_moved_texts()] == []
     own.folder = tmp_path
     own.write()
     for path in tmp_path.iterdir():
-        assert path.read_bytes() == was[path.name], "python -m tools.languages"
+        assert path.read_bytes() == bytes_before[path.name], "python -m tools.languages"
 
 
 @pytest.mark.parametrize("language", ["es", "pt"])
@@ -74,18 +76,20 @@ def test_a_whole_language_promises_to_be_complete(language: str) -> None:
 def test_what_messages_call_the_values_of_words_is_a_term() -> None:
     """Else a message in another language has an English name in it; a letter is one in each."""
     values = [argument for word in WORDS.values() for argument in word.arguments]
-    said = {each.name for each in values} | {each.unit for each in values if each.unit.islower()}
+    value_words = {value.name for value in values} | {
+        value.unit for value in values if value.unit.islower()
+    }
     terms = {key for key, _ in SOURCES["messages"].entries}
-    assert {f"term/{each}" for each in said if len(each) > 1} <= terms
+    assert {f"term/{name}" for name in value_words if len(name) > 1} <= terms
 
 
 def test_the_names_in_toml_files_are_translated() -> None:
     lesson = catalogue.load(catalogue.folders()[0])
-    assert [lesson.title(each) for each in ("en", "es", "tlh")] == [
+    assert [lesson.title(code) for code in ("en", "es", "tlh")] == [
         "The first line", "La primera línea", "The first line",
     ]  # fmt: skip
     labels = robots.load("liner").labels
-    assert [labels[each]["BUTTON"] for each in ("en", "es", "tlh")] == [
+    assert [labels[code]["BUTTON"] for code in ("en", "es", "tlh")] == [
         "bumper", "parachoques", "bumper",
     ]  # fmt: skip
 
@@ -96,7 +100,7 @@ def test_a_language_that_is_deleted_is_missed_by_no_other(language: str, tmp_pat
     package = tmp_path / "tiniscript"
     linked(FOLDER.parent, package, "*.texts", "__pycache__", "page", "ready")
     shutil.rmtree(package / "languages" / language)
-    others = [each for each in languages.languages() if each != language]
+    others = [code for code in languages.languages() if code != language]
     commands = [
         [*words, "--lang", other]
         for other in others
@@ -107,9 +111,9 @@ def test_a_language_that_is_deleted_is_missed_by_no_other(language: str, tmp_pat
         )
     ]  # fmt: skip
     commands.append(["check", "-e", "W(1)", "--lang", language])
-    *done, (code, refused) = _of_package(tmp_path, commands)
-    assert done == _of_package(FOLDER.parent.parent, commands)[:-1]
-    assert code == 2 and all(each in refused for each in others)
+    *outputs, (code, refused) = _of_package(tmp_path, commands)
+    assert outputs == _of_package(FOLDER.parent.parent, commands)[:-1]
+    assert code == 2 and all(other in refused for other in others)
 
 
 def _of_package(place: Path, commands: list[list[str]]) -> list[tuple[int, str]]:
@@ -130,7 +134,7 @@ def _of_package(place: Path, commands: list[list[str]]) -> list[tuple[int, str]]
         env={**os.environ, "PYTHONPATH": str(place)}, text=True, capture_output=True,
         timeout=HANGS_S,
     )  # fmt: skip
-    return [(code, said) for code, said in json.loads(completed.stdout)]
+    return [(code, text) for code, text in json.loads(completed.stdout)]
 
 
 @pytest.mark.parametrize("language", languages.languages())
@@ -156,9 +160,9 @@ def test_the_variables_of_a_locale_count_as_everywhere() -> None:
 
 
 def test_an_unknown_language_is_refused_with_the_known_ones(tsc: Tsc) -> None:
-    done = tsc("check", "-e", "W(1)", "--lang", "xx")
-    assert done.code == 2
-    assert all(code in done.err for code in languages.languages())
+    result = tsc("check", "-e", "W(1)", "--lang", "xx")
+    assert result.code == 2
+    assert all(code in result.err for code in languages.languages())
 
 
 @pytest.fixture
@@ -202,21 +206,21 @@ def test_a_terminal_has_sentences_in_its_width_and_a_pipe_each_in_one_row(
     monkeypatch.setenv("LC_ALL", longer)
     monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setenv("COLUMNS", "80")
-    said = []
+    sentences = []
     for kind in (Terminal, io.StringIO):
         streams = kind(), kind()
         for name, stream in zip(("stdout", "stderr"), streams, strict=True):
             monkeypatch.setattr(sys, name, stream)
         main([*words])
-        said.append("".join(string_io.getvalue() for string_io in streams))
-    narrow, wide = said
+        sentences.append("".join(string_io.getvalue() for string_io in streams))
+    narrow, wide = sentences
     assert max(map(len, narrow.split("\n"))) <= 80 < max(map(len, wide.split("\n")))
     assert narrow.split() == wide.split(), "nothing is lost, nor hidden"
     frames = [row for row in wide.split("\n") if re.search(r"^\S+ \d+:  |^ +\^+$", row)]
     assert [row for row in frames if row not in narrow.split("\n")] == []
 
 
-@pytest.mark.parametrize(("said", "rows"), [
+@pytest.mark.parametrize(("text", "rows"), [
     ("Nothing is too long.", ["Nothing is too long."]),
     ("Once upon a time, behind it", ["Once upon a time,", "behind it"]),
     ("Lift it. Try:  tsc run -e S", ["Lift it. Try:", "tsc run -e S"]),
@@ -225,8 +229,8 @@ def test_a_terminal_has_sentences_in_its_width_and_a_pipe_each_in_one_row(
     ("  seen: a port that is", ["  seen: a port that", "  is"]),
     ("one\n\nhttp://long.example/a/page", ["one", "", "http://long.example/a/page"]),
 ])  # fmt: skip
-def test_a_command_stays_in_one_row_where_there_is_room(said: str, rows: list[str]) -> None:
-    assert wrap(said, 20) == "\n".join(rows)
+def test_a_command_stays_in_one_row_where_there_is_room(text: str, rows: list[str]) -> None:
+    assert wrap(text, 20) == "\n".join(rows)
 
 
 # What is laid out, on a terminal and elsewhere.
@@ -260,21 +264,21 @@ UNSAID = {
 
 @pytest.mark.parametrize("language", UNSAID)
 def test_a_message_says_nothing_that_nobody_says(language: str) -> None:
-    said = [
+    texts = [
         text
         for key, texts in messages_of(language).items()
         for text in texts
         if "/more" not in key and re.search(UNSAID[language], text)
     ]
-    assert not said
+    assert not texts
 
 
 def messages_of(language: str) -> dict[str, list[str]]:
     """Return the texts of messages by key."""
-    found: dict[str, list[str]] = {}
+    messages: dict[str, list[str]] = {}
     for number in CODES:
         for part in ("message", "try", "more"):
             key = f"{number}/{part}"
-            found[key] = [*rendering._templates(key, language)]
-    assert sum(map(len, found.values())) > 400
-    return found
+            messages[key] = [*rendering._templates(key, language)]
+    assert sum(map(len, messages.values())) > 400
+    return messages

@@ -26,7 +26,7 @@ SPECIAL = re.compile(r"""(?:==|===|!=) ?["'](?:es|en|pt)["']|["'](?:es|en|pt)["'
 
 def test_no_code_asks_for_one_language() -> None:
     folders = ("compiler/tiniscript", "tools", "vm_arduino")
-    found = {}
+    counts = {}
     for path in sorted(path for folder in folders for path in (ROOT / folder).rglob("*")):
         parts = path.relative_to(ROOT).parts
         if path.suffix not in (".py", ".js", ".cpp", ".h") or not path.is_file():
@@ -35,8 +35,8 @@ def test_no_code_asks_for_one_language() -> None:
             continue
         count = len(SPECIAL.findall(path.read_text(encoding="utf-8")))
         if count:
-            found["/".join(parts)] = count
-    assert found == {}
+            counts["/".join(parts)] = count
+    assert counts == {}
 
 
 def _rows(language: str) -> list[tuple[str, list[str]]]:
@@ -56,16 +56,16 @@ def _words(language: str) -> set[str]:
 def test_words_of_a_language_are_in_its_folder() -> None:
     """Patterns of characters have some that are said for signs: `punto y coma`."""
     theirs = set().union(*map(_words, languages())) - _words(SOURCE_LANGUAGE) - {*WORDS}
-    found = set()
+    words_in_code = set()
     for path in sorted((ROOT / "compiler/tiniscript").rglob("*.py")):
         if "page" in path.parts:
             continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
-                said = theirs.intersection(re.findall(r"\b[A-Z_]{4,}\b", node.value))
+                words_here = theirs.intersection(re.findall(r"\b[A-Z_]{4,}\b", node.value))
                 if " " not in node.value.strip() or node.value.isupper():
-                    found |= {f"{path.name}: {each}" for each in said}
-    assert found == set()
+                    words_in_code |= {f"{path.name}: {word}" for word in words_here}
+    assert words_in_code == set()
 
 
 # What is written so in each language: signs, functions of Arduino, a word of Logo, letters, two

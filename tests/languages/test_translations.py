@@ -67,29 +67,29 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     languages.forget_languages()
 
 
-def write(path: Path, said: str) -> None:
-    path.write_text(said, encoding="utf-8", newline="")
+def write(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8", newline="")
 
 
-def said(key: str, language: str = "xx") -> str | dict[str, str]:
+def text_of(key: str, language: str = "xx") -> str | dict[str, str]:
     languages.forget_languages()
     return languages.texts("some", language)[key]
 
 
-def opened(place: Path, own: str | None = None, seen: bool = False) -> Translation:
-    """Return what `xx` has, as the tool sees it; `seen`: of the English texts of now."""
+def opened(place: Path, own: str | None = None, is_seen: bool = False) -> Translation:
+    """Return what `xx` has, as the tool sees it; `is_seen`: of the English texts of now."""
     if own is not None:
         write(place / "xx" / "some.toml", own)
     english = {"some": catalogue_source.load_catalogue(place / SOURCE_LANGUAGE / "some.toml")}
     translation = Translation("xx", english)
-    if seen:
+    if is_seen:
         translation.note_seen([])
         translation.write()
     return translation
 
 
 def problems(translation: Translation) -> list[tuple[str, int, str]]:
-    return [(path.name, *each) for path, some in translation.problems() for each in some]
+    return [(path.name, *problem) for path, some in translation.problems() for problem in some]
 
 
 # -- what is wrong
@@ -123,11 +123,11 @@ def problems(translation: Translation) -> list[tuple[str, int, str]]:
 def test_what_is_wrong_costs_its_row_and_is_said_with_its_line(
     row: str, line: int, why: str, place: Path
 ) -> None:
-    found = problems(opened(place, f"{OWN}{row}\nmore = ['', 'Quítalo.']\n"))
-    assert found[0][:2] == ("some.toml", line) and found[0][2].startswith(why)
-    assert said("b") == "Alto." and said("more/2") == "Quítalo."
+    rows = problems(opened(place, f"{OWN}{row}\nmore = ['', 'Quítalo.']\n"))
+    assert rows[0][:2] == ("some.toml", line) and rows[0][2].startswith(why)
+    assert text_of("b") == "Alto." and text_of("more/2") == "Quítalo."
     if not row.startswith(("b", 'a = "Lee {file}."\n', 'a = ["Lee {file}.", "Mi')):
-        assert said("a") == "Read {file}."
+        assert text_of("a") == "Read {file}."
     before = (place / "xx" / "some.toml").read_text().splitlines()
     reopened = opened(place)
     assert [*reopened.follow_moved_texts()] == []
@@ -145,8 +145,8 @@ def test_a_row_that_is_not_in_utf_8_is_said_in_english(data: bytes, line: int, p
     assert ("some.toml", line, "this is no UTF-8: save the file as UTF-8") in problems(
         opened(place)
     )
-    assert said("b") == "Alto."
-    assert said("a") == "Read {file}."
+    assert text_of("b") == "Alto."
+    assert text_of("a") == "Read {file}."
 
 
 def test_a_file_in_another_encoding_has_no_texts(place: Path) -> None:
@@ -154,14 +154,14 @@ def test_a_file_in_another_encoding_has_no_texts(place: Path) -> None:
     assert problems(opened(place)) == [
         ("some.toml", 1, "this is no UTF-8 text: save the file as UTF-8")
     ]
-    assert said("b") == "Stop."
+    assert text_of("b") == "Stop."
 
 
 def test_what_an_editor_does_to_a_file_is_no_mistake(place: Path) -> None:
     changed = '\ufeff# by somebody\r\n[x]\r\nb = "Alto."\r\na = """\r\nLee\r\n{file}."""\r\n'
     write(place / "xx" / "some.toml", changed)
     assert problems(opened(place)) == []
-    assert said("b") == "Alto." and said("a") == "Lee\n{file}."
+    assert text_of("b") == "Alto." and text_of("a") == "Lee\n{file}."
 
 
 @pytest.mark.parametrize(("row", "line", "why"), [
@@ -198,11 +198,11 @@ def test_what_a_language_cannot_say_of_itself_is_as_in_english(
     row: str, line: int, why: str, place: Path
 ) -> None:
     write(place / "xx" / ABOUT_FILE, row + "\n")
-    ((name, at, found),) = problems(opened(place, OWN))
-    assert (name, at) == (ABOUT_FILE, line) and found.startswith(why)
+    ((name, at, problem),) = problems(opened(place, OWN))
+    assert (name, at) == (ABOUT_FILE, line) and problem.startswith(why)
     languages.forget_languages()
     assert languages.language_info("xx").forms == ("one", "other")
-    assert said("b") == "Alto."
+    assert text_of("b") == "Alto."
 
 
 TOML = st.lists(st.sampled_from(["a", '"b/c"', " = ", '"', "'", '"""', "x", "[", "]", "{", "}",
@@ -214,8 +214,8 @@ TOML = st.lists(st.sampled_from(["a", '"b/c"', " = ", '"', "'", '"""', "x", "[",
 def test_no_bytes_in_a_file_stop_a_command(data: bytes) -> None:
     with TemporaryDirectory() as name:
         folder = Path(name)
-        for each in ("some.toml", SEEN_FILE, ABOUT_FILE):
-            (folder / each).write_bytes(data)
+        for file_name in ("some.toml", SEEN_FILE, ABOUT_FILE):
+            (folder / file_name).write_bytes(data)
         language = read_language(folder / ABOUT_FILE)
         assert len(language.form_digits) == NUMBERS_TRIED
         read_seen(folder / SEEN_FILE)
@@ -276,20 +276,20 @@ def test_a_form_that_no_number_has_may_be_missing(place: Path) -> None:
     ("en", "{n} checks", "1 check"), ("es", "{n} pruebas", "1 prueba"),
 ])  # fmt: skip
 def test_a_sentence_has_the_form_of_its_number(language: str, many: str, one: str) -> None:
-    said = Sentence(many)
-    said.language = language
-    assert said.format(n="1") == one
-    assert said.format(n=0) != f"0 {one[2:]}"
+    sentence = Sentence(many)
+    sentence.language = language
+    assert sentence.format(n="1") == one
+    assert sentence.format(n=0) != f"0 {one[2:]}"
 
 
 def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
     place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     opened(place, OWN + 'a = "Lee {file}."\n')
-    assert said("b") == "Alto.", "a new one is said at once"
-    opened(place, seen=True)
+    assert text_of("b") == "Alto.", "a new one is said at once"
+    opened(place, is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
-    assert said("b") == "Stop now." and said("a") == "Lee {file}."
+    assert text_of("b") == "Stop now." and text_of("a") == "Lee {file}."
     own = opened(place)
     assert tool.report(own) == 0
     out = capsys.readouterr().out
@@ -297,20 +297,20 @@ def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
     assert "xx: 1 texts are stale." in out and "xx: 1 of 5 texts are translated" in out
     write(place / "xx" / ABOUT_FILE, "is_complete = true\n")
     assert tool.report(opened(place)) == 4, "a whole language says all, and as it is now"
-    opened(place, seen=True)
-    assert said("b") == "Stop now.", "somebody has run the tool for others"
+    opened(place, is_seen=True)
+    assert text_of("b") == "Stop now.", "somebody has run the tool for others"
     assert own.note_seen(["x*", "b"]) == ["x*"]
     own.write()
-    assert said("b") == "Alto."
+    assert text_of("b") == "Alto."
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH)
-    assert said("b") == "Stop.", "of the text before it is none now"
+    assert text_of("b") == "Stop.", "of the text before it is none now"
 
 
 @pytest.mark.parametrize("has_run", [False, True])
 def test_a_text_in_front_of_others_moves_and_loses_no_translation(
     place: Path, has_run: bool
 ) -> None:
-    opened(place, 'more = ["", "Quítalo.", "Ponlo."]\n', seen=True)
+    opened(place, 'more = ["", "Quítalo.", "Ponlo."]\n', is_seen=True)
     moved = ENGLISH.replace('["{fix}", "Take it out.", "Put it in."]',
                             '["New.", "Put it in.", "{fix}", "Take it out."]')  # fmt: skip
     write(place / SOURCE_LANGUAGE / "some.toml", moved)
@@ -323,16 +323,20 @@ def test_a_text_in_front_of_others_moves_and_loses_no_translation(
         )
         write(place / "xx" / "some.toml", 'more = ["Nuevo.", "Ponlo.", "", "Quítalo."]\n')
     assert problems(opened(place)) == []
-    assert [said("more/2"), said("more/3"), said("more/4")] == ["Ponlo.", "{fix}", "Quítalo."]
-    assert said("more") == ("Nuevo." if has_run else "New.")
+    assert [text_of("more/2"), text_of("more/3"), text_of("more/4")] == [
+        "Ponlo.",
+        "{fix}",
+        "Quítalo.",
+    ]
+    assert text_of("more") == ("Nuevo." if has_run else "New.")
 
 
 def test_a_new_text_of_a_list_whose_english_has_moved_is_none_of_another_text(place: Path) -> None:
-    opened(place, 'more = ["", "Quítalo."]\n', seen=True)
+    opened(place, 'more = ["", "Quítalo."]\n', is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace('"{fix}", ', '"{fix}", "New.", '))
     ((_, line, why),) = problems(opened(place, 'more = ["", "Nuevo.", "Quítalo."]\n'))
     assert line == 1 and why.startswith("more: its English texts have other places now")
-    assert said("more/2") == "New."
+    assert text_of("more/2") == "New."
 
 
 def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(place: Path) -> None:
@@ -340,7 +344,7 @@ def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(p
     notes = '# who\n[x]\nb = "Alto."  # short\n# why\na = "Lee {file}."\ngoes = "Se va."\n# end\n'
     opened(place, notes)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH + 'goes = "It goes."\n')
-    opened(place, seen=True)
+    opened(place, is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("b =", "moved ="))
     own = opened(place, (place / "xx" / "some.toml").read_text("utf-8") + 'mistyped = "Ay."\n')
     assert [*own.follow_moved_texts()] == ["some.toml: goes"]
@@ -348,32 +352,35 @@ def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(p
     assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
         '# why\na = "Lee {file}."\n# who\n[x]\nmoved = "Alto."\n# end\nmistyped = "Ay."\n'
     )
-    assert said("moved") == "Alto."
-    seen = (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
-    assert [row.rpartition(" ")[0] for row in seen.splitlines()[1:]] == ["some a", "some moved"]
+    assert text_of("moved") == "Alto."
+    seen_file = (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
+    assert [row.rpartition(" ")[0] for row in seen_file.splitlines()[1:]] == [
+        "some a",
+        "some moved",
+    ]
     assert problems(opened(place)) == [("some.toml", 7, "mistyped: there is no such English text")]
     reopened = opened(place)
     assert [*reopened.follow_moved_texts()] == []
     reopened.write()
-    assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8") == seen
+    assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8") == seen_file
 
 
 def test_a_mistake_in_a_file_costs_nothing_that_is_noted(place: Path) -> None:
-    opened(place, OWN + 'more = ["", "Quítalo."]\n', seen=True)
-    seen = (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
+    opened(place, OWN + 'more = ["", "Quítalo."]\n', is_seen=True)
+    seen_file = (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
     for spoilt in ('b = "Alto.\n', 'more = ["", "a", "b", "c"]\n' + OWN, OWN + "b = 'x'\n"):
-        own = opened(place, spoilt, seen=True)
+        own = opened(place, spoilt, is_seen=True)
         assert [*own.follow_moved_texts()] == []
         own.write()
-        assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8").startswith(seen[:60])
-        kept = (place / "xx" / "some.toml").read_text(encoding="utf-8")
-        assert sorted(kept.splitlines()) == sorted(spoilt.splitlines())
+        assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8").startswith(seen_file[:60])
+        file_text = (place / "xx" / "some.toml").read_text(encoding="utf-8")
+        assert sorted(file_text.splitlines()) == sorted(spoilt.splitlines())
     (place / "xx" / "some.toml").write_bytes(OWN.encode("utf-16"))
-    own = opened(place, seen=True)
+    own = opened(place, is_seen=True)
     assert "some b" in (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
     opened(place, OWN)
-    assert said("b") == "Stop now.", "it is stale still"
+    assert text_of("b") == "Stop now.", "it is stale still"
 
 
 def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_else(
@@ -395,7 +402,7 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
         "a": "Abrir", "b": "Cierra", "b/2": "Abrir", "door": "Abierta", "d": "Abrir",
     }  # fmt: skip
     opened(place, 'a = "Abrir"\nb = ["Cierra", "Abre"]\n')
-    assert said("b/2") == "Abre"
+    assert text_of("b/2") == "Abre"
 
 
 def test_a_program_is_for_no_translator_and_may_have_a_lone_brace(place: Path) -> None:
@@ -405,7 +412,7 @@ def test_a_program_is_for_no_translator_and_may_have_a_lone_brace(place: Path) -
     own.put_all("some", pseudo(own.english["some"]))
     own.write()
     assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == 'a = "À. ñandú"\n'
-    assert said("b/wrong") == "LOOP(3) {"
+    assert text_of("b/wrong") == "LOOP(3) {"
 
 
 TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"))
@@ -424,18 +431,18 @@ def test_what_is_written_is_what_is_read(key: str, texts: list[str]) -> None:
     }  # fmt: skip
 
 
-@pytest.mark.parametrize(("said", "row"), [
+@pytest.mark.parametrize(("text", "row"), [
     ("A.", '"A."'), ('-e "S"', "'-e \"S\"'"), ("it's \"S\"", '"it\'s \\"S\\""'),
     ("a\nb\\", '"""\na\nb\\\\"""'), ('a\n"b"', '"""\na\n"b\\""""'), ("\t\x07", '"\\t\\u0007"'),
 ])  # fmt: skip
-def test_a_text_is_written_as_a_person_would(said: str, row: str) -> None:
-    assert quote(said) == row
+def test_a_text_is_written_as_a_person_would(text: str, row: str) -> None:
+    assert quote(text) == row
 
 
 def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    entries = [Entry("a", "Stop.", "", {"": each}) for each in ("x" * 41, "Arrêt", "Halte")]
+    entries = [Entry("a", "Stop.", "", {"": text}) for text in ("x" * 41, "Arrêt", "Halte")]
     own = Catalogue({(str(k), entry.key): entry for k, entry in enumerate(entries)})
     assert [why for _, why in check_robot(own)] == [
         f"a robot says at most 40 signs, in ASCII: {entry.translation['']}" for entry in entries[:2]
@@ -522,11 +529,12 @@ def test_a_stranger_adds_a_language_text_by_text(
 
 def test_what_is_missing_is_named_with_the_line_that_it_goes_after() -> None:
     """That of the text before it in English; another order of the file changes nothing there."""
-    said = {"": "x"}
-    rows = [Entry("a", "A"), Entry("b", "B", translation=said, line=7), Entry("c", "C", line=99),
-            Entry("d", "D", translation=said, line=3), Entry("e", "E")]  # fmt: skip
-    found = [(line, what.partition(" ")[0]) for line, what in tool.missing_rows(rows)]
-    assert found == [(1, "a"), (7, "c"), (3, "e")]
+    translated = {"": "x"}
+    rows = [Entry("a", "A"), Entry("b", "B", translation=translated, line=7),
+            Entry("c", "C", line=99), Entry("d", "D", translation=translated, line=3),
+            Entry("e", "E")]  # fmt: skip
+    missing = [(line, what.partition(" ")[0]) for line, what in tool.missing_rows(rows)]
+    assert missing == [(1, "a"), (7, "c"), (3, "e")]
 
 
 @pytest.mark.parametrize("name", ["messages", "robot", "command"])
@@ -657,8 +665,8 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows limits no files of a process")
 def test_a_clone_on_a_full_disk_speaks(package: Path) -> None:
-    code, said = command(package, "complie", "--lang", "es")
-    assert code == 2 and "¿Quisiste decir compile?" in said and said.count("\n") == 1
+    code, output = command(package, "complie", "--lang", "es")
+    assert code == 2 and "¿Quisiste decir compile?" in output and output.count("\n") == 1
     assert list(package.glob(f"languages/*/*{languages.CACHE_ENDING}*")) == []
 
 
@@ -683,9 +691,9 @@ def test_english_texts_that_are_wrong_are_said_without_words_of_ours(
         if path.is_file():
             path.chmod(0o644)
         spoil(path)
-        code, said = command(own, *words)
-        assert code == 2 and said == said.splitlines()[0] + "\n"
-        assert said.startswith(f"tsc: {path}:{why}")
+        code, output = command(own, *words)
+        assert code == 2 and output == output.splitlines()[0] + "\n"
+        assert output.startswith(f"tsc: {path}:{why}")
 
 
 # -- translators' tools
@@ -697,7 +705,7 @@ def own(place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Transla
     monkeypatch.chdir(tmp_path)
     before = ENGLISH.replace("Stop.", "Halt.")
     write(place / SOURCE_LANGUAGE / "some.toml", before)
-    opened(place, OWN + 'a = "Lee {file}."\nmore = ["", "", "Ponlo."]\n', seen=True)
+    opened(place, OWN + 'a = "Lee {file}."\nmore = ["", "", "Ponlo."]\n', is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH)
     return opened(place)
 
@@ -727,13 +735,13 @@ def test_what_comes_back_is_of_the_english_text_beside_it(
 ) -> None:
     """A fuzzy one and an empty one are left out; a text that has changed meanwhile is said."""
     translators.exchange("xx", own.english)
-    english, said = ENGLISH.replace("{n} b", "{n} B"), Path("xx.po").read_text(encoding="utf-8")
+    english, text = ENGLISH.replace("{n} b", "{n} B"), Path("xx.po").read_text(encoding="utf-8")
     write(
         place / SOURCE_LANGUAGE / "some.toml", english.replace('["{fix}", ', '["New.", "{fix}", ')
     )
-    said = said.replace('"Take it out."\nmsgstr ""', '"Take it out."\nmsgstr "¡Fuera \\"x\\"!"')
-    said = said.replace('msgstr[0] ""', 'msgstr[0] "{n} b"').replace('[1] ""', '[1] "{n} bb"')
-    write(Path("xx.po"), said.replace("Lee {file}", "Mira {file}"))
+    text = text.replace('"Take it out."\nmsgstr ""', '"Take it out."\nmsgstr "¡Fuera \\"x\\"!"')
+    text = text.replace('msgstr[0] ""', 'msgstr[0] "{n} b"').replace('[1] ""', '[1] "{n} bb"')
+    write(Path("xx.po"), text.replace("Lee {file}", "Mira {file}"))
     assert translators.exchange("xx.po", opened(place).english) == 1
     out = capsys.readouterr().out
     assert "some/n: its English text is not this one now: {n} byte" in out
@@ -744,7 +752,7 @@ def test_what_comes_back_is_of_the_english_text_beside_it(
     )
     translation = opened(place)
     assert problems(translation) == [] and translation.merge("some").entries["b", "Stop."].is_stale
-    write(Path("xx.po"), said.replace("#, fuzzy", "#"))
+    write(Path("xx.po"), text.replace("#, fuzzy", "#"))
     translators.exchange("xx.po", opened(place).english)
     languages.forget_languages()
     assert languages.text("some", "b", "xx") == "Alto."

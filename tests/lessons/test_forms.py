@@ -34,10 +34,12 @@ def test_a_lesson_speaks_of_blocks_to_those_who_have_them(number: int, language:
     sentences += [step["hint"] for step in steps]
     spoken = page_lessons.spoken_blocks(number, language)
     is_line_on_floor = has_line_on_floor(number)
-    for each in sentences:
-        assert text_only_words(each, language, is_line_on_floor=is_line_on_floor) == [], each
-        for code in CODE.findall(each):
-            assert is_on_a_block(code, spoken), (code, each)
+    for step_sentence in sentences:
+        assert text_only_words(step_sentence, language, is_line_on_floor=is_line_on_floor) == [], (
+            step_sentence
+        )
+        for code in CODE.findall(step_sentence):
+            assert is_on_a_block(code, spoken), (code, step_sentence)
 
 
 # A question, or what a pupil is told to do.
@@ -54,11 +56,11 @@ ASKS = {
 def test_each_step_has_something_to_do(language: str, form: str) -> None:
     for number in LESSONS:
         for k, step in enumerate(page_lessons.steps(number, language, form)[:-1], 1):
-            said = " ".join(
+            text = " ".join(
                 row[0] for block in step["blocks"] if block["kind"] != "program"
                 for row in block["rows"]
             )  # fmt: skip
-            assert re.search(ASKS[language], said, re.IGNORECASE), (number, k, said)
+            assert re.search(ASKS[language], text, re.IGNORECASE), (number, k, text)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

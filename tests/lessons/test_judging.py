@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.lesson_findings import findings_of
 from tests.support.texts import LANGUAGES
-from tests.support.texts import said as all_said
+from tests.support.texts import catalogue_texts as all_said
 from tiniscript import robots
 from tiniscript.lessons import catalogue, running
 from tiniscript.lessons.lesson import Lesson
@@ -43,7 +43,7 @@ def lesson_of(folder: Path, criteria: str, robot: str = "tinibot", more: str = "
     return catalogue.load(folder)
 
 
-def said(lesson: Lesson, text: str) -> list[str]:
+def sentences_on(lesson: Lesson, text: str) -> list[str]:
     return [words_for(finding, "en") for finding in findings_of(text, lesson, range(1, 2))]
 
 
@@ -160,12 +160,12 @@ def test_a_criterion_is_met_or_missed(
     tmp_path: Path, criterion: str, right: str, wrong: str, sentence: str
 ) -> None:
     lesson = lesson_of(tmp_path, f"[[criteria]]\n{criterion}\n")
-    assert said(lesson, right) == []
+    assert sentences_on(lesson, right) == []
     (missing,) = findings_of(wrong, lesson, range(1, 2))
-    found, spanish = (words_for(missing, language) for language in ("en", "es"))
-    assert sentence in found
-    assert spanish != found
-    assert "{" not in found + spanish
+    texts_of_both, spanish = (words_for(missing, language) for language in ("en", "es"))
+    assert sentence in texts_of_both
+    assert spanish != texts_of_both
+    assert "{" not in texts_of_both + spanish
 
 
 @pytest.mark.parametrize("count", [2, 3, 5])
@@ -181,9 +181,9 @@ def test_a_def_is_used_where_calls_lead_to_it(tmp_path: Path, count: int) -> Non
         ]
         return ";".join([*bodies, words[-1] if words[-1] != cut else "W(1)"])
 
-    assert said(lesson, program("")) == []
+    assert sentences_on(lesson, program("")) == []
     for word in words:
-        (missing,) = said(lesson, program(word))
+        (missing,) = sentences_on(lesson, program(word))
         assert "word HOP but never calls it" in missing
 
 
@@ -209,11 +209,11 @@ def answering(key: str, does: str) -> str:
 @pytest.mark.parametrize("key", DOES)
 def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str) -> None:
     lesson = lesson_of(tmp_path, OBEYS.format(key=f"KEY_{key}"))
-    assert said(lesson, answering(key, DOES[key])) == []
-    (missed,) = said(lesson, answering(OTHER[key], DOES[key]))
+    assert sentences_on(lesson, answering(key, DOES[key])) == []
+    (missed,) = sentences_on(lesson, answering(OTHER[key], DOES[key]))
     assert f"After 1.0 s KEY_{key} was held down, but the robot did not {FAILS[key]}." in missed
     if not FAILS[key].startswith("beep"):
-        (missed,) = said(lesson, answering(key, DOES[OTHER[key]]))
+        (missed,) = sentences_on(lesson, answering(key, DOES[OTHER[key]]))
         assert f"did not {FAILS[key]}." in missed
 
 
@@ -228,7 +228,7 @@ def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str
 )
 def test_a_robot_that_nobody_drives_stands(tmp_path: Path, text: str, seconds: str) -> None:
     lesson = lesson_of(tmp_path, OBEYS.format(key="KEY_UP"))
-    (missed,) = said(lesson, text)
+    (missed,) = sentences_on(lesson, text)
     assert f"After {seconds} s no key was held down, but the robot still moved. Make" in missed
 
 
@@ -246,22 +246,24 @@ def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) 
 def test_what_is_held_is_no_heartbeat_that_a_run_needs(tmp_path: Path) -> None:
     """A run of the judge's goes on without a computer, before the first key and after the last."""
     lesson = lesson_of(tmp_path, OBEYS.format(key="KEY_A") + '[[criteria]]\nkind = "shows"\n')
-    assert said(lesson, answering("A", "BEEP(0.1, 440)").replace("W(", "SHOW(TIME); W(")) == []
+    assert (
+        sentences_on(lesson, answering("A", "BEEP(0.1, 440)").replace("W(", "SHOW(TIME); W(")) == []
+    )
 
 
 def test_what_stands_after_a_loop_is_not_in_it(tmp_path: Path) -> None:
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "uses"\nwords = ["LOOP"]\n')
-    (found,) = said(lesson, "LOOP(2);W(0.1);END_LOOP;BEEP(0.1, 440)")
-    assert "repeats nothing" in found
+    (sentence,) = sentences_on(lesson, "LOOP(2);W(0.1);END_LOOP;BEEP(0.1, 440)")
+    assert "repeats nothing" in sentence
 
 
 def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
     line = '[[criteria]]\nkind = "follows"\nwithin_cm = 9\nat_least_cm = 60\n'
     lesson = lesson_of(tmp_path, line, "liner")
-    assert said(lesson, "B(1.7, 60)") == []
-    assert "of the black line; the task asks for 60 cm" in said(lesson, "B(0.7, 60)")[0]
-    assert "left the black line. Look at which way" in said(lesson, "F(1, 60)")[0]
-    wiggle = said(lesson, "LOOP(FOREVER);L(0.05,20);R(0.05,20);END_LOOP")[0]
+    assert sentences_on(lesson, "B(1.7, 60)") == []
+    assert "of the black line; the task asks for 60 cm" in sentences_on(lesson, "B(0.7, 60)")[0]
+    assert "left the black line. Look at which way" in sentences_on(lesson, "F(1, 60)")[0]
+    wiggle = sentences_on(lesson, "LOOP(FOREVER);L(0.05,20);R(0.05,20);END_LOOP")[0]
     assert "Make it drive faster, and turn less" in wiggle
 
 
@@ -280,8 +282,8 @@ def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
 def test_a_lamp_blinks_on_the_way(tmp_path: Path, more: str, sentence: str) -> None:
     """What goes on again without having been off has not blinked."""
     lamp = '[[criteria]]\nkind = "blinks"\nwhat = "LED"\ntimes = 2\n'
-    found = said(lesson_of(tmp_path, lamp, "liner"), more)
-    assert [sentence in each for each in found] == ([True] if sentence else [])
+    lines_told = sentences_on(lesson_of(tmp_path, lamp, "liner"), more)
+    assert [sentence in line for line in lines_told] == ([True] if sentence else [])
 
 
 @pytest.mark.parametrize(
@@ -294,11 +296,11 @@ def test_a_lamp_blinks_on_the_way(tmp_path: Path, more: str, sentence: str) -> N
 def test_a_task_is_needed_or_not(tmp_path: Path, word: str, task: str) -> None:
     needs = f'[[criteria]]\nkind = "beeps"\n[[criteria]]\nkind = "needs"\nwords = ["{word}"]\n'
     lesson = lesson_of(tmp_path, needs, "tinibot32")
-    assert said(lesson, f"F(1, 50)\n{task}\nW(0.1)") == []
-    (found,) = said(lesson, f"F(1, 50)\n{task}\nBEEP(0.1, 440)")
-    assert f"just as well without the {word}" in found
-    (found,) = said(lesson, "BEEP(0.1, 440)")
-    assert f"does not use {word}. Use it here: {word}" in found
+    assert sentences_on(lesson, f"F(1, 50)\n{task}\nW(0.1)") == []
+    (sentence,) = sentences_on(lesson, f"F(1, 50)\n{task}\nBEEP(0.1, 440)")
+    assert f"just as well without the {word}" in sentence
+    (sentence,) = sentences_on(lesson, "BEEP(0.1, 440)")
+    assert f"does not use {word}. Use it here: {word}" in sentence
 
 
 def test_what_one_world_needs_is_needed_in_whichever_order_they_come(tmp_path: Path) -> None:
@@ -319,8 +321,8 @@ def test_what_one_world_needs_is_needed_in_whichever_order_they_come(tmp_path: P
 def test_a_question_of_when_keeps_the_robot(tmp_path: Path) -> None:
     reaches = '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n'
     lesson = lesson_of(tmp_path, reaches, "tinibot32")
-    (found,) = said(lesson, "WHEN(DISTANCE < 4);F(1, 89);END_WHEN")
-    assert "Does the condition of WHEN ever become TRUE? See what the robot reads" in found
+    (sentence,) = sentences_on(lesson, "WHEN(DISTANCE < 4);F(1, 89);END_WHEN")
+    assert "Does the condition of WHEN ever become TRUE? See what the robot reads" in sentence
 
 
 @pytest.mark.parametrize(
@@ -335,8 +337,8 @@ def test_a_question_of_when_keeps_the_robot(tmp_path: Path) -> None:
 )
 def test_what_is_wrong_with_the_run_as_a_whole(tmp_path: Path, text: str, sentence: str) -> None:
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n')
-    (found,) = said(lesson, text)
-    assert sentence in found
+    (verdict_line,) = sentences_on(lesson, text)
+    assert sentence in verdict_line
 
 
 @pytest.mark.sampled("body", "ending", keep=2)
@@ -353,8 +355,8 @@ def test_what_is_wrong_with_the_run_as_a_whole(tmp_path: Path, text: str, senten
 def test_a_program_that_never_rests_ends(tmp_path: Path, body: str, ending: str) -> None:
     """By actions or by the robot's time, never by the clock on the wall."""
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "ends"\n')
-    (found,) = said(lesson, f"LOOP(FOREVER);{body};END_LOOP")
-    assert ending in found
+    (sentence,) = sentences_on(lesson, f"LOOP(FOREVER);{body};END_LOOP")
+    assert ending in sentence
 
 
 def test_a_world_is_the_same_for_the_same_seed(tmp_path: Path) -> None:
@@ -373,7 +375,7 @@ def test_a_world_is_the_same_for_the_same_seed(tmp_path: Path) -> None:
 
 def test_the_button_starts_what_begins_with_sb(tmp_path: Path) -> None:
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "drives"\nat_least_cm = 30\n')
-    assert said(lesson, "SB|F(1, 89)") == []
+    assert sentences_on(lesson, "SB|F(1, 89)") == []
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -388,6 +390,6 @@ def test_a_wall_that_holds_a_robot_is_named_before_the_time(tmp_path: Path) -> N
         tmp_path,
         '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n[[criteria]]\nkind = "never_touches"\n',
     )
-    first, second = said(lesson, "F(FOREVER, 60) UNTIL(DISTANCE = 500)")
+    first, second = sentences_on(lesson, "F(FOREVER, 60) UNTIL(DISTANCE = 500)")
     assert "touched a box" in first
     assert "still moving when time ran out after" in second

@@ -26,7 +26,7 @@ OTHER_SEEDS = range(101, 103)  # of worlds that the command does not try by itse
 BY_HEART = "by heart"  # in the label of a wrong answer
 HEADINGS = 5  # of a pupil's page: need, steps, task, check, and the title
 
-each = pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: path.name)
+each_lesson = pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: path.name)
 in_both = pytest.mark.parametrize("language", LANGUAGES)
 
 
@@ -65,7 +65,7 @@ def test_a_wrong_answer_is_told_what_helps(folder: Path, answer: Answer) -> None
         assert sentence(findings[0], language) == answer.sentence_by_language[language]
 
 
-@each
+@each_lesson
 def test_a_lesson_has_answers_and_typical_mistakes(folder: Path) -> None:
     right, wrong = catalogue.answers(folder)
     assert len(right) >= 2
@@ -76,27 +76,27 @@ def test_a_lesson_has_answers_and_typical_mistakes(folder: Path) -> None:
         assert any(BY_HEART in answer.label_by_language["en"] for answer in wrong)
 
 
-@each
+@each_lesson
 def test_what_varies_is_asked_for_in_several_worlds(folder: Path) -> None:
     lesson = catalogue.load(folder)
     assert (lesson.world_count > 1) == bool(lesson.variations or lesson.is_mirrored)
 
 
-@each
+@each_lesson
 @in_both
 def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
     number = int(folder.name[:2])
     lesson = catalogue.load(folder)
     page = catalogue.page(folder, catalogue.PUPIL, language)
-    found = blocks(page)
-    assert found[0].kind == "title"
-    assert found[0].rows[0][0] == f"{number}. {lesson.title(language)}"
-    assert sum(block.kind in ("title", "heading") for block in found) == HEADINGS
-    steps = [block for block in found if block.kind == "steps"]
+    page_blocks = blocks(page)
+    assert page_blocks[0].kind == "title"
+    assert page_blocks[0].rows[0][0] == f"{number}. {lesson.title(language)}"
+    assert sum(block.kind in ("title", "heading") for block in page_blocks) == HEADINGS
+    steps = [block for block in page_blocks if block.kind == "steps"]
     assert [
         block.first_number + k for block in steps for k in range(len(block.rows))
     ] == list(range(1, sum(len(block.rows) for block in steps) + 1))  # fmt: skip
-    for block in found:
+    for block in page_blocks:
         if block.kind == "table":  # an empty cell is a place to write: the sheet draws it
             assert {len(row) for row in block.rows} == {len(block.rows[0])}
     assert f"tsc lesson check {number} " in page
@@ -105,24 +105,24 @@ def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
     assert str(sum(int(row[0]) for row in table.rows[1:])) == MINUTES
 
 
-@each
+@each_lesson
 @in_both
 def test_a_sheet_draws_what_it_says(folder: Path, language: str) -> None:
     """Dashes are what moves and nothing else, and a blank is wide enough to write in."""
     lesson = catalogue.load(folder)
     page = catalogue.page(folder, catalogue.PUPIL, language)
-    made = sheet(page, lesson, False, language)
+    sheet_text = sheet(page, lesson, False, language)
     dashed = len(
         {(variation.place.part, variation.place.number) for variation in lesson.variations}
     )
-    assert made.count("stroke-dasharray") == dashed
-    assert (text("lessons", "sheet/moves", language) in made) is (dashed > 0)
-    assert "__" not in made and made.count('class="blank"') == page.count("____")
-    match = re.search(r"</svg>\s*<p[^>]*>[^<]*\b(\d+) cm", made)
-    assert match and f'<path d="M{match[1]} 0V' in made
+    assert sheet_text.count("stroke-dasharray") == dashed
+    assert (text("lessons", "sheet/moves", language) in sheet_text) is (dashed > 0)
+    assert "__" not in sheet_text and sheet_text.count('class="blank"') == page.count("____")
+    match = re.search(r"</svg>\s*<p[^>]*>[^<]*\b(\d+) cm", sheet_text)
+    assert match and f'<path d="M{match[1]} 0V' in sheet_text
 
 
-@each
+@each_lesson
 @in_both
 @pytest.mark.parametrize("who", [catalogue.PUPIL, catalogue.TEACHER])
 def test_programs_on_pages_compile(folder: Path, language: str, who: str) -> None:
@@ -135,11 +135,11 @@ def test_programs_on_pages_compile(folder: Path, language: str, who: str) -> Non
     ]
     assert programs or who == catalogue.TEACHER
     for program in programs:
-        found = compile_source(program.encode(), robot, "page.ts", is_strict=True)
-        assert found.is_right, (program, found.diagnostics)
+        compilation = compile_source(program.encode(), robot, "page.ts", is_strict=True)
+        assert compilation.is_right, (program, compilation.diagnostics)
 
 
-@each
+@each_lesson
 def test_pages_of_all_languages_have_the_same_parts(folder: Path) -> None:
     for who in (catalogue.PUPIL, catalogue.TEACHER):
         kinds = [
@@ -152,7 +152,7 @@ def test_pages_of_all_languages_have_the_same_parts(folder: Path) -> None:
 RUN = {lang: page_texts(lang)["run"] for lang in LANGUAGES}
 
 
-@each
+@each_lesson
 def test_a_page_names_the_button_that_the_studio_has(folder: Path) -> None:
     counts = [
         len(re.findall(rf"\b{word}\b", catalogue.page(folder, catalogue.PUPIL, lang)))
@@ -161,7 +161,7 @@ def test_a_page_names_the_button_that_the_studio_has(folder: Path) -> None:
     assert len(set(counts)) == 1
 
 
-@each
+@each_lesson
 def test_no_page_tells_the_answer(folder: Path) -> None:
     """A program on a pupil's page is an example: it does not solve the task."""
     lesson = catalogue.load(folder)

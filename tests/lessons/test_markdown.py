@@ -20,6 +20,6 @@ def test_a_page_moves_no_cursor() -> None:
         f"# {evil}\r\n\r\n- {evil}\n\n| {evil} |\n|---|\n\n"
         f"```\n{evil}\n\tF(1, 80)\n```\n\n1. {evil}\v{evil}"
     )
-    said = as_text(page)
-    assert all(letter == "\n" or letter.isprintable() for letter in said)
-    assert said.count("a?[2J??2Jb?c") == 6 and "        F(1, 80)" in said
+    text = as_text(page)
+    assert all(letter == "\n" or letter.isprintable() for letter in text)
+    assert text.count("a?[2J??2Jb?c") == 6 and "        F(1, 80)" in text

@@ -71,11 +71,11 @@ CASES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("text", "said"), CASES)
-def test_a_refused_lesson_says_why(folder: Path, text: str, said: str) -> None:
-    found = refused(folder, text)
-    assert any(said in sentence for sentence in found), found
-    assert len(refused(folder, text, "es")) == len(found)
+@pytest.mark.parametrize(("text", "message"), CASES)
+def test_a_refused_lesson_says_why(folder: Path, text: str, message: str) -> None:
+    complaints = refused(folder, text)
+    assert any(message in sentence for sentence in complaints), complaints
+    assert len(refused(folder, text, "es")) == len(complaints)
 
 
 def test_all_complaints_come_at_once(folder: Path) -> None:
@@ -92,13 +92,13 @@ def test_answers_are_read_strictly(folder: Path) -> None:
     (folder / "answers.toml").write_text("[[right]]\nen = 'a'\nes = 'b'\nsays = 3\n")
     with pytest.raises(LessonRefused) as exception_info:
         catalogue.answers(folder)
-    said = describe(exception_info.value, "en")
-    assert any("right[1].program is missing" in each for each in said)
-    assert any("right[1].says" in each for each in said)
+    sentences = describe(exception_info.value, "en")
+    assert any("right[1].program is missing" in complaint for complaint in sentences)
+    assert any("right[1].says" in complaint for complaint in sentences)
 
 
 @pytest.mark.parametrize(
-    ("says", "said"),
+    ("says", "message"),
     [
         ("", "wrong[1].says.key is missing"),
         ("key = 'stil'", "wrong[1].says.key has stil, which is not a known word"),
@@ -108,14 +108,14 @@ def test_answers_are_read_strictly(folder: Path) -> None:
     ],
 )  # fmt: skip
 def test_what_is_said_of_a_wrong_answer_is_a_sentence_of_the_checker(
-    folder: Path, says: str, said: str
+    folder: Path, says: str, message: str
 ) -> None:
     rows = f"[[wrong]]\nen = 'a'\nprogram = 'S'\nsays = {{ {says} }}\n"
     (folder / "answers.toml").write_text(rows, encoding="utf-8")
     with pytest.raises(LessonRefused) as exception_info:
         catalogue.answers(folder)
     (why,) = describe(exception_info.value, "en")
-    assert said in why
+    assert message in why
 
 
 def test_a_place_of_ones_own_is_said_in_each_language(folder: Path) -> None:
@@ -136,7 +136,7 @@ def test_a_page_names_the_numbers_of_its_lesson(folder: Path) -> None:
     page.write_text("{pauses.seconds}", encoding="utf-8")
     with pytest.raises(LessonRefused) as exception_info:
         catalogue.page(folder, catalogue.PUPIL, "en")
-    (said,) = describe(exception_info.value, "en")
-    assert "pupil.en.md has {pauses.seconds}, which is not a number of this lesson" in said
-    assert "pauses.at_least_seconds" in said
-    assert describe(exception_info.value, "es") != [said]
+    (sentence,) = describe(exception_info.value, "en")
+    assert "pupil.en.md has {pauses.seconds}, which is not a number of this lesson" in sentence
+    assert "pauses.at_least_seconds" in sentence
+    assert describe(exception_info.value, "es") != [sentence]

@@ -72,8 +72,8 @@ def test_a_port_that_is_free_soon_is_opened(
     place = Place(
         monkeypatch, rng.choice(SEARCH_S), rng.uniform(0, BUSY_TIMEOUT_S - RETRY_INTERVAL_S)
     )
-    found: object = opening.connection_to(port, "upload", 9600, 1)
-    assert found is place
+    connection: object = opening.connection_to(port, "upload", 9600, 1)
+    assert connection is place
     assert place.now_s <= place.free_s + RETRY_INTERVAL_S
 
 
@@ -166,7 +166,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
             patched.setattr(step, fails(why))
             with pytest.raises(BaseException):  # noqa: B017 - whichever it is
                 tried()
-        assert not any(each.is_open for each in Device.opened), why
+        assert not any(device.is_open for device in Device.opened), why
         lock = registry.lock_port(ADDRESS)
         assert lock is not None, f"{why!r} leaves its lock"
         lock.close()
@@ -183,7 +183,7 @@ def greets(version: str, answer: str) -> bytes:
 
 
 @pytest.mark.parametrize(
-    ("said", "reason"),
+    ("data", "reason"),
     [
         (greets("9.9", "right"), "holder_other"),
         (greets(__version__, "wrong"), ""),
@@ -193,7 +193,7 @@ def greets(version: str, answer: str) -> bytes:
     ],
 )
 def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, said: bytes, reason: str
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, data: bytes, reason: str
 ) -> None:
     """Who waits for a busy port asks twenty times a second."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
@@ -207,7 +207,7 @@ def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
             peer = server.accept()[0]
             with peer:
                 peer.recv(1000)
-                peer.sendall(said)
+                peer.sendall(data)
                 peer.shutdown(socket.SHUT_WR)
                 peer.settimeout(HANGS_S)
                 ended.append(peer.recv(1000))
@@ -216,8 +216,8 @@ def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
         thread = Thread(target=serves, daemon=True)
         thread.start()
         try:
-            found: object = opening._join_shared(ADDRESS, "upload", 115_200, "en")
-            assert found is None and not reason
+            connection: object = opening._join_shared(ADDRESS, "upload", 115_200, "en")
+            assert connection is None and not reason
         except RobotError as failure:
             assert failure.reason == reason
         thread.join(HANGS_S)

@@ -89,9 +89,9 @@ def test_the_extras_are_those_of_the_package() -> None:
 def test_no_other_place_knows_how_to_install_an_extra() -> None:
     """The texts of `tsc firmware` do where the sources are missing: then there is no other way."""
     folder = ROOT / "compiler" / "tiniscript"
-    found = {
+    files = {
         path.name
         for path in folder.rglob("*.py")
         if re.search(r"install[^\n]*\[(virtual|firmware)\]", path.read_text(encoding="utf-8"))
     }
-    assert found <= {"firmware.py", "install_advice.py"}
+    assert files <= {"firmware.py", "install_advice.py"}

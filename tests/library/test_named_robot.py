@@ -26,9 +26,9 @@ NAMELESS = [
 
 @each_row("text", NAMING)
 def test_a_comment_before_the_first_instruction_names_it(text: str) -> None:
-    found = named_robot(text)
-    assert found is not None
-    assert found.name.lower() == "liner" and text[slice(*found.span)] == found.name
+    named = named_robot(text)
+    assert named is not None
+    assert named.name.lower() == "liner" and text[slice(*named.span)] == named.name
 
 
 @each_row("text", NAMELESS)
@@ -37,28 +37,28 @@ def test_any_other_comment_tells_people_something(text: str) -> None:
     assert rename_robot(text, "grabber") == text
 
 
-@each_row("text", [each for each in NAMING if "\nS" in each or "\nF" in each])
+@each_row("text", [text for text in NAMING if "\nS" in text or "\nF" in text])
 def test_the_formatter_keeps_it(text: str) -> None:
     laid_out = format_source(Source(text.removeprefix("\ufeff")))
-    found = named_robot(laid_out)
-    assert found is not None and found.name.lower() == "liner"
+    named = named_robot(laid_out)
+    assert named is not None and named.name.lower() == "liner"
     assert laid_out == format_source(Source(laid_out))
 
 
 @pytest.mark.parametrize("text", NAMING)
 def test_another_one_takes_its_place(text: str) -> None:
     changed = rename_robot(text, "grabber")
-    found = named_robot(changed)
-    assert found is not None and found.name == "grabber"
-    assert changed[: found.span.start] + changed[found.span.end :] == text.replace(
+    named = named_robot(changed)
+    assert named is not None and named.name == "grabber"
+    assert changed[: named.span.start] + changed[named.span.end :] == text.replace(
         text[slice(*_span(text))], "", 1
     )
 
 
 def _span(text: str) -> tuple[int, int]:
-    found = named_robot(text)
-    assert found is not None
-    return found.span
+    named = named_robot(text)
+    assert named is not None
+    return named.span
 
 
 def test_a_long_row_of_anything_is_looked_at_once() -> None:

@@ -10,7 +10,7 @@ from typing import Any, cast
 import pytest
 
 import tiniscript
-from tests.support.command import Done, inside
+from tests.support.command import CommandResult, inside
 from tiniscript import robots
 from tiniscript.studio import checking, page_lessons, playing, recordings, robot_link
 
@@ -26,22 +26,22 @@ def program(tmp_path: Path) -> Path:
     return path
 
 
-def says_so(done: Done, language: str = "en") -> bool:
-    output = done.out + done.err
-    return done.code == 1 and WORDS[language] in output and "tsc run" in output
+def says_so(result: CommandResult, language: str = "en") -> bool:
+    output = result.out + result.err
+    return result.code == 1 and WORDS[language] in output and "tsc run" in output
 
 
 @pytest.mark.parametrize("verb", [("upload",), ("compile", "--text")])
 def test_a_text_is_refused_at_its_task(program: Path, verb: tuple[str, ...]) -> None:
-    done = inside(*verb, program, "--robot", ROBOT, "--lang", "es")
-    assert says_so(done, "es") and "línea 2:" in done.out + done.err
+    result = inside(*verb, program, "--robot", ROBOT, "--lang", "es")
+    assert says_so(result, "es") and "línea 2:" in result.out + result.err
 
 
 def test_a_reader_that_lacks_them_is_told_from_a_robot_that_does(program: Path) -> None:
     """An Uno runs what is sent compiled."""
-    done = inside("check", "--text-level", "uno", program, "--robot", ROBOT)
-    output = done.out + done.err
-    assert (done.code, "TS313" in output, output.count("[TS308]")) == (1, False, 1)
+    result = inside("check", "--text-level", "uno", program, "--robot", ROBOT)
+    output = result.out + result.err
+    assert (result.code, "TS313" in output, output.count("[TS308]")) == (1, False, 1)
     assert "line 2:" in output and "tsc upload" in output
     for level in ("mega", "esp32"):
         assert inside("check", "--text-level", level, program, "--robot", ROBOT).code == 0
@@ -57,18 +57,18 @@ def test_an_image_and_a_live_line_are_refused(program: Path) -> None:
 
 def test_what_sends_nothing_takes_them(program: Path) -> None:
     for verb in (("check",), ("fmt",), ("show",), ("run", "--max-time", "0.01")):
-        done = inside(*verb, program, *(() if verb == ("fmt",) else ("--robot", ROBOT)))
-        assert (done.code, WORDS["en"] in done.err) == (0, False)
+        result = inside(*verb, program, *(() if verb == ("fmt",) else ("--robot", ROBOT)))
+        assert (result.code, WORDS["en"] in result.err) == (0, False)
 
 
 def test_the_library_sends_none() -> None:
     program = tiniscript.compile(TEXT, ROBOT)
     with tiniscript.virtual_robot(ROBOT, hurry=math.inf) as robot:
         for send in (robot.upload, robot.live):
-            for each in (program, TEXT, program.image):
-                if send == robot.upload or isinstance(each, str):
+            for form in (program, TEXT, program.image):
+                if send == robot.upload or isinstance(form, str):
                     with pytest.raises(tiniscript.RobotError) as refused:
-                        send(cast("str", each))
+                        send(cast("str", form))
                     assert refused.value.reason == "UNKNOWN_NEEDS"
                     assert "tsc run" in str(refused.value)
         robot.upload("SHOW(2)")  # nothing has come of the others
@@ -95,9 +95,9 @@ def test_the_others_run_them(sent: str, robot_name: str) -> None:
 
 
 def test_the_studio_neither_sends_nor_simulates() -> None:
-    found = checking.check(TEXT.encode(), ROBOT, "es")
-    assert found.image == b""
-    message = found.findings[-1].message
+    result = checking.check(TEXT.encode(), ROBOT, "es")
+    assert result.image == b""
+    message = result.findings[-1].message
     assert WORDS["es"] in message.message and (message.code, message.line) == ("TS313", 2)
     line = checking.line_for_robot(TEXT.encode(), ROBOT, "es")
     assert not isinstance(line, str) and (line.code, line.line) == ("TS308", 2)
@@ -119,7 +119,7 @@ def test_a_page_that_sends_an_image_all_the_same_is_refused(do: str) -> None:
     link = robot_link.RobotLink(connection, "en")
     data = tiniscript.compile(TEXT, ROBOT).image.hex()
     link.ask({"id": 1, "do": do, "robot": ROBOT, "image": data})
-    assert [each["failure"] for each in link.news()] == ["UNKNOWN_NEEDS"]
+    assert [item["failure"] for item in link.news()] == ["UNKNOWN_NEEDS"]
 
 
 def test_a_recording_of_it_is_not_played() -> None:

@@ -47,9 +47,9 @@ def test_a_robot_without_speeds_refuses_an_image(program: Path, slow: Path, tmp_
     image = tmp_path / "way.bin"
     assert "0.741 s" in inside("compile", program, "-o", image).out, "the receipt says how long"
     assert image.read_bytes()[3] == 1 and image.read_bytes()[14] == GO
-    done = inside("upload", image, "--robot", slow, "--lang", "es")
-    assert done.code == 1 and "no puede avanzar por centímetros" in done.err
-    assert "tsc run" in done.err
+    result = inside("upload", image, "--robot", slow, "--lang", "es")
+    assert result.code == 1 and "no puede avanzar por centímetros" in result.err
+    assert "tsc run" in result.err
     assert inside("run", image).out.endswith("741 DONE\n")
 
 
@@ -74,24 +74,24 @@ def test_all_robots_have_them(program: Path, robot: str) -> None:
 
 
 def test_the_machine_in_cpp_has_them(program: Path) -> None:
-    done = inside("run", "--machine", "cpp", program)
-    assert done.code == 0 and done.out == inside("run", program).out
+    result = inside("run", "--machine", "cpp", program)
+    assert result.code == 0 and result.out == inside("run", program).out
     assert tiniscript.run(TEXT, machine="cpp").events == tiniscript.run(TEXT).events
 
 
 def test_a_move_without_power_is_explained() -> None:
     for text in ("F(5 CM, 0)", "X = 0; F(5 CM, X + TIME)"):
-        done = inside("run", "-e", text, "--lang", "es")
-        assert done.code == 1 and done.out == "0 FAULT NO_POWER\n"
-        assert "nunca terminaría" in done.err
+        result = inside("run", "-e", text, "--lang", "es")
+        assert result.code == 1 and result.out == "0 FAULT NO_POWER\n"
+        assert "nunca terminaría" in result.err
 
 
 @pytest.mark.parametrize(("way", "ms"), [("20 CM", "0.741"), ("X CM", "")])
 def test_a_sketch_has_the_time_where_it_is_known(tmp_path: Path, way: str, ms: str) -> None:
     path = tmp_path / "way.ts"
     path.write_text(f"X = 5; F({way}, 60); SHOW(X)", encoding="utf-8")
-    done = inside("show", "--arduino", path).gives(0 if ms else 2)
-    assert f"forward({ms}, 60);" in done.out if ms else "a move in CM or DEG" in done.err
+    result = inside("show", "--arduino", path).gives(0 if ms else 2)
+    assert f"forward({ms}, 60);" in result.out if ms else "a move in CM or DEG" in result.err
 
 
 @pytest.mark.parametrize("key", ["speed", "turn"])

@@ -13,12 +13,16 @@ from tiniscript.library.other_robots import BUTTON, LESSON_ROBOTS
 
 def first_named(text: str, name: str = "tinibot") -> str:
     compiled = compile_source(text.encode(), robots.load(name), "x.ts", False, is_chosen=True)
-    return next(each.values["first"] for each in compiled.diagnostics if each.code is OTHER_ROBOT)
+    return next(
+        diagnostic.values["first"]
+        for diagnostic in compiled.diagnostics
+        if diagnostic.code is OTHER_ROBOT
+    )
 
 
 def test_the_robots_of_the_lessons_are_those() -> None:
-    found = {robots.load(catalogue.load(folder).robot).kit for folder in catalogue.folders()}
-    assert found == {robots.load(name).kit for name in LESSON_ROBOTS}
+    kits = {robots.load(catalogue.load(folder).robot).kit for folder in catalogue.folders()}
+    assert kits == {robots.load(name).kit for name in LESSON_ROBOTS}
 
 
 @pytest.mark.parametrize("name", [name for name in robots.names() if name != "tinibot"])

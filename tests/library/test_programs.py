@@ -15,7 +15,7 @@ import pytest
 
 import tiniscript
 from tests.support.command import OBSTACLE, Tsc
-from tests.support.texts import said as all_said
+from tests.support.texts import catalogue_texts as all_said
 from tiniscript.bytecode.image import REFUSALS, pack
 from tiniscript.bytecode.verify import RULES
 from tiniscript.library import install_advice
@@ -38,8 +38,8 @@ def test_a_program_has_the_image_that_tsc_compile_writes(tsc: Tsc, tmp_path: Pat
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("text", ["SI|F(2, ", "SI|F(0,5, 80);X = 1;Q(3)", "SI|F(2, 80)", "SI|PEN"])
 def test_check_says_what_tsc_check_says(tsc: Tsc, text: str, language: str) -> None:
-    said = json.loads(tsc("check", "-e", text, "--json", "--lang", language).out)
-    assert [message._asdict() for message in tiniscript.check(text, language=language)] == said
+    answer = json.loads(tsc("check", "-e", text, "--json", "--lang", language).out)
+    assert [message._asdict() for message in tiniscript.check(text, language=language)] == answer
 
 
 def test_a_diagnostic_is_data() -> None:
@@ -178,11 +178,11 @@ def test_what_is_said_of_bytes_names_no_robot_that_is_not_there(
     }.items():  # fmt: skip
         with pytest.raises(tiniscript.ProgramError) as raised:
             tiniscript.show(image, language=language)
-        said = str(raised.value)
+        message = str(raised.value)
         assert raised.value.reason == reason or not reason
-        assert raised.value.reason in said
-        assert "robot" not in said.lower()
-        assert ("ompila" if language == "es" else "ompile") in said
+        assert raised.value.reason in message
+        assert "robot" not in message.lower()
+        assert ("ompila" if language == "es" else "ompile") in message
     assert set(REFUSALS) <= set(all_said("en", "library"))
 
 
@@ -202,10 +202,10 @@ def test_a_sentence_of_the_command_in_the_library_names_nothing_of_the_command(
 ) -> None:
     values = {"port": "COM5", "why": "broken", "how": "pip"}
     for reason in SHARED:
-        said = str(tiniscript.RobotError(reason, language, values))
-        assert "tsc" not in said, said
-        assert "--" not in said, said
-        assert said[0].isupper() or said.startswith("COM5"), said
+        message = str(tiniscript.RobotError(reason, language, values))
+        assert "tsc" not in message, message
+        assert "--" not in message, message
+        assert message[0].isupper() or message.startswith("COM5"), message
     assert not set(SHARED) & set(all_said("en", "library"))
 
 
@@ -254,8 +254,8 @@ def test_arguments_out_of_their_range_are_refused(arguments: Any) -> None:
 
 def test_every_name_is_there_and_documented() -> None:
     for name in tiniscript.__all__:
-        found = getattr(tiniscript, name)
-        assert found.__doc__, name
+        value = getattr(tiniscript, name)
+        assert value.__doc__, name
         assert name in dir(tiniscript)
     with pytest.raises(AttributeError):
         _ = tiniscript.conect  # type: ignore[attr-defined]
@@ -291,8 +291,8 @@ def test_a_user_has_types(tmp_path: Path) -> None:
         capture_output=True, text=True, cwd=tmp_path,
         env={**os.environ, "MYPYPATH": str(Path(tiniscript.__file__).parent.parent)},
     )  # fmt: skip
-    said = [line.split(": ", 1)[1] for line in completed.stdout.splitlines() if "use.py" in line]
-    assert said == [
+    types = [line.split(": ", 1)[1] for line in completed.stdout.splitlines() if "use.py" in line]
+    assert types == [
         "note: Revealed type is \"Literal['DONE'] | Literal['FAULT'] | Literal['LIMIT']\"",
         'note: Revealed type is "tiniscript.library.simulated.VirtualRobotConnection"',
         'note: Revealed type is "tuple[str, int, int | None, int | None,'

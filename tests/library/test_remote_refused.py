@@ -49,5 +49,5 @@ def test_the_refusal_says_what_to_do() -> None:
     assert refused is not None and refused.status == STATUSES["NO_REMOTE"]
     assert refusal(image, ROBOT, info(PLACES | REMOTE)) is None
     for language in ("en", "es", "pt"):
-        said, advice = status_text(refused.status, 0, language)
-        assert "KEY_UP" in said and "tsc firmware" in advice and "Nano" in advice
+        sentence, advice = status_text(refused.status, 0, language)
+        assert "KEY_UP" in sentence and "tsc firmware" in advice and "Nano" in advice

@@ -185,14 +185,14 @@ def test_wrong_use_of_a_connection_is_an_error(
 def test_a_virtual_robot_is_gone_when_it_is_left() -> None:
     before = threading.active_count()
     with tiniscript.virtual_robot() as robot:
-        assert [each.address for each in directory.running_robots()] == [robot.port]
+        assert [entry.address for entry in directory.running_robots()] == [robot.port]
     assert not list(directory._folder().iterdir())
     assert threading.active_count() == before
 
 
 def test_without_a_port_the_virtual_robot_of_another_process_is_found() -> None:
-    with virtual_robot("--robot", "liner") as found, tiniscript.connect() as robot:
-        assert robot.port == found.port
+    with virtual_robot("--robot", "liner") as running_robot, tiniscript.connect() as robot:
+        assert robot.port == running_robot.port
         assert robot.info.robot == "liner"
         robot.live("SHOW(LINE_L)")  # a word of its own
         assert robot.wait().name == "DONE"
@@ -214,8 +214,8 @@ def test_button_command_and_leaving_stop_the_robot(pty_robot: PtyRobot) -> None:
         pty_robot.push()
         assert robot.wait() == tiniscript.Ending("STOPPED", cause="BUTTON")
         drive()
-        done = process("stop", "--port", pty_robot.port)
-        assert (done.code, pty_robot.moves) == (0, False)
+        result = process("stop", "--port", pty_robot.port)
+        assert (result.code, pty_robot.moves) == (0, False)
         assert robot.wait() == tiniscript.Ending("STOPPED", cause="SEQUENCE")
         with fails(tiniscript.RobotError, "WRONG_KIT"):
             robot.upload(tiniscript.compile("GRIPPER(30)", "grabber"))
@@ -319,14 +319,14 @@ class StoppedAtFirst:
 @pytest.mark.parametrize("patience", range(4))
 def test_who_connects_while_others_stop_the_robot_meets_it(stops: int, patience: int) -> None:
     """As long as he is patient."""
-    left = iter([True] * patience + [False] * 9)
+    answers = iter([True] * patience + [False] * 9)
     client = client_of(line := StoppedAtFirst(stops))
     client.port, client.language, client._poll = "P", "en", lambda: None
     if patience >= stops:
-        assert client.meet(is_patient=lambda: next(left)) is THE_ROBOT
+        assert client.meet(is_patient=lambda: next(answers)) is THE_ROBOT
         return
     with fails(tiniscript.RobotError, "stopped_elsewhere"):
-        client.meet(is_patient=lambda: next(left))
+        client.meet(is_patient=lambda: next(answers))
     assert line.stops == stops - patience - 1
 
 

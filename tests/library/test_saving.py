@@ -30,9 +30,9 @@ class Clock:
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    found = Clock()
-    monkeypatch.setattr(client, "monotonic", found)
-    return found
+    made_clock = Clock()
+    monkeypatch.setattr(client, "monotonic", made_clock)
+    return made_clock
 
 
 def receipt(saved: int) -> ReceiptReply:

@@ -85,8 +85,8 @@ def happens(robot: RobotConnection, line: Line, story: Story) -> str:
         robot.live("F(2, 50)")
     else:
         robot.start(detached=how == "start detached")
-    found = [StartedEvent(line.run, PROGRAM), *ENDS[end](line)]
-    line.events += [(int(monotonic() * 1000), each) for each in found]
+    events = [StartedEvent(line.run, PROGRAM), *ENDS[end](line)]
+    line.events += [(int(monotonic() * 1000), event) for event in events]
     if not looks:
         return ""
     try:
@@ -102,7 +102,7 @@ def connected(monkeypatch: pytest.MonkeyPatch) -> tuple[RobotConnection, Line]:
     return RobotConnection("P", robots.load("tinibot"), False, None, "en"), line
 
 
-def left(robot: RobotConnection, line: Line, kind: type[BaseException] | None) -> list[str]:
+def leave(robot: RobotConnection, line: Line, kind: type[BaseException] | None) -> list[str]:
     robot.__exit__(kind)
     return line.did
 
@@ -119,21 +119,21 @@ def test_leaving_is_about_the_last_program_alone(
     rng = random.Random(seed)
     last = STORIES[seed]
     robot, line = connected(monkeypatch)
-    said = happens(robot, line, last)
-    fresh = left(robot, line, kind)
+    outcome = happens(robot, line, last)
+    fresh = leave(robot, line, kind)
     for _ in range(8):
         robot, line = connected(monkeypatch)
         before = [rng.choice(STORIES) for _ in range(rng.randint(1, 3))]
         for story in before:
             happens(robot, line, story)
             line.events.clear()
-        assert happens(robot, line, last) == said, before
-        assert left(robot, line, kind) == fresh, (before, last)
+        assert happens(robot, line, last) == outcome, before
+        assert leave(robot, line, kind) == fresh, (before, last)
 
 
 def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the others are compared with."""
-    for story, found in (
+    for story, calls in (
         (("start", "runs on", False), ["stop", "close"]),
         (("start detached", "runs on", False), ["close"]),
         (("upload", "replaced", True), ["close"]),
@@ -141,24 +141,24 @@ def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> N
     ):
         robot, line = connected(monkeypatch)
         happens(robot, line, story)
-        assert left(robot, line, None) == found, story
+        assert leave(robot, line, None) == calls, story
 
 
 def test_what_a_program_tells_late_is_of_its_own_text(monkeypatch: pytest.MonkeyPatch) -> None:
     """The next one has the same code. Its own events nobody has looked at before that."""
     robot, line = connected(monkeypatch)
     for name, end in (("NEAR", "; "), ("FAR", "\n")):
-        made = compile_text(f"SI|{name} = TIME{end}SHOW({name} / 0)", KIT)
-        assert made.image
-        program = checksum(made.image)
+        compilation = compile_text(f"SI|{name} = TIME{end}SHOW({name} / 0)", KIT)
+        assert compilation.image
+        program = checksum(compilation.image)
         line.program = program
-        robot.upload(made.source.text, save=False)
-        at = rows(made.code)[-1].offset
+        robot.upload(compilation.source.text, save=False)
+        at = rows(compilation.code)[-1].offset
         late: list[Event] = [
             ShownEvent(1000, 0, line.run, program, at), FaultEvent(line.run, 1, at, program),
         ]  # fmt: skip
-        line.events += [(int(monotonic() * 1000), each) for each in late]
+        line.events += [(int(monotonic() * 1000), event) for event in late]
     events = list(robot.events(0.2))
-    assert [(each.values.get("name"), each.values["line"]) for each in events] == [
+    assert [(event.values.get("name"), event.values["line"]) for event in events] == [
         ("NEAR / 0", 1), (None, 1), ("FAR / 0", 2), (None, 2),
     ]  # fmt: skip

@@ -19,13 +19,15 @@ from tiniscript.link.outcomes import ShownEvent
 
 def shown(text: str) -> list[Show | None]:
     """Return the SHOW of each instruction that shows, in the order of the code."""
-    found = compiled(text)
-    shows = Shows(mapped(found))
-    return [shows.show_at(row.offset) for row in rows(found.code) if row.text.startswith("SHOW")]
+    compilation = compiled(text)
+    shows = Shows(mapped(compilation))
+    return [
+        shows.show_at(row.offset) for row in rows(compilation.code) if row.text.startswith("SHOW")
+    ]
 
 
 def names(text: str) -> list[str]:
-    return ["" if each is None else each.text for each in shown(text)]
+    return ["" if show is None else show.text for show in shown(text)]
 
 
 @pytest.mark.parametrize(
@@ -54,8 +56,8 @@ def test_each_show_has_its_own_instruction_between_others() -> None:
 
 
 def test_shows_of_one_expression_are_told_apart_by_their_lines() -> None:
-    found = shown("SHOW(TIME)\nSHOW( time ); SHOW(LIGHT_L); SHOW(LIGHT_L)\nSHOW(LIGHT_R)")
-    assert found == [
+    shows_found = shown("SHOW(TIME)\nSHOW( time ); SHOW(LIGHT_L); SHOW(LIGHT_L)\nSHOW(LIGHT_R)")
+    assert shows_found == [
         Show("TIME", 1, 1, shares_text=True),
         Show("TIME", 2, 1, shares_text=True),
         Show("LIGHT_L", 2, 15, shares_text=True, shares_line=True),
@@ -116,7 +118,7 @@ def test_the_same_code_of_another_text_is_called_as_that_text_says() -> None:
     names = [finder.show_of(event(program, at))]
     maps[program] = mapped(second)
     names += [finder.show_of(event(program, at)), finder.show_of(event(program, at, run=2))]
-    assert [each and each.text for each in names] == ["NEAR", "NEAR", "FAR"], "until its next run"
+    assert [show and show.text for show in names] == ["NEAR", "NEAR", "FAR"], "until its next run"
 
 
 @pytest.mark.usefixtures("cache")
@@ -144,10 +146,10 @@ def test_a_run_keeps_the_text_that_it_began_with() -> None:
     program, at = checksum(texts[0].image), rows(texts[0].code)[-1].offset
     maps: dict[int, SourceMap] = {}
     finder = ShowFinder(maps)
-    for run, found in enumerate(texts):
-        maps[program] = mapped(found)
+    for run, compilation in enumerate(texts):
+        maps[program] = mapped(compilation)
         finder.begin(run % 2, program)
     names = [finder.show_of(event(program, at, run)) for run in (1, 0, 1)]
-    assert [each and each.text for each in names] == ["FAR", "THIRD", "FAR"]
+    assert [show and show.text for show in names] == ["FAR", "THIRD", "FAR"]
     finder.begin(1, program + 1)
     assert finder.show_of(event(program + 1, at, 1)) is None

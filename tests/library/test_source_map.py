@@ -22,15 +22,15 @@ from tiniscript.semantics.ir import Show
 
 def located(text: str) -> list[tuple[str, str]]:
     """Return each instruction with the piece of the text that it comes from."""
-    found = compiled(text)
+    compilation = compiled(text)
     pairs = []
-    for row in rows(found.code):
+    for row in rows(compilation.code):
         place = [
             source_location
-            for source_location in found.locations
+            for source_location in compilation.locations
             if source_location.offset <= row.offset
         ][-1]
-        pairs.append((row.text.split()[0], found.source[place.span]))
+        pairs.append((row.text.split()[0], compilation.source[place.span]))
     return pairs
 
 
@@ -80,12 +80,12 @@ def test_where_an_instruction_comes_from(text: str, expected: list[tuple[str, st
 def test_instructions_that_became_far_stay_where_they_were() -> None:
     """A comparing branch that does not reach is four instructions of one place."""
     row = "S;" * 256
-    found = located(f"X = 1; IF(X = 5); {row} ENDIF; W(1)")
-    assert found[:6] == [("PUSH_NUM_1", "X = 1"), ("SET_VAR_0", "X = 1"),
+    pairs = located(f"X = 1; IF(X = 5); {row} ENDIF; W(1)")
+    assert pairs[:6] == [("PUSH_NUM_1", "X = 1"), ("SET_VAR_0", "X = 1"),
                          *[(name, "IF(X = 5)") for name in
                            ("PUSH_VAR_0", "PUSH_NUM_5", "EQ", "IF_FAR")]]  # fmt: skip
-    assert found[6:-1] == [("STOP", "S")] * 256
-    assert found[-1] == ("WAIT8", "W(1)")
+    assert pairs[6:-1] == [("STOP", "S")] * 256
+    assert pairs[-1] == ("WAIT8", "W(1)")
 
 
 def test_what_is_folded_away_has_no_place() -> None:
@@ -94,11 +94,11 @@ def test_what_is_folded_away_has_no_place() -> None:
 
 def test_places_are_in_order_and_the_first_is_at_the_beginning() -> None:
     text = "DEF A; S; END_DEF; LOOP(3); A; IF(DISTANCE < 5); BREAK; ENDIF; END_LOOP"
-    found = compiled(text)
-    offsets = [place.offset for place in found.locations]
+    compilation = compiled(text)
+    offsets = [place.offset for place in compilation.locations]
     assert offsets == sorted(set(offsets)) and offsets[0] == 0
-    assert set(offsets) <= {row.offset for row in rows(found.code)}
-    spans = [place.span for place in found.locations]
+    assert set(offsets) <= {row.offset for row in rows(compilation.code)}
+    spans = [place.span for place in compilation.locations]
     assert all(one != other for one, other in itertools.pairwise(spans))
 
 
@@ -106,24 +106,24 @@ def test_places_are_in_order_and_the_first_is_at_the_beginning() -> None:
 
 
 def test_an_offset_inside_an_instruction_is_the_instruction_s() -> None:
-    found = mapped(compiled("S; F(1, 80); W(1)"))
-    columns = [None if (place := found.location_at(offset)) is None else place.column
+    mapping = mapped(compiled("S; F(1, 80); W(1)"))
+    columns = [None if (place := mapping.location_at(offset)) is None else place.column
                for offset in range(-1, 7)]  # fmt: skip
     assert columns == [None, 1, 4, 4, 4, 14, 14, 14]
-    assert (found.line(0), found.line(1), found.line(2)) == ("", "S; F(1, 80); W(1)", "")
+    assert (mapping.line(0), mapping.line(1), mapping.line(2)) == ("", "S; F(1, 80); W(1)", "")
 
 
 def test_a_map_is_written_as_json_writes_it() -> None:
     text = "".join(map(chr, range(0x180))) + "\u2028\ud800 🤖"
     places = (MapLocation(0, 1, 1, 1, 2), MapLocation(10, 2, 3, 40, 5))
-    for found in (
+    for mapping in (
         source_map.SourceMap(text, (text, "", "S"), places, (text, "N"), (True, False)),
         source_map.SourceMap("", (), ()),
     ):
         keys = {"locations": "places", "yes_no_flags": "yes_no"}
-        values = {keys.get(name, name): value for name, value in found._asdict().items()}
+        values = {keys.get(name, name): value for name, value in mapping._asdict().items()}
         fields = {"version": source_map.VERSION, **values}
-        assert source_map.as_json(found) == json.dumps(fields, ensure_ascii=False)
+        assert source_map.as_json(mapping) == json.dumps(fields, ensure_ascii=False)
 
 
 @pytest.mark.parametrize(
@@ -157,8 +157,8 @@ def test_a_variable_is_a_yes_no_where_a_show_of_it_is_one() -> None:
     for seed in range(40):
         oracle_kit, kit = KITS[seed % len(KITS)]
         text = programs.program(random.Random(seed), oracle_kit)
-        found = compile_text(text, kit)
-        for name, is_yes_no in zip(found.variables, found.yes_no_flags, strict=True):
+        compilation = compile_text(text, kit)
+        for name, is_yes_no in zip(compilation.variables, compilation.yes_no_flags, strict=True):
             shown = compile_text(f"{text}\nSHOW({name})", kit)
             if shown.is_right:  # else it is a value of a DEF
                 assert shown.program
@@ -166,20 +166,20 @@ def test_a_variable_is_a_yes_no_where_a_show_of_it_is_one() -> None:
                 assert isinstance(last, Show) and last.is_yes_no == is_yes_no, (seed, name)
                 kinds.add(is_yes_no)
     assert kinds == {True, False}
-    found = compiled(
+    compilation = compiled(
         "DEF GO(FAST, SPEED); IF(FAST); F(1, SPEED); ENDIF; END_DEF\n"
         "TASK; GO(TRUE, 50); END_TASK; TASK; GO(DISTANCE < 9, 60); END_TASK; GO(FALSE, 70)"
     )
-    assert found.variables == ("FAST", "SPEED") * 3
-    assert found.yes_no_flags == (True, False) * 3
+    assert compilation.variables == ("FAST", "SPEED") * 3
+    assert compilation.yes_no_flags == (True, False) * 3
 
 
 def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(source_map, "MOST_MAPS", 3)
     programs = [compiled(f"W({k})") for k in range(1, 6)]
-    for k, each in enumerate(programs):
-        source_map.remember(each.image, mapped(each))
-        path = source_map._path(checksum(each.image))
+    for k, compilation in enumerate(programs):
+        source_map.remember(compilation.image, mapped(compilation))
+        path = source_map._path(checksum(compilation.image))
         os.utime(path, (k + 1, k + 1))
     kept = [source_map.recall(checksum(program.image)) is not None for program in programs]
     assert kept == [False, False, True, True, True]

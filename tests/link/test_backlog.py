@@ -47,8 +47,8 @@ class Chatterbox:
                 return b""
             self.rest = CHATTER[1:]
             return CHATTER[:1]
-        found, self.rest = self.rest, b""
-        return found
+        taken, self.rest = self.rest, b""
+        return taken
 
     def write(self, data: bytes) -> int:
         return len(data)
@@ -67,14 +67,14 @@ def test_a_line_that_nobody_looks_at_keeps_little() -> None:
         kept_bytes, _ = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-    found = []
+    events = []
     while (row := line.event(0.5)) is not None:
-        found.append(row[1])
+        events.append(row[1])
     line.close()
     assert kept_bytes < MOST_BYTES
-    assert len(found) <= MOST_EVENTS + 1
-    assert found[0].name == "MISSED"
-    assert found[0].count + len(found) - 1 == 20 * PIECES
+    assert len(events) <= MOST_EVENTS + 1
+    assert events[0].name == "MISSED"
+    assert events[0].count + len(events) - 1 == 20 * PIECES
 
 
 class Socket(Chatterbox):
@@ -82,17 +82,17 @@ class Socket(Chatterbox):
 
     def __init__(self) -> None:
         super().__init__()
-        self.left = CHATTER
+        self.rest = CHATTER
 
     @property
     def in_waiting(self) -> int:
         return 1
 
     def read(self, count: int) -> bytes:
-        found, self.left = self.left[:count], self.left[count:]
-        if not found:
+        taken, self.rest = self.rest[:count], self.rest[count:]
+        if not taken:
             raise OSError("socket disconnected")
-        return found
+        return taken
 
 
 def test_what_a_socket_has_is_heard_in_one_piece(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -115,11 +115,11 @@ def test_what_the_robot_does_is_kept_before_what_it_shows() -> None:
     backlog.add_events([(0, StartedEvent(1, 2)), shown(0)])
     backlog.add_events(shown(number) for number in range(1, 10 * MOST_EVENTS))
     backlog.add_events([(0, FaultEvent(1, 2, 3, 4))])
-    found = [backlog.take_event()[1] for _ in range(len(backlog))]
-    assert [each.name for each in found[:3]] == ["MISSED", "STARTED", "SHOW"]
-    assert found[-1].name == "FAULT" and len(found) == MOST_EVENTS + 1
-    assert found[-2] == ShownEvent(10 * MOST_EVENTS - 1, 0), "the newest is there"
-    assert found[0] == MissedEvent(10 * MOST_EVENTS + 2 - MOST_EVENTS)
+    events = [backlog.take_event()[1] for _ in range(len(backlog))]
+    assert [event.name for event in events[:3]] == ["MISSED", "STARTED", "SHOW"]
+    assert events[-1].name == "FAULT" and len(events) == MOST_EVENTS + 1
+    assert events[-2] == ShownEvent(10 * MOST_EVENTS - 1, 0), "the newest is there"
+    assert events[0] == MissedEvent(10 * MOST_EVENTS + 2 - MOST_EVENTS)
     assert len(backlog) == 0
 
 

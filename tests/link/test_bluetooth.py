@@ -49,9 +49,9 @@ def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot) -> None:
     for count, port in enumerate((NAME, PLACE, "BLE://tini 1", PLACE.lower()), 1):
-        done = inside("upload", "-e", DRIVE, "--port", port)
-        assert (done.code, done.err) == (0, ""), port
-        assert done.out.splitlines()[-2:] == ["Done.", "Saved. It starts with the button."]
+        result = inside("upload", "-e", DRIVE, "--port", port)
+        assert (result.code, result.err) == (0, ""), port
+        assert result.out.splitlines()[-2:] == ["Done.", "Saved. It starts with the button."]
         assert (ble.robot.did, ble.connections) == (DROVE * count, 2 * count - 1)
         assert inside("set", "trim", "--show").code == 0  # the port is remembered
     assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
@@ -78,7 +78,7 @@ def test_a_long_program_arrives_whole(
     assert theirs.read_bytes() == ours.read_bytes()
     longest = max(len(data) for _, data in ble.written)
     assert longest == (20 if service == HM10 else min(mtu - 3, LARGEST))
-    assert max(map(len, ble.said)) <= mtu - 3
+    assert max(map(len, ble.sent)) <= mtu - 3
 
 
 def test_where_a_module_answers_each_write_it_is_waited_for(
@@ -100,8 +100,8 @@ def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: 
     command = uploading(ble, NAME)
     rows = [row for row in json.loads(inside("doctor", "--ports", "--json").out) if row["held_by"]]
     assert [row["port"] for row in rows] == [NAME]
-    done = inside("stop", *(("--port", port) if port else ()))
-    assert (done.code, done.out.count("Stopped")) == (0, 1)
+    result = inside("stop", *(("--port", port) if port else ()))
+    assert (result.code, result.out.count("Stopped")) == (0, 1)
     assert not ble.robot.moves
     assert command.ended().code == 3
     assert ble.connections == 1
@@ -109,10 +109,12 @@ def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: 
 
 def test_two_at_once_take_turns(ble: BleRobot) -> None:
     both = [Command("doctor", "--identify", "--port", port) for port in (NAME, PLACE)]
-    done = [command.ended() for command in both]
-    assert 0 in [each.code for each in done]
-    for each in done:
-        assert each.code == 0 or "another program is using" in each.err or "in range" in each.err
+    results = [command.ended() for command in both]
+    assert 0 in [result.code for result in results]
+    for result in results:
+        assert (
+            result.code == 0 or "another program is using" in result.err or "in range" in result.err
+        )
 
 
 def test_ctrl_c_stops_the_robot_and_frees_it(ble: BleRobot, bluez: FakeBluez) -> None:
@@ -161,7 +163,7 @@ def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, lat
     assert inside("upload", "-e", DRIVE, "--port", PLACE).code == 0
 
 
-@pytest.mark.parametrize(("said", "typed"), [
+@pytest.mark.parametrize(("name", "typed"), [
     ("Ñandú 7", "ñandú 7"),
     ("Mi robot", "mi robot"),
     ("a/b?c%20://d", "a/b?c%20://d"),
@@ -169,8 +171,8 @@ def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, lat
     ("  spaced  ", "spaced"),
     ("Cafe\u0301", "Caf\u00e9"),
 ])  # fmt: skip
-def test_names_are_text(bluez: FakeBluez, pty_robot: PtyRobot, said: str, typed: str) -> None:
-    bluez.add(BleRobot(pty_robot, said))
+def test_names_are_text(bluez: FakeBluez, pty_robot: PtyRobot, name: str, typed: str) -> None:
+    bluez.add(BleRobot(pty_robot, name))
     assert inside("doctor", "--identify", "--port", f"ble://{typed}").code == 0
 
 
@@ -185,19 +187,19 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
     hostile = "\x1b[31mNo\r\ntsc: \u202ename"
     bluez.add(Echo(hostile, OTHER))
     bluez.add(Peripheral("lamp", "AA:BB:CC:DD:EE:03", LAMP))
-    done = inside("doctor", "--ports", "--ask").gives(0)
-    rows = {line.split("   ")[0]: line.split("   ")[1:] for line in done.out.splitlines()}
+    result = inside("doctor", "--ports", "--ask").gives(0)
+    rows = {line.split("   ")[0]: line.split("   ")[1:] for line in result.out.splitlines()}
     assert rows[PLACE] == ["Tini 1, Bluetooth LE", "robot tinibot (free)"]
     assert [port for port in rows if port.startswith("ble")] == [f"ble://{OTHER}", PLACE]
-    assert not any(sign in done.out for sign in "\x1b\r\u202e")
+    assert not any(sign in result.out for sign in "\x1b\r\u202e")
     assert inside("doctor", "--identify", "--port", NAME).code == 0  # from now on it has this name
     known_ports.remember("ble://yesterday", "Yesterday")
-    said = {
+    names = {
         row["port"]: row["said"]
         for row in json.loads(inside("doctor", "--ports", "--ask", "--json").out)
     }
-    assert (said[NAME], said["ble://yesterday"]) == ("robot tinibot (free)", "out of range now")
-    assert PLACE not in said
+    assert (names[NAME], names["ble://yesterday"]) == ("robot tinibot (free)", "out of range now")
+    assert PLACE not in names
 
 
 def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:

@@ -38,9 +38,9 @@ def stops_by_itself(ble: BleRobot) -> None:
 def test_a_connection_that_is_never_made(ble: BleRobot, stage: str) -> None:
     ble.fails_at = stage
     for language in ("en", "es"):
-        done = inside("upload", "-e", DRIVE, "--port", PLACE, "--lang", language).gives(3, out="")
-        assert done.err.startswith("tsc: ")
-        assert PLACE.upper() in done.err.upper()
+        result = inside("upload", "-e", DRIVE, "--port", PLACE, "--lang", language).gives(3, out="")
+        assert result.err.startswith("tsc: ")
+        assert PLACE.upper() in result.err.upper()
     assert ble.robot.did == []
     ble.fails_at = ""
     assert inside("upload", "-e", DRIVE, "--port", PLACE).code == 0
@@ -57,9 +57,9 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     assert inside("upload", "-e", "SB|F(1, 10)", "--port", PLACE).code == 0
     assert inside("show", "-o", before, "--port", PLACE).code == 0
     ble.parts_after = len(ble.heard) + heard
-    done = inside("upload", "-e", LONG, "--port", PLACE)
-    assert done.code == 3
-    assert f"lost the Bluetooth connection to {PLACE}" in done.err
+    result = inside("upload", "-e", LONG, "--port", PLACE)
+    assert result.code == 3
+    assert f"lost the Bluetooth connection to {PLACE}" in result.err
     ble.parts_after = None
     stops_by_itself(ble)
     ours = tmp_path / "ours.bin"
@@ -104,12 +104,12 @@ def test_an_adapter_that_is_gone_ends_the_command(
         bluez.unplug()
     else:
         bluez.vanish()
-    done = command.ended().gives(3, "the Bluetooth connection")
-    assert done.err.count("\n") == 1  # nothing of bleak's
+    result = command.ended().gives(3, "the Bluetooth connection")
+    assert result.err.count("\n") == 1  # nothing of bleak's
     stops_by_itself(ble)
-    done = inside("stop", "--port", PLACE, "--lang", "es")
-    said = "el servicio de Bluetooth" if what == "vanish" else "el Bluetooth de esta computadora"
-    assert (done.code, said in done.err) == (3, True)
+    result = inside("stop", "--port", PLACE, "--lang", "es")
+    message = "el servicio de Bluetooth" if what == "vanish" else "el Bluetooth de esta computadora"
+    assert (result.code, message in result.err) == (3, True)
 
 
 def test_a_flood_is_no_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -131,22 +131,22 @@ def test_a_flood_is_no_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) 
 # -- before it begins ---------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("has_bluez", "has_adapter", "said"), [
+@pytest.mark.parametrize(("has_bluez", "has_adapter", "messages"), [
     (False, False, ("this computer's Bluetooth service is not running.",
                     "el servicio de Bluetooth de esta computadora no está en marcha")),
     (True, False, ("Bluetooth is off on this computer",
                    "el Bluetooth de esta computadora está apagado")),
 ])  # fmt: skip
 def test_a_computer_without_bluetooth(
-    has_bluez: bool, has_adapter: bool, said: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+    has_bluez: bool, has_adapter: bool, messages: tuple[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with FakeBluez(has_bluez, has_adapter) as bluez:
         monkeypatch.setenv("DBUS_SYSTEM_BUS_ADDRESS", bluez.address)
         monkeypatch.setattr(ports, "list_ports", list)
         monkeypatch.setattr(ports, "find_announced_robots", list)
-        for language, words in zip(("en", "es"), said, strict=True):
+        for language, words in zip(("en", "es"), messages, strict=True):
             inside("doctor", "--identify", "--port", NAME, "--lang", language).gives(3, words)
-        inside("doctor", "--ports", "--ask").gives(0, said[0])
+        inside("doctor", "--ports", "--ask").gives(0, messages[0])
 
 
 def test_a_bus_that_lets_nobody_in(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -96,9 +96,9 @@ STAGES = ("before it is connected", "connected", "notify")
 def loop(monkeypatch: pytest.MonkeyPatch) -> Iterator[event_loop.EventLoop]:
     monkeypatch.setattr(bluetooth, "BleakClient", Client)
     bluetooth._connect_lock.cache_clear()  # the lock is of one loop
-    found = event_loop.EventLoop()
-    yield found
-    found.close()
+    loop = event_loop.EventLoop()
+    yield loop
+    loop.close()
     bluetooth._connect_lock.cache_clear()
 
 

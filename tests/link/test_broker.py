@@ -73,11 +73,11 @@ class SlowNetwork(Network):
 def test_each_robot_of_a_class_is_listed(school: Mosquitto, late_s: float, gap_s: float) -> None:
     with (
         closing(SlowNetwork(school.port, late_s, gap_s, is_cut=False)) as network,
-        closing(Broker("127.0.0.1", network.port, Access("robots", "word"))) as found,
+        closing(Broker("127.0.0.1", network.port, Access("robots", "word"))) as broker,
     ):
         for _ in range(2):
-            assert len(found.list_robots("3b")) == ROBOTS
-        assert found.list_robots("4a") == []
+            assert len(broker.list_robots("3b")) == ROBOTS
+        assert broker.list_robots("4a") == []
 
 
 def test_a_list_that_is_not_whole_is_none(
@@ -86,34 +86,34 @@ def test_a_list_that_is_not_whole_is_none(
     monkeypatch.setattr(broker, "LIST_S", 1.0)
     with (
         closing(SlowNetwork(school.port, 0, 0, is_cut=True)) as network,
-        closing(Broker("127.0.0.1", network.port, Access("robots", "word"))) as found,
+        closing(Broker("127.0.0.1", network.port, Access("robots", "word"))) as school_broker,
         pytest.raises(PortError),
     ):
-        found.list_robots("3b")
+        school_broker.list_robots("3b")
 
 
 # -- what a computer says is said once ------------------------------------------------------------
 
 
-def heard(client: Broker) -> None:
+def flush(client: Broker) -> None:
     """Wait until the broker has taken all that a client has said."""
     client._client.publish(LAST, b"", qos=1).wait_for_publish(HANGS_S)
 
 
-def kept(own: Mosquitto) -> list[str]:
+def retained_topics(own: Mosquitto) -> list[str]:
     """Return the topics of all that a broker retains."""
     late = own.connected()
-    found: list[str] = []
+    texts: list[str] = []
 
     def keep(_: Any, __: Any, message: Any) -> None:
-        found.append(message.topic)
+        texts.append(message.topic)
 
     late._client.on_message = keep
     late._client.subscribe("#")
     late._client.publish(LAST, b"")  # what is retained comes before what is said later
-    until(lambda: LAST in found, "all that is retained has come")
+    until(lambda: LAST in texts, "all that is retained has come")
     late.close()
-    return found[: found.index(LAST)]
+    return texts[: texts.index(LAST)]
 
 
 def test_stops_and_frames_are_not_retained(tmp_path: Path) -> None:
@@ -124,11 +124,13 @@ def test_stops_and_frames_are_not_retained(tmp_path: Path) -> None:
         port.write(bytes(STOP_BYTES))
         teacher.stop("aula")
         port.close()
-        heard(teacher)
-        assert kept(own) == []
+        flush(teacher)
+        assert retained_topics(own) == []
         teacher._client.publish("tiniscript/aula/12345678", b"+x", retain=True)
-        heard(teacher)
-        assert kept(own) == ["tiniscript/aula/12345678"], "what is retained would be seen"
+        flush(teacher)
+        assert retained_topics(own) == ["tiniscript/aula/12345678"], (
+            "what is retained would be seen"
+        )
         teacher.close()
     finally:
         own.kill()
@@ -156,12 +158,14 @@ def test_a_retained_message_that_is_too_large_is_left_out(school: Mosquitto, siz
     more.append({"topic": f"{broker.ROOT}/3b/ffffffff", "payload": "+Z", "qos": 1, "retain": True})
     access = {"username": "robots", "password": "word"}
     paho.multiple(more, "127.0.0.1", school.port, auth=access)
-    with closing(Broker("127.0.0.1", school.port, Access("robots", "word"))) as found:
+    with closing(Broker("127.0.0.1", school.port, Access("robots", "word"))) as school_broker:
         for _ in range(2):
-            assert len(found.list_robots("3b")) == ROBOTS  # one of them was written over
-        assert sorted(found.skipped_topics) == sorted(topic[:80] for topic in topics)
-        assert all(size < bytes_of_it < size + 320 for bytes_of_it in found.skipped_topics.values())
-        assert found.stop("3b") and not found.end_reason
+            assert len(school_broker.list_robots("3b")) == ROBOTS  # one of them was written over
+        assert sorted(school_broker.skipped_topics) == sorted(topic[:80] for topic in topics)
+        assert all(
+            size < bytes_of_it < size + 320 for bytes_of_it in school_broker.skipped_topics.values()
+        )
+        assert school_broker.stop("3b") and not school_broker.end_reason
 
 
 @pytest.mark.parametrize("size", [SKIPPED_BYTES + 1, (256 << 20) - 1])

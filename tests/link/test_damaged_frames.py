@@ -39,12 +39,14 @@ class Line(NamedTuple):
 def judge(sent: Line, accepted: list[Frame]) -> None:
     """Assert that nothing wrong was accepted, and that damage costs one more frame at most."""
     numbers = {frame: number for number, frame in enumerate(sent.frames)}
-    got = []
+    judgements = []
     for frame in accepted:
         assert frame in numbers, f"a frame that nobody has sent was accepted: {frame}"
-        got.append(numbers[frame])
-    assert got == sorted(set(got)), "a frame came twice, or before one that was sent earlier"
-    arrived = set(got)
+        judgements.append(numbers[frame])
+    assert judgements == sorted(set(judgements)), (
+        "a frame came twice, or before one that was sent earlier"
+    )
+    arrived = set(judgements)
     for number, is_damaged in enumerate(sent.is_damaged):
         if not is_damaged and (number == 0 or not sent.is_damaged[number - 1]):
             assert number in arrived, (
@@ -80,23 +82,23 @@ def judge_in_python(line: DamagedLine, is_large: bool) -> None:
     for frame, is_damaged in zip(sent.frames, sent.is_damaged, strict=True):
         if not is_damaged:
             wire = encode_frame(frame)
-            found = sent.data.find(wire, at)
-            assert found >= 0, f"the C++ encodes it in another way: {frame}"
-            at = found + len(wire)
+            start = sent.data.find(wire, at)
+            assert start >= 0, f"the C++ encodes it in another way: {frame}"
+            at = start + len(wire)
     stream = [(0, byte) for byte in sent.data]
     rows = packets_of(stream, is_large=is_large)
     assert cpp_link(is_large).packets(stream) == rows
     judge(sent, whole_frames(rows))
-    assert [frame_of(each) for each in line.accepted] == whole_frames(rows)
+    assert [frame_of(packet) for packet in line.accepted] == whole_frames(rows)
 
 
 def damage_frames(cpp: CppDamage, count: int, seed: int) -> tuple[int, int]:
     """Send lines until so many frames are damaged; return how many were, and the lines."""
-    done = lines = 0
-    while done < count:
-        done += cpp.judged(seed, lines, LINES)
+    judged_count = lines = 0
+    while judged_count < count:
+        judged_count += cpp.judged(seed, lines, LINES)
         lines += LINES
-    return done, lines
+    return judged_count, lines
 
 
 @pytest.mark.parametrize("is_large", [False, True])

@@ -73,5 +73,5 @@ def test_the_end_of_a_process_cancels_what_runs() -> None:
         "    task = asyncio.create_task(work())\n"
         "shared_loop().run(begin(), 100); begun.wait(100)\n"
     )
-    done = Command(code=code).ended()
-    assert (done.code, done.out, done.err) == (0, "cancelled\n", "")
+    result = Command(code=code).ended()
+    assert (result.code, result.out, result.err) == (0, "cancelled\n", "")

@@ -100,10 +100,10 @@ def never_silence(cpp: CppLink, seed: int) -> str:
         if pause_ms > SILENCE_MS:
             answered, in_frames = len(robot.answers), False
     line = draw.choice(LINES).encode() + draw.choice(LINE_ENDS[: -1 if in_frames else None])
-    done = len(robot.did)
+    event_count = len(robot.did)
     robot.type(line)
     robot.wait(4200)
-    is_done = any(row.startswith("TEXT") for row in robot.did[done:])
+    is_done = any(row.startswith("TEXT") for row in robot.did[event_count:])
     assert is_done or len(robot.answers) > answered, f"seed {seed}: silence for {before} {line!r}"
     return "runs" if is_done else "told"
 
@@ -158,14 +158,14 @@ def both_are_heard(cpp: CppLink, seed: int) -> str:
         if draw.random() < 0.5:
             ask(session.status())
             continue
-        done, text = len(robot.did), draw.choice(TURNS)
+        event_count, text = len(robot.did), draw.choice(TURNS)
         robot.type(text.encode() + b"\n")
         robot.wait(40)
         # a computer's frame without a 0x00, where the person's line has ended, may be a stop
         if "STOP" in robot.did:
             return "a frame was a stop"
-        begun = {row for row in robot.did[done:] if row.startswith("TEXT")}
-        assert begun == wanted_of[text], f"seed {seed}: {text!r} did {robot.did[done:]}"
+        begun = {row for row in robot.did[event_count:] if row.startswith("TEXT")}
+        assert begun == wanted_of[text], f"seed {seed}: {text!r} did {robot.did[event_count:]}"
         heard += 1
     robot.wait(TEXT_MS + 100)
     return f"{heard} lines"
@@ -182,5 +182,5 @@ def test_a_law_of_the_wire(holds: object) -> None:
 
 if __name__ == "__main__":
     given = wanted(10_000, 1_000_000)
-    for each in PROPERTIES:
-        each_seed(partial(each, link_library()), given)
+    for check in PROPERTIES:
+        each_seed(partial(check, link_library()), given)

@@ -30,12 +30,12 @@ EACH = pytest.mark.parametrize("recording", RECORDINGS.values(), ids=RECORDINGS)
 
 def our_bytes() -> list[bytes]:
     """Return what robots send in the cases of the link: frames, lines of text, zeros."""
-    found = []
+    recordings = []
     for name in ("link.md", "link_text.md"):
         text = (CASES / name).read_text(encoding="utf-8")
         for row in re.findall(r"^ *[0-9]* < ((?:[0-9a-f]{2} )*[0-9a-f]{2})\b", text, re.M):
-            found.append(bytes.fromhex(row))
-    return found
+            recordings.append(bytes.fromhex(row))
+    return recordings
 
 
 OURS = our_bytes()
@@ -43,7 +43,7 @@ OURS = our_bytes()
 
 def test_there_are_a_robot_s_bytes_to_look_at() -> None:
     assert len(OURS) > 100
-    assert sum(each.startswith(b"// ") for each in OURS) > 20
+    assert sum(row_of_ours.startswith(b"// ") for row_of_ours in OURS) > 20
 
 
 # -- each board ---------------------------------------------------------------------------------
@@ -51,13 +51,15 @@ def test_there_are_a_robot_s_bytes_to_look_at() -> None:
 
 @EACH
 def test_a_board_is_known_by_its_recording(recording: Recording) -> None:
-    found = identify_board(recording.data)
-    assert found is not None
-    assert (found.name, found.text, found.is_sure) == (recording.name, recording.said, True)
+    board = identify_board(recording.data)
+    assert board is not None
+    assert (board.name, board.text, board.is_sure) == (recording.name, recording.shown_text, True)
 
 
 def test_each_row_has_a_recording() -> None:
-    assert {each.name for each in RECORDINGS.values()} == {row.name for row in foreign.BOARD_KINDS}
+    assert {recording.name for recording in RECORDINGS.values()} == {
+        row.name for row in foreign.BOARD_KINDS
+    }
 
 
 @EACH
@@ -66,11 +68,11 @@ def test_a_recording_that_is_cut_is_of_that_board_or_of_none(recording: Recordin
     also = {recording.name, "esp32", None}
     if recording.data.endswith(b">>> "):
         also |= {"micropython"}
-    chance = random.Random(recording.said)
+    chance = random.Random(recording.shown_text)
     for _ in range(400):
         first, last = sorted(chance.randrange(len(recording.data) + 1) for _ in range(2))
-        found = identify_board(recording.data[first:last])
-        assert (found and found.name) in also, recording.data[first:last]
+        board = identify_board(recording.data[first:last])
+        assert (board and board.name) in also, recording.data[first:last]
 
 
 @EACH
@@ -85,8 +87,8 @@ def test_a_recording_says_the_same_however_its_pieces_come(recording: Recording)
 @EACH
 @pytest.mark.parametrize("before", [b"", b"\xf8\x00\x80", b"x\xfe\r\n"])
 def test_noise_before_a_recording_changes_nothing(recording: Recording, before: bytes) -> None:
-    found = identify_board(before + b"\r\n" + recording.data)
-    assert found is not None and found.name == recording.name
+    board = identify_board(before + b"\r\n" + recording.data)
+    assert board is not None and board.name == recording.name
 
 
 def test_two_bytes_alone_say_nothing() -> None:
@@ -97,8 +99,8 @@ def test_two_bytes_alone_say_nothing() -> None:
 
 def test_the_two_that_send_high_bytes_are_told_apart() -> None:
     for data, name in ((boards.FIRMATA, "firmata"), (boards.MBOT_VERSION, "mbot")):
-        found = identify_board(data)
-        assert found is not None and found.name == name
+        board = identify_board(data)
+        assert board is not None and board.name == name
         rows = [row.name for row in foreign.BOARD_KINDS if row.recognise(data)]
         assert rows == [name]
 
@@ -133,13 +135,13 @@ def test_a_robot_is_no_board(traffic: list[bytes], noise: bytes) -> None:
     """With any noise before it and behind: its frames and its lines are looked at first."""
     for data in (b"".join(traffic), noise + b"\0" + b"".join(traffic) + noise):
         assert identify_stranger(data) is None or not foreign.is_robot(data)
-        if any(foreign.is_robot(each) for each in traffic):
+        if any(foreign.is_robot(data) for data in traffic):
             assert identify_stranger(b"\0" + b"".join(traffic)) is None
 
 
 @given(
-    st.sampled_from([each.number for each in MESSAGES if each.number >= FIRST_EVENT]),
-    st.sampled_from([each.data for each in RECORDINGS.values()]), st.booleans(),
+    st.sampled_from([message.number for message in MESSAGES if message.number >= FIRST_EVENT]),
+    st.sampled_from([recording.data for recording in RECORDINGS.values()]), st.booleans(),
 )  # fmt: skip
 def test_a_frame_with_the_bytes_of_a_board_in_it_is_a_robot_s(
     number: int, data: bytes, is_reply: bool
@@ -167,7 +169,7 @@ def test_what_a_computer_sends_is_no_robot_s() -> None:
 
 
 @pytest.mark.parametrize(
-    ("data", "said"),
+    ("data", "name"),
     [
         (b"Distance: 34 cm\r\n" * 3, "Distance: 34 cm"),
         (b"0\r\n0\r\n", "0"),
@@ -182,11 +184,11 @@ def test_what_a_computer_sends_is_no_robot_s() -> None:
         (b"", ""),
     ],
 )
-def test_what_is_text(data: bytes, said: str) -> None:
-    assert foreign.readable_line(data) == said
-    found = identify_stranger(data)
-    assert (found.text if found else "") == said
-    assert found is None or found.is_sure == (b"\n" in data)
+def test_what_is_text(data: bytes, name: str) -> None:
+    assert foreign.readable_line(data) == name
+    stranger = identify_stranger(data)
+    assert (stranger.text if stranger else "") == name
+    assert stranger is None or stranger.is_sure == (b"\n" in data)
 
 
 @given(st.text(st.characters(min_codepoint=0x20, max_codepoint=0x2FF, categories=("L", "N", "P")),
@@ -194,8 +196,8 @@ def test_what_is_text(data: bytes, said: str) -> None:
 def test_any_line_of_text_is_text(line: str) -> None:
     """Bytes that are text at this speed are never those of a wrong speed."""
     data = f"{line}\r\n".encode()
-    found = identify_stranger(data)
-    assert found is not None or foreign.is_robot(data)
+    stranger = identify_stranger(data)
+    assert stranger is not None or foreign.is_robot(data)
 
 
 # -- who else says it ---------------------------------------------------------------------------
@@ -220,7 +222,7 @@ def test_a_connection_says_what_answers_instead_of_a_robot(recording: Recording)
     for language, word in (("en", "It sends: "), ("es", "Envía: "), ("pt", "Envia: ")):
         answer = RobotLink(line, language)._failure_data(Reply(LOST))
         assert answer["failure"] == FOREIGN
-        assert word + recording.said[:20] in answer["said"] and answer["advice"]
+        assert word + recording.shown_text[:20] in answer["said"] and answer["advice"]
 
 
 @pytest.mark.parametrize("name", ["snek", "brownout", "mbot"])
@@ -228,11 +230,11 @@ def test_the_page_says_what_its_port_has_heard(name: str) -> None:
     recording = RECORDINGS[name]
     page = PageRobot("tinibot", "es", PageKeys(b""))
     page.go(recording.data, 5, [{"do": "hello", "id": 1, "limit_ms": 300}])
-    news = [each for now_ms in range(5, 900, 20) for each in page.go(b"", now_ms, [])["news"]]
+    news = [item for now_ms in range(5, 900, 20) for item in page.go(b"", now_ms, [])["news"]]
     (answer,) = news
     assert answer["failure"] == FOREIGN
     assert answer["said"].startswith(foreign.explanation_of(recording.name, "es").meaning)
-    assert recording.said in answer["said"]
+    assert recording.shown_text in answer["said"]
 
 
 @pytest.mark.parametrize(

@@ -53,11 +53,11 @@ def open_link(is_large: bool = True, epoch: int = EPOCH) -> CppLink:
     robot = cpp_link(is_large)
     robot.begin(room=8192, kit=KIT, epoch=epoch)
     payload = struct.pack("<BBBBHI", MAJOR, MINOR, *LEAST_ISA, KIT, 7)
-    frames = [decode_frame(each) for each in sent_by(robot, Frame(HELLO, 1, 0, payload))]
+    frames = [decode_frame(packet) for packet in sent_by(robot, Frame(HELLO, 1, 0, payload))]
     (reply,) = [frame for frame in frames if frame]
-    found = decode_payload(BY_NAME["HELLO"].reply, reply.payload[1:])
+    values = decode_payload(BY_NAME["HELLO"].reply, reply.payload[1:])
     sizes = (LARGE_FRAME, LARGE_WINDOW) if is_large else (SMALL_FRAME, 1)
-    assert (found["largest"], found["window"]) == sizes
+    assert (values["largest"], values["window"]) == sizes
     return robot
 
 
@@ -68,9 +68,9 @@ def sent_by(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[bytes
 
 
 def answers(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[Frame]:
-    found = [decode_frame(each) for each in sent_by(robot, *frames, is_late=is_late)]
-    assert all(found)
-    return [frame for frame in found if frame]
+    replies = [decode_frame(packet) for packet in sent_by(robot, *frames, is_late=is_late)]
+    assert all(replies)
+    return [frame for frame in replies if frame]
 
 
 def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
@@ -82,11 +82,11 @@ def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
             Frame(number, 2 + k, EPOCH + 1, bytes(2 * (number == FETCH)))
             for k, number in enumerate(numbers)
         ]
-        found = answers(robot, *frames, is_late=True)
-        assert [frame.number for frame in found] == numbers[:window]
+        replies = answers(robot, *frames, is_late=True)
+        assert [frame.number for frame in replies] == numbers[:window]
         statuses = {FETCH: STATUSES["NO_PROGRAM"], PING: OK}
-        assert all(frame.payload[0] == statuses[frame.number] for frame in found)
-        assert [frame.seq for frame in found] == [2 + k for k in range(window)]
+        assert all(frame.payload[0] == statuses[frame.number] for frame in replies)
+        assert [frame.seq for frame in replies] == [2 + k for k in range(window)]
         (status,) = answers(robot, Frame(BY_NAME["STATUS"].number, 50, EPOCH + 1))
         values = decode_payload(BY_NAME["STATUS"].reply, status.payload[1:])
         assert (values["dropped"], values["damaged"]) == (2, 0)
@@ -188,7 +188,7 @@ WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # what lies after
     ("lost", "unanswered", "count"),
     [
         ((), (), 7),
-        ((), (2, 3), 7),  # the next answer tells of them
+        ((), (2, 3), 7),  # the next answer reports them
         ((), (7,), 8),
         ((2,), (), 10),  # what followed it is sent again
         ((7,), (), 8),
@@ -201,7 +201,7 @@ def test_what_is_lost_is_sent_again_and_no_more(
     taking = InOrderReceiver(lost, unanswered)
     robot = AnsweringRobot(taking)
     assert robot.run(robot.session.upload(IMAGE)) == OK
-    assert taking.found == WHOLE and robot.has_commit
+    assert taking.received == WHOLE and robot.has_commit
     assert len(robot.data) == count
     assert len({seq for seq, *_ in robot.data}) == count, "two frames have one number"
     assert 2 <= robot.most_waiting <= LARGE_WINDOW
@@ -215,7 +215,7 @@ def test_a_robot_gets_frames_as_it_says_up_to_what_there_is(largest: int, window
     taking = InOrderReceiver()
     robot = AnsweringRobot(taking, largest, window)
     assert robot.run(robot.session.upload(IMAGE)) == OK
-    assert taking.found == WHOLE
+    assert taking.received == WHOLE
     is_small = largest <= SMALL_FRAME
     assert robot.longest == (SMALL_PACKET if is_small else min(largest, LARGE_FRAME) + 1)
     assert robot.most_waiting == max(1, min(window, LARGE_WINDOW))
@@ -229,7 +229,7 @@ def test_a_slow_line_has_little_before_a_stop() -> None:
 
 
 @pytest.mark.parametrize(
-    ("found", "status"),
+    ("outcome", "status"),
     [
         ((OK, 0), LOST),  # it takes nothing
         ((STALE, 0), LOST),  # it calls all of them old, in the epoch of the session
@@ -237,8 +237,10 @@ def test_a_slow_line_has_little_before_a_stop() -> None:
         (None, LOST),
     ],
 )
-def test_a_robot_that_takes_nothing_is_given_up(found: tuple[int, int] | None, status: int) -> None:
-    robot = AnsweringRobot(lambda *_: found)
+def test_a_robot_that_takes_nothing_is_given_up(
+    outcome: tuple[int, int] | None, status: int
+) -> None:
+    robot = AnsweringRobot(lambda *_: outcome)
     assert robot.run(robot.session.upload(IMAGE)) == status
     assert not robot.has_commit
     assert len(robot.data) <= (TRIES + 2) * LARGE_WINDOW

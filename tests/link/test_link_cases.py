@@ -36,31 +36,31 @@ def test_the_computer(case: LinkCase, request: pytest.FixtureRequest) -> None:
 @pytest.mark.parametrize("case", TALKS, ids=lambda case: case.id)
 def test_the_robot(case: LinkCase, request: pytest.FixtureRequest) -> None:
     if request.config.getoption("--accept"):
-        found = play(case.rows, computer_of(case), CppSide(cpp_link()))
-        if found != case.rows:
-            accept(case, found)
+        rows = play(case.rows, computer_of(case), CppSide(cpp_link()))
+        if rows != case.rows:
+            accept(case, rows)
         return
     assert play(case.rows, Written(case.rows), CppSide(cpp_link())) == case.rows
 
 
 @pytest.mark.parametrize("case", [*PACKETS, *COMPUTERS], ids=lambda case: case.id)
 def test_the_receiver(case: LinkCase, request: pytest.FixtureRequest) -> None:
-    found = with_found(case, packets_of(*stream_of(case)))
+    rows = with_found(case, packets_of(*stream_of(case)))
     if request.config.getoption("--accept"):
-        if found != case.rows:
-            accept(case, found)
+        if rows != case.rows:
+            accept(case, rows)
         return
-    assert found == case.rows
+    assert rows == case.rows
 
 
 @pytest.mark.parametrize("case", [*PACKETS, *ROBOTS], ids=lambda case: case.id)
 def test_the_receiver_in_cpp(case: LinkCase, request: pytest.FixtureRequest) -> None:
-    found = with_found(case, cpp_link().packets(*stream_of(case)))
+    rows = with_found(case, cpp_link().packets(*stream_of(case)))
     if request.config.getoption("--accept") and case in ROBOTS:
-        if found != case.rows:
-            accept(case, found)
+        if rows != case.rows:
+            accept(case, rows)
         return
-    assert found == case.rows
+    assert rows == case.rows
 
 
 def test_there_are_cases() -> None:

@@ -38,16 +38,16 @@ def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> N
 
     Of large frames several are under way; some come twice or in another order.
     """
-    found = Counter(one_upload(cpp_link(is_large), seed) for seed in range(count))
-    assert found["done"] > count * least, found
+    counts = Counter(one_upload(cpp_link(is_large), seed) for seed in range(count))
+    assert counts["done"] > count * least, counts
 
 
 @pytest.mark.sampled("is_large", "count", "least")
 @pytest.mark.parametrize(("is_large", "count", "least"), [(False, 150, 0.85), (True, 50, 0.6)])
 def test_uploads_in_pieces(is_large: bool, count: int, least: float) -> None:
     """After a second of silence the rest of a frame is text; the frame comes again."""
-    found = Counter(one_upload(cpp_link(is_large), seed, Split) for seed in range(count))
-    assert found["done"] > count * least, found
+    counts = Counter(one_upload(cpp_link(is_large), seed, Split) for seed in range(count))
+    assert counts["done"] > count * least, counts
 
 
 def one_undo(cpp: CppLink, seed: int) -> str:
@@ -68,12 +68,14 @@ def one_undo(cpp: CppLink, seed: int) -> str:
         pending_request = world.session.undo()
         world.run(pending_request)
         assert pending_request.outcome, f"seed {seed}: an undo has no end"
-        done = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}") - before
-        assert done <= 1, f"seed {seed}: undone {done} times"
+        undo_count = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}") - before
+        assert undo_count <= 1, f"seed {seed}: undone {undo_count} times"
         if pending_request.outcome.status == 0:
-            assert done == 1, f"seed {seed}: the computer says undone, the robot has done nothing"
+            assert undo_count == 1, (
+                f"seed {seed}: the computer says undone, the robot has done nothing"
+            )
             confirmed += 1
-        if done:
+        if undo_count:
             images.reverse()
         assert cpp.held() == images[1], f"seed {seed}: the robot holds another program"
     return f"{confirmed} confirmed"
@@ -81,8 +83,8 @@ def one_undo(cpp: CppLink, seed: int) -> str:
 
 def test_undos_over_a_bad_radio() -> None:
     """No undo is done twice, however often its answer is lost."""
-    found = Counter(one_undo(cpp_link(), seed) for seed in range(UNDOS))
-    assert found["4 confirmed"] > UNDOS * 0.8, found
+    counts = Counter(one_undo(cpp_link(), seed) for seed in range(UNDOS))
+    assert counts["4 confirmed"] > UNDOS * 0.8, counts
 
 
 if __name__ == "__main__":

@@ -93,7 +93,7 @@ def test_a_frame_that_is_damaged_goes_on_or_ends_too_late_runs_nothing() -> None
         damage[at] ^= 0x40 if at < 8 else 0x11
         assert greeted().step(10, bytes(damage)) == NOTHING, at
     more = (b"\x01\0", b"\x05\0", b"\x01\x01\0", b"\xff\0")
-    ends = [(10 + messages.SILENCE_MS, b"\0"), *((10, each) for each in more)]
+    ends = [(10 + messages.SILENCE_MS, b"\0"), *((10, data) for data in more)]
     for code in CODES:
         for now_ms, end in ends:
             robot = greeted()

@@ -28,7 +28,7 @@ class LiveWorld(World):
 
     sent = 0
 
-    def heard(self, data: bytes) -> None:
+    def overhear(self, data: bytes) -> None:
         frame = decode_frame(data.strip(b"\0"))
         self.sent += frame is not None and frame.number == LIVE and not frame.is_reply
 
@@ -38,7 +38,7 @@ def lives(cpp: CppLink, count: int, seed: int) -> Counter[str]:
     went. A line begins once where the computer says so, and never twice.
     """
     draw = random.Random(seed)
-    found: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     for first in range(0, count, LINES):
         world = LiveWorld(cpp, draw, draw.choice((0.001, 0.005, 0.01)), draw.choice((0, 0.0005)))
         for number in range(first, min(first + LINES, count)):
@@ -54,11 +54,11 @@ def lives(cpp: CppLink, count: int, seed: int) -> Counter[str]:
             assert set(times.values()) <= {1}, f"seed {seed}: an earlier line again, {number}"
             starts = sum(row.startswith("START") for row in world.did)
             assert starts == len(times), f"seed {seed}, line {number}: {starts} starts"
-            found[OUTCOMES.get(status) or name_of(status)] += 1
-            found["sent again"] += world.sent > 1
+            counts[OUTCOMES.get(status) or name_of(status)] += 1
+            counts["sent again"] += world.sent > 1
             if status != 0:
                 world.reconnect()
-    return found
+    return counts
 
 
 def line_of(number: int) -> bytes:
@@ -70,8 +70,8 @@ def line_of(number: int) -> bytes:
 
 def test_live_lines_over_a_bad_radio() -> None:
     """None is done twice, however often its answer is lost."""
-    found = lives(cpp_link(), LIVES, SEED)
-    assert found["OK"] > LIVES * 0.8 and found["sent again"] > LIVES * 0.1, found
+    counts = lives(cpp_link(), LIVES, SEED)
+    assert counts["OK"] > LIVES * 0.8 and counts["sent again"] > LIVES * 0.1, counts
 
 
 if __name__ == "__main__":

@@ -103,22 +103,22 @@ def check(seed: int) -> str:
     assert robot.until(session, session.upload(image_of("SI|F(0.2, 50)"))) == OK
     robot.talk(session, 3000)
     pending_requests = [ASKED[name](session), session.status()]
-    said = f"seed {seed}, {name}, {line.is_bursty} {line.likely} {line.late_ms}"
+    explanation = f"seed {seed}, {name}, {line.is_bursty} {line.likely} {line.late_ms}"
     pieces = 40 if "program" in name else 4
     for request in pending_requests:
         status = until(session, robot, line, request, pieces * EACH_MS)
-        assert status == OK, f"{said}: {status}"
+        assert status == OK, f"{explanation}: {status}"
     if name == "what goes on alone":
         robot.wait(2 * DEAF_MS)  # who has asked for it has gone
-        assert not robot.is_latched, said
+        assert not robot.is_latched, explanation
     return name
 
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
 def test_what_is_lost_now_and_then_is_done(part: int) -> None:
-    found = Counter(check(seed) for seed in range(part * 15, (part + 1) * 15))
-    assert len(found) > 4, found
+    counts = Counter(check(seed) for seed in range(part * 15, (part + 1) * 15))
+    assert len(counts) > 4, counts
 
 
 @pytest.mark.sampled("part")

@@ -10,7 +10,7 @@ import pytest
 from cobs import cobs
 
 from tests.support.rows import each_row
-from tests.support.texts import said
+from tests.support.texts import catalogue_texts
 from tiniscript.bytecode.image import REFUSALS
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages, statuses
@@ -107,7 +107,7 @@ def test_a_large_frame_has_a_zero_after_its_head(is_sealed: bool) -> None:
 
 
 def test_each_status_has_its_sentences() -> None:
-    texts = said("en", "statuses")
+    texts = catalogue_texts("en", "statuses")
     names = {*STATUSES, "IMAGE", "RULE", "OTHER_VERSION", "UNKNOWN_NEEDS"}
     assert {key.partition("/")[0] for key in texts} == names
     for name in names:
@@ -119,8 +119,8 @@ def test_each_status_has_its_sentences() -> None:
 def test_sentences_have_no_gaps_left() -> None:
     for lang in ("en", "es"):
         for status in range(1, 256):
-            said, advice = statuses.status_text(status, 0x1234, lang)
-            assert said and advice and "{" not in said + advice, (status, lang)
+            sentence, advice = statuses.status_text(status, 0x1234, lang)
+            assert sentence and advice and "{" not in sentence + advice, (status, lang)
     too_large = "The program is too large: the robot has room for 430 bytes of code."
     assert statuses.status_text(71, 430, "en").message == too_large
     refused = "The robot's verifier refuses the code at 5: BAD_OPERAND."

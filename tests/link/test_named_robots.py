@@ -108,8 +108,8 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
             out.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
             out.bind(("127.0.0.1", 5353))  # from elsewhere nobody believes it
             while not is_over.wait(0.1):
-                for each in packet.packets():
-                    out.sendto(each, ("224.0.0.251", 5353))
+                for data in packet.packets():
+                    out.sendto(data, ("224.0.0.251", 5353))
 
     sender = threading.Thread(target=send, daemon=True)
     sender.start()
@@ -120,9 +120,9 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
         sender.join()
 
 
-def ours(found: list[AnnouncedRobot], number: int) -> list[AnnouncedRobot]:
+def ours(robots: list[AnnouncedRobot], number: int) -> list[AnnouncedRobot]:
     """Those at a TCP port of this computer: a robot of the room may announce itself, too."""
-    return [each for each in found if each.port == f"socket://127.0.0.1:{number}"]
+    return [robot for robot in robots if robot.port == f"socket://127.0.0.1:{number}"]
 
 
 def number_of(port: str) -> int:
@@ -132,17 +132,17 @@ def number_of(port: str) -> int:
 @pytest.fixture(scope="module")
 def tini() -> Iterator[Robot]:
     """A robot that has announced itself: that takes 4 s."""
-    with robot("--announce", "--name", f"Ñ tini {HERE}") as found:
-        assert found.line() == f"tcp://Ñ tini {HERE}"
-        yield found
+    with robot("--announce", "--name", f"Ñ tini {HERE}") as running_robot:
+        assert running_robot.line() == f"tcp://Ñ tini {HERE}"
+        yield running_robot
 
 
 def test_a_robot_is_reached_by_its_name(tini: Robot) -> None:
     for run, typed in ((process, "tcp://Ñ tini {}"), (inside, "tcp://ñ tini {}.local"),
                        (inside, "TCP://ñ TINI {}")):  # fmt: skip
         port = typed.format(HERE)
-        done = run("upload", "-e", "SI|F(0.2, 50)", "--port", port)
-        assert (done.code, done.err) == (0, ""), port
+        result = run("upload", "-e", "SI|F(0.2, 50)", "--port", port)
+        assert (result.code, result.err) == (0, ""), port
         assert known_ports.remembered_ports().last_port == port
     assert inside("doctor", "--identify").code == 0  # it is remembered
 
@@ -158,12 +158,12 @@ def test_a_robot_announces_itself_only_when_asked(
     listing: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
-    with robot("--name", "quiet") as found, robot("--announce") as other:
+    with robot("--name", "quiet") as running_robot, robot("--announce") as other:
         name = other.line()
         assert name == f"tcp://tinibot-{number_of(other.port)}"
         rows = inside("doctor", "--ports", "--ask").out.splitlines()
         assert any(row.startswith(f"{name} ") for row in rows)
-        assert [row.split("   ")[0] for row in rows if "quiet" in row] == [found.port]
+        assert [row.split("   ")[0] for row in rows if "quiet" in row] == [running_robot.port]
 
 
 def test_the_announcement_ends_with_the_robot(
@@ -173,9 +173,9 @@ def test_the_announcement_ends_with_the_robot(
     with robot("--announce", "--name", name):
         assert inside("doctor", "--identify", "--port", f"tcp://{name}").code == 0
     monkeypatch.setattr(network, "SEARCH_S", 1.0)
-    done = inside("doctor", "--identify", "--port", f"tcp://{name}", "--lang", "es")
-    assert done.code == 3
-    assert f"ningún robot de esta red se anuncia como tcp://{name}" in done.err
+    result = inside("doctor", "--identify", "--port", f"tcp://{name}", "--lang", "es")
+    assert result.code == 3
+    assert f"ningún robot de esta red se anuncia como tcp://{name}" in result.err
 
 
 def test_names_that_nobody_has(
@@ -183,22 +183,22 @@ def test_names_that_nobody_has(
 ) -> None:
     monkeypatch.setattr(network, "SEARCH_S", 0.2)
     for name in ("x" * 64, "Ñ" * 40, "_tcp", ".", "..", "a.b", "a..b", " "):
-        done = tsc("doctor", "--identify", "--port", f"tcp://{name}")
-        assert (done.code, "announces itself" in done.err) == (3, True), name
+        result = tsc("doctor", "--identify", "--port", f"tcp://{name}")
+        assert (result.code, "announces itself" in result.err) == (3, True), name
 
 
 def test_two_robots_of_one_name_are_not_announced(tini: Robot) -> None:
     name = f"Ñ tini {HERE}"
-    done = inside("robot", "--announce", "--name", name, "--for", "0.1")
-    assert (done.code, f"the name {name} cannot be announced" in done.err) == (3, True)
+    result = inside("robot", "--announce", "--name", name, "--for", "0.1")
+    assert (result.code, f"the name {name} cannot be announced" in result.err) == (3, True)
 
 
 @pytest.mark.parametrize("address", ["8.8.8.8", "0.0.0.0"])
 def test_an_address_outside_is_not_called(address: str) -> None:
     with announced(f"bait-{HERE}", address, 7007):
-        done = inside("doctor", "--identify", "--port", f"tcp://bait-{HERE}")
-        said = f"an address outside this network ({address})"
-        assert (done.code, said in done.err) == (3, True)
+        result = inside("doctor", "--identify", "--port", f"tcp://bait-{HERE}")
+        message = f"an address outside this network ({address})"
+        assert (result.code, message in result.err) == (3, True)
 
 
 def test_a_packet_may_announce_anything(
@@ -207,15 +207,15 @@ def test_a_packet_may_announce_anything(
     """Written by hand: zeroconf refuses to announce some of these, and to believe others."""
     monkeypatch.setattr(network, "LIST_S", 0.5)
     heard = ["_tcp", "a.b", "plain", "x" * 63, "\u202ex"]
-    found: list[AnnouncedRobot] = []
+    robots: list[AnnouncedRobot] = []
 
     def all_are_heard() -> bool:
-        found[:] = ours(network.list_robots(), 7007)
-        return len(found) >= len(heard)
+        robots[:] = ours(network.list_robots(), 7007)
+        return len(robots) >= len(heard)
 
     with packets("\x1b[31mx", "a\r\nb", *heard, number=7007):
         until(all_are_heard, "all are heard")
-    assert found == [(name, "socket://127.0.0.1:7007") for name in heard]
+    assert robots == [(name, "socket://127.0.0.1:7007") for name in heard]
 
 
 def test_names_without_an_address_do_not_hold_up_the_list(
@@ -231,7 +231,7 @@ def test_names_without_an_address_do_not_hold_up_the_list(
     monkeypatch.setattr(network, "ADDRESSES_S", 0.5)
     monkeypatch.setattr(network, "query_service", look)
     with packets("robot", number=7007, lonely=40):
-        names = [each.name for each in ours(network.list_robots(), 7007)]
+        names = [robot.name for robot in ours(network.list_robots(), 7007)]
     assert names == ["robot"]
     assert limits_ms[0] <= 500 and limits_ms.count(1) > 30  # the first one has all the time
 
@@ -240,9 +240,12 @@ def test_a_hostile_name_is_shown_without_what_a_terminal_obeys(
     listing: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
-    with robot("--listen", "0") as found, announced("\u202ex", "127.0.0.1", number_of(found.port)):
-        done = inside("doctor", "--ports", "--ask").gives(0, out=found.port)
-        assert "\u202e" not in done.out
+    with (
+        robot("--listen", "0") as running_robot,
+        announced("\u202ex", "127.0.0.1", number_of(running_robot.port)),
+    ):
+        result = inside("doctor", "--ports", "--ask").gives(0, out=running_robot.port)
+        assert "\u202e" not in result.out
 
 
 def test_whatever_answers_a_name_has_to_be_a_robot() -> None:
@@ -266,10 +269,10 @@ def test_without_multicast_the_address_is_the_next_step(
         raise OSError(101, "Network is unreachable")
 
     monkeypatch.setattr(network, "Zeroconf", fail)
-    for language, said in (("en", "is not on a network with multicast"),
+    for language, expected in (("en", "is not on a network with multicast"),
                            ("es", "no llega a ninguna red con multicast")):  # fmt: skip
         tsc("doctor", "--identify", "--port", "tcp://tini", "--lang", language).gives(
-            3, said, "socket://HOST"
+            3, expected, "socket://HOST"
         )
 
 
@@ -277,12 +280,14 @@ def test_a_bad_network_costs_time_and_nothing_else() -> None:
     """40 ms each way, and one piece in twenty is lost: frames are sent again."""
     port = f"tcp://far-{HERE}"
     with (
-        robot() as found,
-        closing(BadNetwork(number_of(found.port), LATE_S, every=2000, lost=LOST)) as network,
+        robot() as running_robot,
+        closing(
+            BadNetwork(number_of(running_robot.port), LATE_S, every=2000, lost=LOST)
+        ) as network,
         announced(f"far-{HERE}", "127.0.0.1", network.port),
     ):
-        done = inside("upload", "-e", f"SB|{LONG}", "--port", port).gives(0, "")
-        checksum = done.out.partition("checksum ")[2][:8]
+        result = inside("upload", "-e", f"SB|{LONG}", "--port", port).gives(0, "")
+        checksum = result.out.partition("checksum ")[2][:8]
         assert f"program {checksum}" in inside("doctor", "--port", port).out
         command = Command("upload", "-e", FOREVER, "--port", port)
         command.until("running")

@@ -31,11 +31,11 @@ def value(field: Field) -> int | bytes:
     return b"\1" * field.least_bytes if field.kind == "rest" else 1
 
 
-@pytest.mark.parametrize("message", REPLY_MESSAGES, ids=lambda each: str(each.name))
+@pytest.mark.parametrize("message", REPLY_MESSAGES, ids=lambda value: str(value.name))
 def test_a_reply_has_the_fields_of_the_table_in_their_order(message: Message) -> None:
     values = {field.name: value(field) for field in message.reply}
-    made = make_payload(REPLIES[message.name], values)
-    assert list(made._asdict().items()) == list(values.items())
+    reply = make_payload(REPLIES[message.name], values)
+    assert list(reply._asdict().items()) == list(values.items())
 
 
 def test_an_event_has_the_fields_of_the_table_and_its_name() -> None:
@@ -44,9 +44,9 @@ def test_an_event_has_the_fields_of_the_table_and_its_name() -> None:
         if message.name == "SHOW":
             assert ShowEvent._fields == (*(field.name for field in message.reply), "name")
             continue
-        made = event_of(message.name, {field.name: value(field) for field in message.reply})
-        assert isinstance(made, EVENTS[message.name]) and made.name == message.name
-        assert list(event_fields(made)) == [field.name for field in message.reply]
+        event = event_of(message.name, {field.name: value(field) for field in message.reply})
+        assert isinstance(event, EVENTS[message.name]) and event.name == message.name
+        assert list(event_fields(event)) == [field.name for field in message.reply]
 
 
 OTHERS: tuple[Event, ...] = (
@@ -58,13 +58,13 @@ OTHERS: tuple[Event, ...] = (
 def test_every_event_comes_through_a_shared_port() -> None:
     """Its fields are written as JSON and read again."""
     events = (*SOME_EVENTS, *OTHERS)
-    assert {type(each) for each in events} == set(get_args(Event)) == {*EVENTS.values()}
+    assert {type(event) for event in events} == set(get_args(Event)) == {*EVENTS.values()}
     reader = protocol.MessageReader(protocol.LINE_BYTES)
-    for each in events:
-        values = protocol.to_json_values(event_fields(each))
-        message = {"event": each.name, "ms": 5, "values": values}
+    for event in events:
+        values = protocol.to_json_values(event_fields(event))
+        message = {"event": event.name, "ms": 5, "values": values}
         [read] = reader.read_messages(protocol.encode_message(message))
-        assert protocol.read_event(read) == (5, each)
+        assert protocol.read_event(read) == (5, event)
 
 
 @pytest.mark.parametrize(

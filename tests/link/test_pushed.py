@@ -12,7 +12,7 @@ from tiniscript.link.transports.pushed import END_REASON, MOST_BUFFERED_BYTES, P
 
 
 class Waits:
-    """The bell of one thread, which counts how often it would have waited.
+    """The bell of one thread, which counts how many times it would have waited.
 
     What comes meanwhile is brought by `then`.
     """

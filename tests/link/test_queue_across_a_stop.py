@@ -60,23 +60,27 @@ def check(seed: int) -> str:
     wire.turns(wire.late_ms)
     robot.step(b"".join(wire.under_way))
     robot.talk(session, 6000)
-    said = f"seed {seed}, {how}: {robot.did}, {[request.outcome for request in pending_requests]}"
-    assert robot.codes() == [], said
-    assert all(request.outcome is not None for request in pending_requests), said
-    assert robot.done(session, session.status()).state == STATE_STOPPED, said
+    explanation = (
+        f"seed {seed}, {how}: {robot.did}, {[request.outcome for request in pending_requests]}"
+    )
+    assert robot.codes() == [], explanation
+    assert all(request.outcome is not None for request in pending_requests), explanation
+    assert robot.complete(session, session.status()).state == STATE_STOPPED, explanation
     new = session.live(image_of("SI|F(0.2, 100)").code)
     status = robot.until(session, new)
     if status != OK:
         assert robot.until(session, session.hello()) == OK
-        assert robot.until(session, session.live(image_of("SI|F(0.2, 100)").code)) == OK, said
+        assert robot.until(session, session.live(image_of("SI|F(0.2, 100)").code)) == OK, (
+            explanation
+        )
     return f"{how} meets a queue" if len(open_ones) > 1 else "nothing waits"
 
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(40))
 def test_what_was_asked_for_before_a_stop_starts_nothing(part: int) -> None:
-    found = Counter(check(seed) for seed in range(part * 60, (part + 1) * 60))
-    assert found["nothing waits"] < 40, found
+    counts = Counter(check(seed) for seed in range(part * 60, (part + 1) * 60))
+    assert counts["nothing waits"] < 40, counts
 
 
 if __name__ == "__main__":

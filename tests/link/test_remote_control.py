@@ -54,8 +54,8 @@ class Hand:
     def __init__(self, session: Session, robot: HostFirmware) -> None:
         self.session, self.robot = session, robot
         self.held = NOTHING_PRESSED
-        self.loses: Callable[[], bool] = lambda: False  # the line, a packet
-        self.words: list[tuple[int, RemoteState]] = []  # that were sent
+        self.loses: Callable[[], bool] = lambda: False  # whether the line loses a packet
+        self.words: list[tuple[int, RemoteState]] = []  # sent, each with its number
         self.outcomes: list[int] = []
         self._requests = [session.press()]
         self._said_ms = 0
@@ -526,17 +526,19 @@ def test_a_thousand_words_in_a_burst() -> None:
 def test_keys_between_the_pieces_of_a_program() -> None:
     """They end no upload, and it ends them no more than any other."""
     wire = Wire()
-    made = image("SI|" + "SHOW(1);" * 30)
-    begin = bytes((0x10, *made.isa, 0, 15)) + pack("<HH", made.devices, len(made.code))
+    sent_image = image("SI|" + "SHOW(1);" * 30)
+    begin = bytes((0x10, *sent_image.isa, 0, 15)) + pack(
+        "<HH", sent_image.devices, len(sent_image.code)
+    )
     assert wire.answer(wire.frame("BEGIN", begin)) == "OK"
-    rest = bytes([made.needs]) + made.code
+    rest = bytes([sent_image.needs]) + sent_image.code
     for at in range(0, len(rest), 40):
         assert wire.answer(wire.keys(UP)) == "OK"
         piece = at.to_bytes(2, "little") + rest[at : at + 40]
         assert wire.answer(wire.frame("DATA", piece)) == "OK"
     assert wire.answer(wire.keys(UP)) == "OK"
     assert wire.robot.remote() == remote_readings(UP)
-    commit = made.checksum.to_bytes(4, "little")
+    commit = sent_image.checksum.to_bytes(4, "little")
     wire.robot.wait(60, wire.frame("COMMIT", commit))
     assert wire.session.status() is not None
     assert any("FINISHED" in line for line in wire.robot.did)

@@ -19,7 +19,9 @@ from tiniscript.link.seal import LAST_COUNTER, Seal, session_key, siphash
 KEY = bytes(range(16))
 CHALLENGE = bytes.fromhex("a1a2a3a4a5a6a7a8")
 NONCE, ROBOT_NONCE, EPOCH, WHICH = 0x01020304, 0x08070605, 10, 0
-NUMBERS = [each for each in range(1, 64) if each != BY_NAME["WIFI"].number]  # that is covered, too
+NUMBERS = [
+    number for number in range(1, 64) if number != BY_NAME["WIFI"].number
+]  # that is covered, too
 ORIGIN = CHALLENGE + bytes.fromhex("04030201 05060708 0a 00")
 # Of the messages 00, 00 01, 00 01 02 ...: from the empty one, which of each length of a last block.
 VECTORS = [
@@ -57,9 +59,9 @@ def by_hand(frame: Frame, counter: int) -> bytes:
 
 
 def seal(heard: int = 0, sent: int = 0) -> Seal:
-    found = Seal(session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, WHICH))
-    found.heard_counter, found.sent_counter = heard, sent
-    return found
+    made_seal = Seal(session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, WHICH))
+    made_seal.heard_counter, made_seal.sent_counter = heard, sent
+    return made_seal
 
 
 def frame_of(data: bytes) -> Frame:
@@ -168,5 +170,5 @@ def test_no_sealed_frame_is_a_line_of_text() -> None:
 
 
 def test_a_key_is_in_no_text() -> None:
-    found = f"{seal()!r} {seal()}"
-    assert KEY.hex() not in found and "key" not in found
+    texts = f"{seal()!r} {seal()}"
+    assert KEY.hex() not in texts and "key" not in texts

@@ -67,7 +67,7 @@ class SealedWorld(World):
         self.says = self.draw.choice((0, 0.02, 0.1)) if self.keys.stored_keys else 0
         self.session = Session(self.draw.getrandbits(32), 9600, KIT, keys=self.keys)
 
-    def heard(self, data: bytes) -> None:
+    def overhear(self, data: bytes) -> None:
         self.frames += [part + b"\0" for part in data.split(b"\0") if part]
         del self.frames[:-HEARD]
         for frame in filter(None, map(decode_frame, filter(None, data.split(b"\0")))):
@@ -141,8 +141,8 @@ class QuietWorld(SealedWorld):
 )
 def test_sealed_uploads_over_a_bad_radio(world: type[World], is_large: bool, least: float) -> None:
     """A stranger may end sessions; nothing wrong is done or believed, and much is still done."""
-    found = Counter(one_upload(cpp_link(is_large), seed, world) for seed in range(UPLOADS))
-    assert found["done"] > UPLOADS * least, found
+    counts = Counter(one_upload(cpp_link(is_large), seed, world) for seed in range(UPLOADS))
+    assert counts["done"] > UPLOADS * least, counts
 
 
 def test_the_frames_of_a_session_are_sealed() -> None:

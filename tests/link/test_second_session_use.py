@@ -157,7 +157,7 @@ def check(seed: int) -> str:
     want = second(random.Random(seed), session, other.robot)
     assert did.what == want.what, f"seed {seed}\n{did.what}\nnot\n{want.what}"
     late = [a - b for a, b in zip(did.took_ms, want.took_ms, strict=True)]
-    assert all(abs(each) < LATER_MS for each in late), f"seed {seed} {late}"
+    assert all(abs(delay_ms) < LATER_MS for delay_ms in late), f"seed {seed} {late}"
     return "it runs" if "DoneEvent" in str(want) else "it stands"
 
 
@@ -202,7 +202,7 @@ def test_nothing_more_is_told_of_a_run_whose_loss_was_told(fate: str) -> None:
     wire.session.tells_starts = wire.session.tells_places = True
     assert wire.robot.until(wire.session, wire.session.live(image_of("F(60, 50)").code)) == OK
     wire.robot.talk(wire.session, 500)
-    assert is_lost(wire)
+    assert lose(wire)
     if fate in STOPS:
         STOPS[fate](wire.robot, wire.session)
     elif fate == "a reset":
@@ -224,13 +224,13 @@ def test_who_is_found_again_tells_where_its_program_is() -> None:
     for _ in range(2):
         wire.robot.talk(wire.session, 1500)
         places.append([event for event in wire.session.events() if isinstance(event, PlaceEvent)])
-        assert is_lost(wire)
+        assert lose(wire)
         assert wire.robot.until(wire.session, wire.session.hello()) == OK
     assert places[0] == places[1] != []
 
 
-def is_lost(wire: Wire) -> bool:
-    """Let nobody hear the other until the session has told that."""
+def lose(wire: Wire) -> bool:
+    """Let nobody hear the other; return whether the session tells that and nothing else."""
     wire.session.events()
     events: list[Event] = []
     for _ in range(800):
@@ -243,8 +243,8 @@ def is_lost(wire: Wire) -> bool:
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
 def test_a_session_is_as_a_fresh_one_whatever_it_has_seen(part: int) -> None:
-    found = Counter(check(seed) for seed in range(part * 20, (part + 1) * 20))
-    assert found["it runs"] > 0, found
+    counts = Counter(check(seed) for seed in range(part * 20, (part + 1) * 20))
+    assert counts["it runs"] > 0, counts
 
 
 if __name__ == "__main__":

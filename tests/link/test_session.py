@@ -47,15 +47,15 @@ LOW, SAVING = STATUSES["LOW_SUPPLY"], STATUSES["SAVING"]
 
 def sending(session: Session, until_ms: int) -> list[tuple[int, bytes]]:
     """Return what a session sends when it is woken exactly when it wants to be."""
-    found = []
+    packets = []
     while (at := session.wakes_at()) is not None and at <= until_ms:
         data = session.poll(at)
         if data:
-            found.append((at, data))
+            packets.append((at, data))
         assert session.wakes_at() != at or session.wakes_at() is None, (
             "it wants to be woken at once"
         )
-    return found
+    return packets
 
 
 @pytest.mark.parametrize(("baud", "first"), [(9600, 200), (57600, 134), (115200, 127)])
@@ -134,7 +134,7 @@ def test_a_stop_cuts_everything_short() -> None:
     assert all(request.outcome and request.outcome.status == CANCELLED for request in requests)
     assert sending(session, 250) == [(3, bytes(8)), (103, bytes(8)), (203, bytes(8))]
     session.receive(event("STOPPED", 0, {"cause": 1}), 260)
-    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert [event.name for event in session.events()] == ["STOPPED"]
     assert session.is_latched and sending(session, 500) == []
 
 
@@ -143,7 +143,7 @@ def test_a_stop_that_nobody_answers_is_told_and_holds_up_others_for_a_few_second
     session.stop(0)
     early = session.ping()
     assert len(sending(session, CONFIRM_MS)) == CONFIRM_MS // STOP_MS
-    assert [each.name for each in session.events()] == ["LOST"]
+    assert [event.name for event in session.events()] == ["LOST"]
     assert early.outcome and early.outcome.status == LOST
     late = session.ping()
     data = session.poll(CONFIRM_MS + 1)
@@ -159,7 +159,7 @@ def test_what_came_before_a_stop_was_sent_confirms_nothing() -> None:
     assert session.poll(3) == bytes(8)
     session.events()
     session.receive(event("STOPPED", 1, {"cause": 1}, epoch=12), 30)
-    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert [event.name for event in session.events()] == ["STOPPED"]
     assert sending(session, 500) == []
 
 
@@ -173,7 +173,7 @@ def test_another_stop_confirms_none(cause: int) -> None:
     assert session.events() == [] and session.is_latched
     assert sending(session, 150) == [(100, bytes(8))]  # it goes on
     session.receive(event("STOPPED", 1, {"cause": 1}, epoch=12), 160)
-    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert [event.name for event in session.events()] == ["STOPPED"]
     assert sending(session, 500) == []
 
 
@@ -192,7 +192,7 @@ def test_a_robot_that_another_has_stopped_confirms_in_its_epoch(cause: int) -> N
             session.receive(event("STOPPED", number, {"cause": cause}), at + 20)
             if is_known:
                 break
-        assert [each.name for each in session.events()] == ["STOPPED"]
+        assert [event.name for event in session.events()] == ["STOPPED"]
         assert sending(session, 500) == []
 
 
@@ -209,7 +209,7 @@ def test_a_move_after_another_stop_does_not_go_unseen() -> None:
     session.receive(stopped_event, robot.now_ms)
     assert session.events() == []
     robot.talk(session, 500)
-    assert [each.name for each in session.events()][-1:] == ["STOPPED"]
+    assert [event.name for event in session.events()][-1:] == ["STOPPED"]
     assert robot.is_latched
 
 
@@ -248,13 +248,13 @@ def test_one_stop_is_told_once_however_late_its_answers_come() -> None:
     session = greeted()
     session.stop(100)
     sending(session, 8000)
-    assert [each.name for each in session.events()] == ["LOST"] and not session.is_open
+    assert [event.name for event in session.events()] == ["LOST"] and not session.is_open
     for seq in range(51):
         session.receive(event("STOPPED", seq, {"cause": 1}), 8000 + seq)
-    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert [event.name for event in session.events()] == ["STOPPED"]
     session.receive(event("STOPPED", 51, {"cause": 3}, epoch=12), 9000)
     session.receive(event("STOPPED", 52, {"cause": 3}, epoch=12), 9050)
-    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert [event.name for event in session.events()] == ["STOPPED"]
 
 
 def test_a_late_answer_to_a_stop_ends_no_run_that_has_begun_since() -> None:
@@ -275,7 +275,7 @@ def test_a_late_answer_to_a_stop_ends_no_run_that_has_begun_since() -> None:
     session.receive(event("STOPPED", 1, {"cause": 1}), now_ms)
     assert session.events() == [] and session.is_running
     session.receive(event("STOPPED", 2, {"cause": 3}, epoch=12), now_ms)
-    assert [each.name for each in session.events()] == ["STOPPED"] and not session.is_running
+    assert [event.name for event in session.events()] == ["STOPPED"] and not session.is_running
 
 
 def test_a_robot_that_was_reset_may_be_stopped_in_the_epoch_of_before() -> None:
@@ -285,7 +285,7 @@ def test_a_robot_that_was_reset_may_be_stopped_in_the_epoch_of_before() -> None:
     session.hello()
     session.receive(answer(session.poll(30), {**DESCRIPTION, "nonce": 9}, epoch=11), 30)
     session.receive(event("STOPPED", 0, {"cause": 3}), 40)
-    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert [event.name for event in session.events()] == ["STOPPED"]
 
 
 def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> None:
@@ -294,7 +294,7 @@ def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> N
     session.stop(0)
     assert len(sending(session, 150)) == 2
     session.receive(event("STOPPED", 0, {"cause": 1}), 160)
-    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert [event.name for event in session.events()] == ["STOPPED"]
     requests: list[PendingRequest[Any]] = [session.clear(), session.live(FORWARD)]
     session.poll(170)
     session.receive(event("STOPPED", 1, {"cause": 1}), 180)
@@ -303,9 +303,9 @@ def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> N
     session.stop(200)
     session.poll(200)
     session.receive(event("STOPPED", 2, {"cause": 1}), 300)
-    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert [event.name for event in session.events()] == ["STOPPED"]
     session.receive(event("STOPPED", 3, {"cause": 1}, epoch=12), 400)
-    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert [event.name for event in session.events()] == ["STOPPED"]
 
 
 def test_an_old_answer_is_none() -> None:
@@ -332,9 +332,9 @@ def test_a_program_that_is_done_before_its_receipt_does_not_run() -> None:
 def test_text_and_echoes_are_told() -> None:
     session = greeted()
     session.receive(b"OK+LOST\r\n\0" + encode_frame(Frame(2, 1, 1)), 5)
-    found = session.events()
-    assert [each.name for each in found] == ["TEXT", "ECHO"]
-    assert found[0] == TextEvent(b"OK+LOST")
+    events = session.events()
+    assert [event.name for event in events] == ["TEXT", "ECHO"]
+    assert events[0] == TextEvent(b"OK+LOST")
 
 
 def test_what_a_newer_robot_sends_is_no_harm() -> None:
@@ -364,8 +364,8 @@ def test_what_does_not_fit_is_not_sent() -> None:
         (image._replace(code=bytes(389), later=b"x"), STATUSES["TOO_LARGE"], 389),
     ]
     session = greeted()
-    for each, status, detail in cases:
-        request = session.upload(each)
+    for too_large, status, detail in cases:
+        request = session.upload(too_large)
         assert session.poll(0) == b""
         assert request.outcome
         assert (request.outcome.status, request.outcome.detail) == (status, detail)
@@ -438,20 +438,20 @@ def test_a_program_of_an_older_instruction_set_says_so() -> None:
 
 
 @pytest.mark.parametrize(
-    ("minor", "said"),
+    ("minor", "version"),
     [
         (ISA_MINOR - 1, (STATUSES["OTHER_MACHINE"], ISA - 1)),
         (ISA_MINOR, (RULES["UNKNOWN_OPCODE"][0], 0)),
     ],
 )
-def test_a_line_that_an_older_machine_does_not_know(minor: int, said: tuple[int, int]) -> None:
+def test_a_line_that_an_older_machine_does_not_know(minor: int, version: tuple[int, int]) -> None:
     """LIVE names no version: the robot says only that it has no such instruction."""
     session = Session(1, kit=KIT)
     session.hello()
     session.receive(answer(session.poll(0), {**DESCRIPTION, "isa_minor": minor}), 0)
     request = session.live(compile_text("TASK;END_TASK", robots.load("tinibot32").kit).code)
     session.receive(answer(session.poll(0), {}, RULES["UNKNOWN_OPCODE"][0]), 5)
-    assert request.outcome and (request.outcome.status, request.outcome.detail) == said
+    assert request.outcome and (request.outcome.status, request.outcome.detail) == version
 
 
 @pytest.mark.parametrize(("busy_ms", "ends"), [(60_000, STATUSES["BUSY"]), (1000, LOST)])
@@ -470,7 +470,7 @@ def test_a_busy_robot_is_asked_again_but_not_for_ever(busy_ms: int, ends: int) -
 
 
 @pytest.mark.parametrize(
-    ("epoch", "found", "is_void"),
+    ("epoch", "values", "is_void"),
     [
         (11, {"state": STATE_STOPPED}, True),
         (11, {"state": STATE_IDLE}, True),  # a stop, and its latch was released
@@ -482,7 +482,7 @@ def test_a_busy_robot_is_asked_again_but_not_for_ever(busy_ms: int, ends: int) -
     ],
 )
 def test_hello_tells_whether_another_epoch_voids_what_waits(
-    epoch: int, found: dict[str, int], is_void: bool
+    epoch: int, values: dict[str, int], is_void: bool
 ) -> None:
     """The answer bears another epoch, which nothing has announced."""
     session = Session(1, kit=KIT)
@@ -493,7 +493,7 @@ def test_hello_tells_whether_another_epoch_voids_what_waits(
     session.receive(answer(session.poll(1), receipt(1), epoch=epoch), 1)
     assert first.outcome and first.outcome.status == 0
     assert second.outcome is None
-    session.receive(answer(session.poll(2), {**DESCRIPTION, **found}, epoch=epoch), 2)
+    session.receive(answer(session.poll(2), {**DESCRIPTION, **values}, epoch=epoch), 2)
     assert (second.outcome is not None) == is_void
     assert second.outcome is None or second.outcome.status == STATUSES["STALE"]
 
@@ -502,7 +502,7 @@ def lost_at(session: Session, now_ms: int = 0) -> int:
     """Let nobody answer, and look every millisecond; return when the robot is given up."""
     for at in range(now_ms, now_ms + 10_000):
         session.poll(at)
-        if [each.name for each in session.events()] == ["LOST"]:
+        if [event.name for event in session.events()] == ["LOST"]:
             return at
     raise AssertionError("it waits for ever")
 
@@ -534,13 +534,13 @@ AT_REST: dict[str, int | bytes] = {
 
 @pytest.mark.parametrize("is_event_first", [True, False])
 def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
-    """A heartbeat's reply may tell of it in the same moment as its event."""
+    """A heartbeat's reply may report it in the same moment as its event."""
     session, at = over()
     frames = [answer(session.poll(at), AT_REST),
               event("DONE", 0, {"run": 1}, epoch=10)]  # fmt: skip
-    for each in reversed(frames) if is_event_first else frames:
-        session.receive(each, at)
-    assert [each.name for each in session.events()] == ["DONE"]
+    for frame in reversed(frames) if is_event_first else frames:
+        session.receive(frame, at)
+    assert [event.name for event in session.events()] == ["DONE"]
 
 
 @pytest.mark.parametrize("reading_count", [0, 3, 12, 10_000])
@@ -562,7 +562,7 @@ def test_the_end_of_a_run_waits_for_its_readings_and_nobody_else_does(reading_co
             reply = {field.name: AT_REST.get(field.name, b"") for field in asked_for}
             session.receive(answer(data, reply), at)
     assert request.outcome and request.outcome.status == 0
-    names = [each.name for each in session.events()]
+    names = [event.name for event in session.events()]
     assert names == ["READING"] * told_count + ["DONE"] * (told_count == reading_count)
 
 
@@ -579,7 +579,7 @@ def test_an_upload_that_waits_for_the_button_tells_the_end_of_the_run_before_it(
     assert not session.is_running
     robot.talk(session, 100, flags=1)
     robot.talk(session, 1500, flags=2)
-    assert [each.name for each in session.events()] == ["SHOW", "DONE"]
+    assert [event.name for event in session.events()] == ["SHOW", "DONE"]
 
 
 def asked(statuses: list[int]) -> tuple[int, int]:
@@ -632,8 +632,8 @@ def places_told(*replies: bytes) -> list[tuple[int, int]]:
 def test_a_place_is_told_when_it_is_another_one() -> None:
     place, other = b"\3\0abcd", b"\3\0abce"
     assert places_told(b"\1\1" + place, b"\1\1" + place, b"\0\1") == [(1, 3), (1, -1)]
-    found = places_told(b"\1\1" + place, b"\1\2" + place, b"\1\2" + other)
-    assert found == [(1, 3), (2, 3), (2, 3)]
+    places = places_told(b"\1\1" + place, b"\1\2" + place, b"\1\2" + other)
+    assert places == [(1, 3), (2, 3), (2, 3)]
 
 
 def test_a_place_that_is_cut_or_of_nothing_that_runs_is_none() -> None:

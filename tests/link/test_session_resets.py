@@ -66,10 +66,10 @@ def test_a_run_in_the_place_of_ours_is_no_end_of_it() -> None:
     robot.talk(other, 200)
     assert robot.until(other, other.live(compile_text("F(300, 80)", KIT).code)) == OK
     robot.talk(session, 1500)
-    found = session.events()
-    assert StartedEvent in [type(event) for event in found], found
-    assert "RESTARTED" not in [event.name for event in found]
-    assert "STOPPED" not in [event.name for event in found]
+    events = session.events()
+    assert StartedEvent in [type(event) for event in events], events
+    assert "RESTARTED" not in [event.name for event in events]
+    assert "STOPPED" not in [event.name for event in events]
 
 
 def test_a_stop_that_nobody_has_told_is_no_reset() -> None:

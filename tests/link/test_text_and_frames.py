@@ -91,9 +91,9 @@ def all_arrive(sender: TextSender, draw: random.Random) -> None:
     for _ in range(FRAMES):
         line.now_ms += draw.choice(PAUSES_MS)
         if draw.random() < 0.3:
-            said = draw.choice(LINES)
-            data = sender.text(said, line.now_ms)
-            assert not data or line.put(data) == ([], [said])
+            typed_line = draw.choice(LINES)
+            data = sender.text(typed_line, line.now_ms)
+            assert not data or line.put(data) == ([], [typed_line])
         else:
             frame = random_frame(draw)
             data = sender.prepare_frames(encode_frame(frame), line.now_ms)

@@ -25,8 +25,12 @@ def false_stops(
     """Send so many frames; return how many, and how many typed stops were found in them."""
     frames = stops = lines = 0
     while frames < count:
-        found = cpp.typed_stops(seed, lines, LINES, is_damaged, is_odd)
-        frames, stops, lines = frames + found[0], stops + found[1], lines + LINES
+        stops_and_lines = cpp.typed_stops(seed, lines, LINES, is_damaged, is_odd)
+        frames, stops, lines = (
+            frames + stops_and_lines[0],
+            stops + stops_and_lines[1],
+            lines + LINES,
+        )
     return frames, stops
 
 
@@ -54,7 +58,7 @@ if __name__ == "__main__":
         for begin in range(0, given.count, PREFIXES):
             some = min(PREFIXES, given.count - begin)
             cpp_damage(both).type_after(given.seed, begin, some)
-    looked_at, found = false_stops(cpp_damage(), 100 * given.count, given.seed)
-    assert found == 0, f"{found} of {looked_at} undamaged frames stop"
-    of, found = false_stops(cpp_damage(), FRAMES, given.seed, is_damaged=True, is_odd=False)
-    print(f"{found} of {of} damaged frames stop, and none of {looked_at} whole ones")
+    looked_at, stops = false_stops(cpp_damage(), 100 * given.count, given.seed)
+    assert stops == 0, f"{stops} of {looked_at} undamaged frames stop"
+    of, stops = false_stops(cpp_damage(), FRAMES, given.seed, is_damaged=True, is_odd=False)
+    print(f"{stops} of {of} damaged frames stop, and none of {looked_at} whole ones")

@@ -12,7 +12,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tests.machines.host import SOURCES, WARNINGS, Ran, contents, kept, ran, run_request
+from tests.machines.host import SOURCES, WARNINGS, Ran, cached, contents, ran, run_request
 from tests.machines.pace import AT_ONCE, Pace
 from tiniscript.base.kit import Kit
 from tools.bench import avr_bench
@@ -52,7 +52,7 @@ def compiled(what: str, flags: Sequence[str], code: Sequence[str], made_from: li
         completed = subprocess.run(words, capture_output=True, text=True)
         assert completed.returncode == 0, f"avr-g++ refuses {what}:\n{completed.stderr[:4000]}"
 
-    return kept("avr-g++", flags, made_from, make)
+    return cached("avr-g++", flags, made_from, make)
 
 
 def ran_on(
@@ -71,5 +71,5 @@ def ran_on(
 
 def answer(chip: str, request: bytes, most_seconds: int = 120) -> str:
     """Return what the program says about a request. Raises TimeoutExpired."""
-    said = avr_bench.run(program(chip), request, BUILT[chip][0], most_seconds)
-    return "".join(f"{line}\n" for line in said)
+    lines = avr_bench.run(program(chip), request, BUILT[chip][0], most_seconds)
+    return "".join(f"{line}\n" for line in lines)

@@ -16,7 +16,7 @@ from itertools import chain, repeat
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.machines.host import SOURCES, contents, kept
+from tests.machines.host import SOURCES, cached, contents
 from tests.support.needs import need
 from tiniscript import compile_text
 from tiniscript.robots import firmware
@@ -76,7 +76,7 @@ def simulator() -> Path:
     source = Path(__file__).with_name("simulated_board.c")
     words = ("-O2", str(source), "-lsimavr", "-lelf")
     made_from = [source.read_bytes(), SIMAVR.read_bytes()]
-    return kept("gcc", words, made_from, lambda path: run("gcc", *words, "-o", path))
+    return cached("gcc", words, made_from, lambda path: run("gcc", *words, "-o", path))
 
 
 @lru_cache(maxsize=8)
@@ -102,7 +102,7 @@ def library(sources: Sequence[Path], flags: Sequence[str]) -> Path:
                 run(*compiler, *flags, "-w", "-c", source, "-o", target)
             run("avr-gcc-ar", "rcs", path, *sorted(Path(name).glob("*.o")))
 
-    return kept("avr-g++", (*flags, *map(str, sources)), contents(ARDUINO / "cores"), make)
+    return cached("avr-g++", (*flags, *map(str, sources)), contents(ARDUINO / "cores"), make)
 
 
 def flags_of(board: str, flags: Sequence[str]) -> tuple[str, ...]:
@@ -132,7 +132,7 @@ def built(header: str, board: str, more: str = "") -> bytes:
     def make(path: Path) -> None:
         _build(header, more, (*flags, main, core(board)), path)
 
-    return kept("avr-g++", flags, [*made_from, *contents(SOURCES / "src")], make).read_bytes()
+    return cached("avr-g++", flags, [*made_from, *contents(SOURCES / "src")], make).read_bytes()
 
 
 def _build(header: str, more: str, words: Sequence[object], path: Path) -> None:
@@ -270,10 +270,10 @@ class Board(Simulated):
         with tempfile.TemporaryDirectory() as name:
             program = Path(name) / "firmware.elf"
             program.write_bytes(self.elf)
-            said = self.simulated(program, ms)
-        rows = [line.split() for line in said.splitlines()]
+            trace = self.simulated(program, ms)
+        rows = [line.split() for line in trace.splitlines()]
         ends = [row for row in rows if row[1:2] == ["END"]]
-        assert ends and int(ends[0][0]) >= round(ms * MS), said
+        assert ends and int(ends[0][0]) >= round(ms * MS), trace
         self.changes = [
             Change(*map(int, row))
             for row in rows
@@ -311,12 +311,12 @@ class Board(Simulated):
     def edges(self, pin: int) -> list[int]:
         """Return the cycles in which the sketch wrote another level to a pin."""
         port, bit = self.bit(pin)
-        level, found = 0, []
+        level, times = 0, []
         for change in self.changes:
             if change.address == PORTS[port] and change.value >> bit & 1 != level:
                 level ^= 1
-                found.append(change.cycle)
-        return found
+                times.append(change.cycle)
+        return times
 
     def is_off(self, registers: Mapping[int, int]) -> bool:
         """Return whether all motor pins are low outputs without PWM."""
@@ -337,7 +337,7 @@ class Board(Simulated):
 
     def moved(self) -> list[int]:
         """Return the cycles in which a motor pin was written high or got PWM."""
-        found = []
+        positions = []
         for change in self.changes:
             for pin in self.motor_pins():
                 port, bit = self.bit(pin)
@@ -349,5 +349,5 @@ class Board(Simulated):
                     and change.value & CONNECTIONS[compare.channel]
                 )
                 if wrote or has_pwm:
-                    found.append(change.cycle)
-        return found
+                    positions.append(change.cycle)
+        return positions

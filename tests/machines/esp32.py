@@ -74,7 +74,7 @@ class Esp32Robot(HostFirmware):
         self.now_ms = 0
         self.did: list[str] = []
         self.is_lit, self.is_latched = False, True
-        entries = texts(*(each for item in kept.entries.items() for each in item))
+        entries = texts(*(data for item in kept.entries.items() for data in item))
         head = pack("<BI", reset, seed) + texts(kept.noinit)
         rest = bytes([nvs_fault]) + mac
         self.ask(b"B", head + pack("<I", len(kept.entries)) + entries + rest)
@@ -106,8 +106,8 @@ class Esp32Robot(HostFirmware):
         Return how many edges of the left and right disc the board has counted, modulo 2**16.
         """
         rows = b"".join(pack("<IBB", *change) for change in changes)
-        found: tuple[int, int] = unpack("<HH", self.ask(b"K", pack("<I", len(changes)) + rows))
-        return found
+        counts: tuple[int, int] = unpack("<HH", self.ask(b"K", pack("<I", len(changes)) + rows))
+        return counts
 
     def hold_line(self, is_low: bool = True) -> None:
         """Let the line of the cable go low for longer than a byte, or high again."""
@@ -144,7 +144,7 @@ class Esp32Robot(HostFirmware):
         return turns, ns / 1000
 
     def rests(self) -> int:
-        """Return how often the main loop has left its turn to the idle task."""
+        """Return how many times the main loop has left its turn to the idle task."""
         return int.from_bytes(self.ask(b"M", b"")[8:12], "little")
 
     def erase(self, milliseconds: int) -> None:

@@ -37,7 +37,9 @@ FLAGS = ("-std=c++11", "-O1", "-g1", "-fsanitize=address,undefined", "-fno-sanit
 # As Python's machine does; a chip counts jumps back and calls.
 COUNTS_INSTRUCTIONS = "-Dtiniscript_counts_instructions"
 
-FOLDER = re.compile(rb'^(# \d+ ")[^"\n]*/', re.M)  # of a line that says where the next are from
+LINE_MARKER_FOLDER = re.compile(
+    rb'^(# \d+ ")[^"\n]*/', re.M
+)  # of a line that says where the next are from
 # Whose builds are used: root's tests in CI compile nothing that the user's have compiled.
 USER = os.getuid() if hasattr(os, "getuid") else None
 if USER == 0:
@@ -104,7 +106,7 @@ class Process:
         assert self._process.stdin and self._process.stdout
         return self._process.stdin, self._process.stdout
 
-    def said(self) -> str:
+    def report(self) -> str:
         """Return the last words of a process that has ended: the sanitizers' report."""
         status = self._process.wait()
         self._errors.seek(0)
@@ -115,9 +117,9 @@ class Process:
         """Run an image, or raise what refuses it."""
         raise NotImplementedError
 
-    def agrees(self, got: Ran, want: Ran, max_ms: int) -> bool:
+    def agrees(self, ran: Ran, want: Ran, max_ms: int) -> bool:
         """Whether it has done what the machine in Python has."""
-        return got == want
+        return ran == want
 
     def run_at(self, pace: Pace, image: bytes, kit: Kit, senses: Senses) -> Ran:
         """Run an image on a robot that is called at a pace, and that some readings keep waiting."""
@@ -146,11 +148,11 @@ class Process:
             pipe_in.write(pack("<I", len(request) + 1) + letter + request)
             pipe_in.flush()
         except BrokenPipeError:
-            raise AssertionError(self.said()) from None
+            raise AssertionError(self.report()) from None
         head = pipe_out.read(4)
         answer = pipe_out.read(int.from_bytes(head, "little"))
         if len(head) < 4:
-            raise AssertionError(self.said())
+            raise AssertionError(self.report())
         return answer
 
 
@@ -293,13 +295,13 @@ def objects_of(
     headers = [text for path, text in texts.items() if path.suffix == ".h"]
     sources = [path for path in texts if path.suffix == ".cpp"]
     is_other_end = os.environ.get("PYTEST_XDIST_WORKER", "gw0")[-1] in "13579"
-    found = {
+    objects = {
         path: made(
             compiler, builds, ".o", flags_of(path), [*headers, texts[path]], ["-c", str(path)]
         )
         for path in (reversed(sources) if is_other_end else sources)
     }
-    return [str(found[path]) for path in sources]
+    return [str(objects[path]) for path in sources]
 
 
 def made(
@@ -337,7 +339,7 @@ def once(path: Path, make: Callable[[Path], object]) -> Path:
     return path
 
 
-def kept(
+def cached(
     compiler: str, flags: Sequence[str], made_from: Iterable[bytes], make: Callable[[Path], object]
 ) -> Path:
     """Return a program that is made `once` from the same by the same compiler, in any run."""
@@ -372,14 +374,14 @@ def _preprocessed(compiler: str, builds: Path, flags: Sequence[str], words: list
     text = _compiled(compiler, [*flags, *(word for word in words if word != "-c"), "-E"])
     kept_flags = [flag for flag in flags if not flag.startswith(("-D", "-isystem"))]
     key = hashlib.sha256(repr((_version(compiler), kept_flags)).encode())
-    key.update(FOLDER.sub(rb"\1", text))  # a copy of the sources is the same elsewhere
+    key.update(LINE_MARKER_FOLDER.sub(rb"\1", text))  # a copy of the sources is the same elsewhere
     return builds / f"same-{key.hexdigest()[:16]}.o"
 
 
 def _compiled(compiler: str, words: Sequence[str]) -> bytes:
     completed = subprocess.run([compiler, *words], capture_output=True)
-    said = completed.stderr.decode(errors="replace")[:4000]
-    assert completed.returncode == 0, f"{compiler} refuses the C++ sources:\n{said}"
+    errors = completed.stderr.decode(errors="replace")[:4000]
+    assert completed.returncode == 0, f"{compiler} refuses the C++ sources:\n{errors}"
     return completed.stdout
 
 

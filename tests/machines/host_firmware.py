@@ -99,7 +99,7 @@ class HostFirmware(Process):
         rows = (line.split(" ", 1) for line in did.decode().splitlines())
         self._note([f"{(int(ms) - self.clock_ms) % 2**32} {what}" for ms, what in rows])
         self.is_lit = bool(rest[0])
-        latched = [bool(each) for each in first_text(rest[1:])[0]]
+        latched = [bool(flag) for flag in first_text(rest[1:])[0]]
         self.now_ms += len(latched)
         self.is_latched = latched[-1]
         return sent, latched
@@ -138,7 +138,7 @@ class HostFirmware(Process):
         """Hold the left wheel (1) and the right one (2), and let go of the others."""
         self.ask(b"H", bytes((wheels,)))
 
-    def gone(self) -> tuple[float, float]:
+    def wheel_edges(self) -> tuple[float, float]:
         """Return how many edges both wheels have gone, less those that they went back."""
         left, right = unpack("<ii", self.ask(b"O", b""))
         return left / 1000, right / 1000
@@ -166,11 +166,11 @@ class HostFirmware(Process):
 
     def codes(self) -> list[bytes]:
         """Return the codes that were started since this was asked last."""
-        found, rest = [], self.ask(b"C", b"")
+        codes, rest = [], self.ask(b"C", b"")
         while rest:
             code, rest = first_text(rest)
-            found.append(code)
-        return found
+            codes.append(code)
+        return codes
 
     def memory(self) -> bytes:
         return first_text(self.ask(b"E", b""))[0]
@@ -212,7 +212,7 @@ class HostFirmware(Process):
             self._turn(session, data, 1 if request.outcome else end_ms - self.now_ms)
         raise AssertionError(f"the request is not over after {limit_ms} ms: {self.did[-5:]}")
 
-    def done(self, session: Session, request: PendingRequest[T]) -> T:
+    def complete(self, session: Session, request: PendingRequest[T]) -> T:
         """Let a computer talk until the robot has done a request; return what it answers."""
         status = self.until(session, request)
         assert status == OK and request.outcome, status

@@ -71,8 +71,8 @@ class CppLink:
     def packets(self, stream: Sequence[tuple[int, int]], held: int = 0) -> list[str]:
         """Return what a receiver finds in times and bytes, as `packets_of` says it."""
         parts = b"".join(pack("<HB", now_ms & 0xFFFF, byte) for now_ms, byte in stream)
-        found, _ = first_text(self.ask(b"I", pack("<BI", held, len(stream)) + parts))
-        return found.decode().splitlines()
+        packets, _ = first_text(self.ask(b"I", pack("<BI", held, len(stream)) + parts))
+        return packets.decode().splitlines()
 
     def siphash(self, key: bytes, message: bytes) -> bytes:
         return self.ask(b"H", key + texts(message))
@@ -116,8 +116,8 @@ class LinkLibrary(CppLink):
 
     def ask(self, letter: bytes, request: bytes) -> bytes:
         asked, length = letter + request, ctypes.c_uint32()
-        found = self._answer(asked, len(asked), ctypes.byref(length))
-        return ctypes.string_at(found, length.value)
+        answer = self._answer(asked, len(asked), ctypes.byref(length))
+        return ctypes.string_at(answer, length.value)
 
 
 @lru_cache

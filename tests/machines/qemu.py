@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from tests.machines import host
 from tests.machines.chips import agrees
-from tests.machines.host import SOURCES, WARNINGS, Process, Ran, contents, kept, ran, run_request
+from tests.machines.host import SOURCES, WARNINGS, Process, Ran, cached, contents, ran, run_request
 from tests.machines.text_reader import Answer
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import STARTS
@@ -48,8 +48,8 @@ class Emulated(Process):
     def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
         return ran(self.ask(b"R", run_request(image, kit, senses)).decode())
 
-    def agrees(self, got: Ran, want: Ran, max_ms: int) -> bool:
-        return agrees(got, want, max_ms)
+    def agrees(self, ran: Ran, want: Ran, max_ms: int) -> bool:
+        return agrees(ran, want, max_ms)
 
     def read(self, texts: Sequence[bytes], kit: Kit, room: int) -> list[Answer]:
         """Return what the reader of text says of each."""
@@ -82,13 +82,13 @@ def _answer(bytes_io: BytesIO) -> Answer:
 @lru_cache(maxsize=2 * len(chips.CHIPS))
 def built(name: str, sources: Path = SOURCES) -> Path:
     """Return the program of a chip made from `sources`, a folder like `vm_arduino`."""
-    folders = [sources / each for each in ("src/vm", "src/text", "extras/chip", "extras/qemu")]
+    folders = [sources / folder for folder in ("src/vm", "src/text", "extras/chip", "extras/qemu")]
     code = [path for folder in folders for path in sorted(folder.glob("*.cpp"))]
     code.append(sources / "extras/qemu" / chips.CHIPS[name].start_file)
     chip = chips.CHIPS[name]
     made_from = [*contents(sources / "src", *folders), (folders[-1] / "chip.ld").read_bytes()]
     words = (*chips.COMMON_FLAGS, *WARNINGS, *map(str, chip))
-    return kept(
+    return cached(
         chip.compiler[0], words, made_from, lambda path: chips.build(chip, code, path, *WARNINGS)
     )
 

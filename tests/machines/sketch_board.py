@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tests.machines import board as boards
 from tests.machines.board import ARDUINO, CONNECTIONS, CONTROLS, CPP, HERTZ, MS, PORTS, run
-from tests.machines.host import kept
+from tests.machines.host import cached
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.driver import Bridge
 from tiniscript.robots.drivers import motors_of
@@ -56,7 +56,7 @@ def built(sketch: str, board: str) -> Path:
             file.write_text(sketch, encoding="utf-8")
             run("avr-g++", *words, file, core(board), "-o", path)
 
-    elf = kept("avr-g++", words, [sketch.encode(), bytes(core(board))], make)
+    elf = cached("avr-g++", words, [sketch.encode(), bytes(core(board))], make)
     if board != "mega":  # it fits an Uno, with room for the stack
         text, data, zeros = map(int, run("avr-size", elf).splitlines()[1].split()[:3])
         assert text + data <= 32_256 and data + zeros <= 1_700, (text, data, zeros)

@@ -44,7 +44,7 @@ class TextReader(Process):
         pipe_in.write(texts(text))
         pipe_in.flush()
         line = pipe_out.readline().decode()
-        assert line, f"{text!r} ends the reader:\n{self.said()}"
+        assert line, f"{text!r} ends the reader:\n{self.report()}"
         return answer(line)
 
 

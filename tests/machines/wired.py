@@ -42,7 +42,7 @@ class Wired:
             self.run(1)
         raise AssertionError(f"not over after {limit_ms} ms")
 
-    def done(self, request: PendingRequest[T]) -> T:
+    def complete(self, request: PendingRequest[T]) -> T:
         """Run until the robot has done a request; return what it answers."""
         assert self.until(request) == OK and request.outcome
         return request.outcome.values

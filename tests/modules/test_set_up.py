@@ -76,13 +76,13 @@ class Odd:
         self._now_ms += 1
         self._heard += data
         before = len(self.module.commands)
-        said = self.module.step(data)
+        reply = self.module.step(data)
         if len(self.module.commands) > before:
             asked, self._heard = self._heard, b""
             is_deaf = self.deaf in self.module.commands[-1]
-            said = b"" if is_deaf else (asked + said if self.echoes else said)
-        if said:
-            self._later.append((self._now_ms + self.late_ms, said))
+            reply = b"" if is_deaf else (asked + reply if self.echoes else reply)
+        if reply:
+            self._later.append((self._now_ms + self.late_ms, reply))
         if self._later and self._later[0][0] <= self._now_ms:
             return self._later.popleft()[1]
         return b""
@@ -140,7 +140,7 @@ def test_a_module_is_told_from_all_others(kind: str) -> None:
 
 
 @pytest.mark.parametrize("baud", BAUDS)
-@pytest.mark.parametrize("kind", [each for each in KINDS if not each.startswith("HC-05")])
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if not kind.startswith("HC-05")])
 def test_a_module_is_found_at_any_speed(kind: str, baud: int) -> None:
     module = met(SimulatedWire(KINDS[kind](baud)))
     assert (module.dialect.name, module.baud) == (kind, baud)
@@ -287,9 +287,9 @@ def test_what_is_told_of_a_pin_is_what_the_module_has(
 def test_a_module_that_cuts_a_name_is_seen_to_have_done_so() -> None:
     class Short(Hm10):
         def answer(self, command: str) -> str:
-            said = super().answer(command)
+            answer = super().answer(command)
             self.name = self.name[:4]
-            return said
+            return answer
 
     wire = SimulatedWire(Short())
     (outcome,) = ended(wire, WantedSettings("Tini-7F3A"))
@@ -321,7 +321,7 @@ def test_a_module_that_cuts_a_name_is_seen_to_have_done_so() -> None:
 def test_what_a_module_cannot_have_is_known_before(
     wanted: WantedSettings, dialect: str, what: str
 ) -> None:
-    (found_dialect,) = (each for each in DIALECTS if each.name == dialect)
+    (found_dialect,) = (other for other in DIALECTS if other.name == dialect)
     assert set_up.unsupported_setting(wanted, found_dialect) == what
 
 

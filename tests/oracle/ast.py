@@ -118,15 +118,15 @@ def stack_need(expression: Expression) -> int:
 
 def sensors_in(expressions: Iterable[Expression | None]) -> tuple[str, ...]:
     """The sensors that are named, each once, in order of appearance."""
-    found: dict[str, None] = {}
+    sensors: dict[str, None] = {}
 
     def look(expression: Expression) -> None:
         if expression.operator == "SENSOR":
-            found[expression.name] = None
+            sensors[expression.name] = None
         for part in expression.parts:
             look(part)
 
     for expression in expressions:
         if expression is not None:
             look(expression)
-    return tuple(found)
+    return tuple(sensors)

@@ -238,7 +238,7 @@ class Author(ValueAuthor):
 
     def statement(self) -> None:
         blocks: list[tuple[int, Callable[[], None]]] = []
-        if self.left > 0 and self.depth < MAX_NESTING:
+        if self.instructions_left > 0 and self.depth < MAX_NESTING:
             blocks = [(9, self.choose), (7, self.loop), (5, self.repeat)]
             if self.chance(0.05):
                 blocks.append((5, self.tower))
@@ -272,8 +272,8 @@ class Author(ValueAuthor):
         self.variables |= kinds
         for _ in range(self.rng.randint(0, 4)):
             self.statement()
-        for each in names:
-            del self.variables[each]
+        for value_name in names:
+            del self.variables[value_name]
         self.defs[name] = (self.deepest, self.called)
         self.deepest, self.called, self.in_def = deepest, called, False
         self.say(self.rng.choice(("END_DEF", "ENDDEF")))
@@ -287,7 +287,7 @@ class Author(ValueAuthor):
         count = self.rng.choice((0, 0, 0, 1, 1, 2, 3, 4))
         if len(self.variables) + self.given + count > MAX_VARIABLES:
             return []
-        return [each for name in self.rng.sample(self.values, count) for each in (",", name)]
+        return [token for name in self.rng.sample(self.values, count) for token in (",", name)]
 
     @property
     def has_room(self) -> bool:
@@ -320,12 +320,12 @@ class Author(ValueAuthor):
             size = self.rng.randint(6, 25)
         if roll < 0.1:
             size = self.rng.randint(20, 60)
-        self.left = size
+        self.instructions_left = size
         if self.chance(0.01):
             self.chain()
         if self.chance(0.005):
             self.crowd()
-        while self.left > 0:
+        while self.instructions_left > 0:
             if self.chance(0.1 if self.defs else 0.06):
                 self.define()
             else:

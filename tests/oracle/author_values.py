@@ -36,7 +36,7 @@ class ValueAuthor:
         self.rng = rng
         self.kit = kit
         self.page: list[Tokens] = []
-        self.left = 0  # instructions still to write
+        self.instructions_left = 0  # instructions still to write
         taken = {device.name for device in (*kit.readings, *kit.actuators)}
         remote = [device.name for device in kit.readings[len(kit.sensors) :]]
         own = rng.sample(remote, min(len(remote), rng.choice((0, 0, 0, 1, 2, 4))))  # give way
@@ -62,7 +62,7 @@ class ValueAuthor:
 
     def say(self, *tokens: str) -> None:
         self.page.append(list(tokens))
-        self.left -= 1
+        self.instructions_left -= 1
 
     # Expressions
 
@@ -120,8 +120,8 @@ class ValueAuthor:
     def yes_no(self, size: int = 2) -> Tokens:
         roll = self.rng.random()
         if size <= 0 or roll < 0.12:
-            found = None if self.constant or self.chance(0.3) else self.named(True)
-            return found or [self.rng.choice(("TRUE", "FALSE"))]
+            names = None if self.constant or self.chance(0.3) else self.named(True)
+            return names or [self.rng.choice(("TRUE", "FALSE"))]
         if roll < 0.2:
             return ["NOT", *self.yes_no(size - 1)]
         if roll < 0.27:

@@ -39,13 +39,13 @@ class Text:
 
     def names_after(self, at: int) -> tuple[str, ...]:
         """The names in the brackets that begin here, none where there are none."""
-        found = []
+        names = []
         if self.tokens[at].text == "(":
             while self.tokens[at].text not in (")", "") and self.tokens[at].kind != "newline":
                 if self.tokens[at].kind == "word":
-                    found.append(self.tokens[at].text)
+                    names.append(self.tokens[at].text)
                 at += 1
-        return tuple(found)
+        return tuple(names)
 
     def begins(self, at: int) -> bool:
         """Whether an instruction begins with this token."""
@@ -72,11 +72,11 @@ class Text:
             for at, token in enumerate(self.tokens[:-1])
         )  # fmt: skip
 
-    def is_yes_no(self, name: str, around: Def, seen: tuple[tuple[str, str], ...] = ()) -> bool:
+    def is_yes_no(self, name: str, around: Def, names: tuple[tuple[str, str], ...] = ()) -> bool:
         """Whether a name is a yes/no value, inside this DEF."""
         own = name in around.values
         key = (name, around.name if own else "")
-        if key in seen:
+        if key in names:
             return False
         for at, token in enumerate(self.tokens[:-1]):
             if not self.begins(at):
@@ -85,13 +85,13 @@ class Text:
             if own and token.text == around.name and after == "(":
                 places = self.arguments(at + 1)
                 k = around.values.index(name)
-                return k < len(places) and self.answers(*places[k], (*seen, key))
+                return k < len(places) and self.answers(*places[k], (*names, key))
             is_set = token.text == name and after == "="
             if not own and is_set and name not in self.around[at].values:
-                return self.answers(at + 2, self.end(at + 2), (*seen, key))
+                return self.answers(at + 2, self.end(at + 2), (*names, key))
         return name in self.sensors
 
-    def answers(self, start: int, end: int, seen: tuple[tuple[str, str], ...]) -> bool:
+    def answers(self, start: int, end: int, names: tuple[tuple[str, str], ...]) -> bool:
         """Whether the expression from `start` to before `end` is a yes/no value."""
         depth = 0
         while end - start > 2 and self.tokens[start].text == "(" and self.closes(start) == end - 1:
@@ -102,7 +102,7 @@ class Text:
             if depth == 0 and text in _YES_NO:
                 return True
         is_name = end - start == 1 and self.tokens[start].kind == "word"
-        return is_name and self.is_yes_no(self.tokens[start].text, self.around[start], seen)
+        return is_name and self.is_yes_no(self.tokens[start].text, self.around[start], names)
 
     def closes(self, at: int) -> int:
         """Where the bracket that is opened here is closed."""
@@ -121,12 +121,12 @@ class Text:
 
     def arguments(self, at: int) -> list[tuple[int, int]]:
         """Where each value of the brackets that begin here begins and ends."""
-        last, found, depth = self.closes(at), [], 0
+        last, spans, depth = self.closes(at), [], 0
         begun = at + 1
         for place in range(at + 1, last):
             text = self.tokens[place].text
             depth += {"(": 1, ")": -1}.get(text, 0)
             if text == "," and depth == 0:
-                found.append((begun, place))
+                spans.append((begun, place))
                 begun = place + 1
-        return [*found, (begun, last)] if begun < last else found
+        return [*spans, (begun, last)] if begun < last else spans

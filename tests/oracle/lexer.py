@@ -45,7 +45,7 @@ def tokens_of(text: str) -> list[Token]:
     """Cuts a text into tokens; an end of line inside parentheses is white space."""
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     text = "\n".join(map(without_checksum, text.split("\n")))
-    found: list[Token] = []
+    tokens: list[Token] = []
     line, depth, at = 1, 0, 0
     while at < len(text):
         match = _TOKEN.match(text, at)
@@ -62,15 +62,15 @@ def tokens_of(text: str) -> list[Token]:
         if word in FIXED:
             names, meaning = FIXED[word]
             values, at = _given(text, at, len(names)) if names else ([], at)
-            for each in tokens_of(meaning)[:-1]:
-                given = dict(zip(names, values, strict=True)).get(each.text, [each])
-                found += (one._replace(line=line) for one in given)
+            for token in tokens_of(meaning)[:-1]:
+                given = dict(zip(names, values, strict=True)).get(token.text, [token])
+                tokens += (one._replace(line=line) for one in given)
         elif kind != "space" and not (kind == "newline" and depth > 0):
-            found.append(Token(kind, word, line))
+            tokens.append(Token(kind, word, line))
         if kind == "newline":
             line += 1
-    found.append(Token("end", "", line))
-    return found
+    tokens.append(Token("end", "", line))
+    return tokens
 
 
 def _given(text: str, at: int, count: int) -> tuple[list[list[Token]], int]:

@@ -64,7 +64,7 @@ class Run:
     late: Callable[[int, int], int]  # how much later the call comes: see `trace`
     begin_ms: int = 0
     is_slow: Callable[[int, int], bool] = always_ready
-    waited: int = 0  # how often
+    waited: int = 0  # how many times
     lines: list[str] = field(default_factory=list)
     taken: dict[int, int] = field(default_factory=dict)
     passed: int = 0  # since the start; what `now` is without wrapping around
@@ -203,12 +203,15 @@ class Run:
             case "STOP":
                 self.motors((0, 0))
             case "MOTORS" | "MOTORS8":
-                left, right = operands or (within(whole(each), -100, 100) for each in taken)
+                left, right = operands or (within(whole(value), -100, 100) for value in taken)
                 self.motors((left, right))
             case _ if name.removesuffix("8") in ACTS:
                 act = ACTS[name.removesuffix("8")]
-                said = zip(operands, act.ranges, strict=not taken)
-                values = [time8(each) if of == TIME else 1000 * each for each, of in said]
+                operands_and_ranges = zip(operands, act.ranges, strict=not taken)
+                values = [
+                    time8(value) if of == TIME else 1000 * value
+                    for value, of in operands_and_ranges
+                ]
                 act_values = act.values(taken or values)
                 self.note(act.note.format(*act_values))
                 if act.waits:
@@ -230,9 +233,9 @@ class Run:
                 else:
                     self.counters.append(times)
             case "NEXT":
-                left = self.counters.pop() - 1
-                if left:
-                    self.counters.append(left)
+                count_left = self.counters.pop() - 1
+                if count_left:
+                    self.counters.append(count_left)
                     self.pc = to
             case "BREAK_LOOP":
                 self.counters.pop()
@@ -266,8 +269,8 @@ class Run:
 
     def set(self, actuator: Device, value: int) -> None:
         rounded = within(1000 * whole(value), actuator.low, actuator.high)
-        said = answer(value) if actuator.is_yes_no else printed(rounded)
-        self.note(f"SET {actuator.name} {said}")
+        text = answer(value) if actuator.is_yes_no else printed(rounded)
+        self.note(f"SET {actuator.name} {text}")
 
     # Time
 

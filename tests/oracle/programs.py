@@ -39,7 +39,7 @@ def program(rng: random.Random, kit: Kit, ways: bool = False) -> str:
 
 def senses(rng: random.Random, kit: Kit) -> dict[str, list[int]]:
     """Readings in thousandths for some of the sensors, each within its range."""
-    found: dict[str, list[int]] = {}
+    readings_by_sensor: dict[str, list[int]] = {}
     for device in kit.readings:
         if rng.random() < 0.25:
             continue
@@ -50,8 +50,8 @@ def senses(rng: random.Random, kit: Kit) -> dict[str, list[int]]:
                 value = rng.choice((value, value % 20_000, value // 1000 * 1000, device.low, 9_000))
                 value = max(device.low, min(device.high, value))
             readings.append(value)
-        found[device.name] = readings
-    return found
+        readings_by_sensor[device.name] = readings
+    return readings_by_sensor
 
 
 __all__ = ["WIDE_KIT", "broken", "program", "senses"]

@@ -165,5 +165,5 @@ class Robot:
         if operator == "RANDOM":
             self.state = stepped(self.state)
             return random_between(values[0], values[1], self.state)
-        found = calculated(NAMES[operator], *values)
-        return bool(found) if expression.is_yes_no else found
+        result = calculated(NAMES[operator], *values)
+        return bool(result) if expression.is_yes_no else result

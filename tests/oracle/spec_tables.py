@@ -57,12 +57,12 @@ class Instruction(NamedTuple):
 
     def read(self, code: bytes, at: int) -> list[tuple[Operand, int]]:
         """Return the operands with their values, where the instruction is at an offset."""
-        found = []
+        operands = []
         at += self.code_size
         for operand in self.operands:
-            found.append((operand, operand.read(code[at : at + operand.size])))
+            operands.append((operand, operand.read(code[at : at + operand.size])))
             at += operand.size
-        return found
+        return operands
 
     def values(self, code: bytes, at: int) -> list[int]:
         """Return what is no distance of a jump: implied, or read."""
@@ -72,7 +72,7 @@ class Instruction(NamedTuple):
     def target(self, code: bytes, at: int) -> int:
         """Return where it jumps, or the next offset."""
         after = at + self.size
-        distances = [each for each in self.read(code, at) if each[0].is_distance]
+        distances = [part for part in self.read(code, at) if part[0].is_distance]
         return after + sum(-v if operand.kind[:4] == "back" else v for operand, v in distances)
 
 
@@ -104,16 +104,18 @@ def instructions() -> dict[int, Instruction]:
         for code, words, effect, *_ in rows("instructions")
     }
     kind_of = {words[0]: _halves(words[1])[1] for words, _ in written.values() if words[1:]}
-    found = {}
+    table = {}
     for code, ((name, *operands), (takes, leaves)) in written.items():
-        made = tuple(Operand(*halves, *kinds[halves[1]]) for halves in map(_halves, operands))
+        op_operands = tuple(
+            Operand(*halves, *kinds[halves[1]]) for halves in map(_halves, operands)
+        )
         short = re.fullmatch(r"(.+)_(\d+)", name)
         stem = short[1] if short else name.removesuffix("_FAR")
         implied = ((kind_of.get(stem, "u8"), int(short[2])),) if short else ()
         role = role_of[name]
         bytes_ = 2 if code > 0xFF else 1
-        found[code] = Instruction(name, stem, made, implied, takes, leaves, role, bytes_)
-    return found
+        table[code] = Instruction(name, stem, op_operands, implied, takes, leaves, role, bytes_)
+    return table
 
 
 def code_at(code: bytes, at: int) -> int:
@@ -140,12 +142,12 @@ def _halves(word: str) -> tuple[str, str]:
 
 def versions() -> dict[tuple[int, int], tuple[set[str], tuple[int, ...]]]:
     """Return what each version adds: names of instructions, and bits of `needs`."""
-    found = {}
+    table = {}
     for number, names, bits in rows("versions"):
         major, minor = map(int, number.split("."))
         values = () if bits == "none" else tuple(map(int, bits.split(", ")))
-        found[major, minor] = set(re.findall(r"[A-Z_0-9]+", names)), values
-    return found
+        table[major, minor] = set(re.findall(r"[A-Z_0-9]+", names)), values
+    return table
 
 
 @lru_cache(maxsize=1)

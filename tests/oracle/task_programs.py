@@ -201,8 +201,10 @@ class RivalAuthor(TaskAuthor):
         self.lines.append("END_WHEN")
 
     def until(self, chance: float) -> str:
-        found = self.rng.choice(("DISTANCE < 15", "LIGHT_L > 500", "DISTANCE < 8 AND LIGHT_L < 5"))
-        return f" UNTIL({found})" if self.rng.random() < 2 * chance else ""
+        question = self.rng.choice(
+            ("DISTANCE < 15", "LIGHT_L > 500", "DISTANCE < 8 AND LIGHT_L < 5")
+        )
+        return f" UNTIL({question})" if self.rng.random() < 2 * chance else ""
 
 
 def rival_program(rng: random.Random) -> tuple[str, dict[str, list[int]]]:

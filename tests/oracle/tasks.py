@@ -174,13 +174,13 @@ class TaskRobot(Robot):
                 return False
         return bool(self.value(statement.until))
 
-    def pausing(self, statement: Do, left: int | None) -> Generator[None, None, int]:
+    def pausing(self, statement: Do, pause_left: int | None) -> Generator[None, None, int]:
         """Waits until the next look of an UNTIL, or the end; returns how long that was."""
         me = self.who
-        pause = self.max_time + 1 if left is None else left
+        pause = self.max_time + 1 if pause_left is None else pause_left
         if statement.until is not None:
             look = ((self.now - me.clock) // PAUSE + 1) * PAUSE
-            pause = look if left is None else min(look, left)
+            pause = look if pause_left is None else min(look, pause_left)
         yield from self.until_clock(pause)
         return pause
 
@@ -334,20 +334,20 @@ class TaskRobot(Robot):
             self.seize()
 
     def waiting(self, statement: Do, time: Value | None) -> Turns:
-        left = None if time is None else max(0, time)
+        time_left = None if time is None else max(0, time)
         if (yield from self.looking(statement)):
             return
         self.begin()
-        while left is None or left > 0:
-            pause = yield from self.pausing(statement, left)
-            left = None if left is None else left - pause
-            if left != 0 and (yield from self.looking(statement)):
+        while time_left is None or time_left > 0:
+            pause = yield from self.pausing(statement, time_left)
+            time_left = None if time_left is None else time_left - pause
+            if time_left != 0 and (yield from self.looking(statement)):
                 self.who.clock = self.now
                 return
 
     def moving(self, statement: Do, values: list[Value | None]) -> Turns:
         me = self.who
-        left = None if values[0] is None else max(0, values[0])
+        time_left = None if values[0] is None else max(0, values[0])
         power = within(whole(values[1] or 0), 0, 100)
         side = SIDES[statement.word]
         powers = side[0] * power, side[1] * power
@@ -365,7 +365,7 @@ class TaskRobot(Robot):
             self.motors(*powers)
             self.begin()
             started = me.clock
-            yield from self.driving(statement, left)
+            yield from self.driving(statement, time_left)
             if me.was_stopped:
                 me.was_stopped = False
                 me.clock = self.now
@@ -373,8 +373,8 @@ class TaskRobot(Robot):
             if me.robbed_at is None or not me.moving:
                 me.robbed_at = None
                 return
-            if left is not None:
-                left -= me.robbed_at - started
+            if time_left is not None:
+                time_left -= me.robbed_at - started
             me.robbed_at = None
             me.clock = self.now
 
@@ -387,17 +387,17 @@ class TaskRobot(Robot):
             yield
         me.clock = self.now
 
-    def driving(self, statement: Do, left: int | None) -> Turns:
+    def driving(self, statement: Do, time_left: int | None) -> Turns:
         """Drives until the time is over, UNTIL ends it, S ends it or the motors are taken."""
         me = self.who
-        me.driving_forever = left is None
-        me.driving_until = None if left is None else me.clock + left
-        while left is None or left > 0:
-            pause = yield from self.pausing(statement, left)
+        me.driving_forever = time_left is None
+        me.driving_until = None if time_left is None else me.clock + time_left
+        while time_left is None or time_left > 0:
+            pause = yield from self.pausing(statement, time_left)
             if me.is_interrupted:
                 break
-            left = None if left is None else left - pause
-            if left != 0 and (yield from self.looking(statement)):
+            time_left = None if time_left is None else time_left - pause
+            if time_left != 0 and (yield from self.looking(statement)):
                 me.clock = self.now
                 break
             if me.is_interrupted:

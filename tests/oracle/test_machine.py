@@ -34,12 +34,12 @@ def compare(code: bytes, number: int, readings: dict[str, list[int]], seed: int)
     theirs, kit = KITS[number]
     senses = Senses(readings, MAX_MS, MAX_STEPS, seed)
     ours = run_python(image_for(code, kit), kit, senses).splitlines()
-    said = machine.trace(code, theirs, readings, MAX_MS, seed, MAX_STEPS).splitlines()
-    if said[-1].endswith(machine.TOO_MANY) or (ours[-1] != said[-1] and "LIMIT" in ours[-1]):
-        both = min(len(ours), len(said)) - 1
-        ours, said = ours[:both], said[:both]
-    assert ours == said, f"{code.hex(' ')}, seed {seed}"
-    return said[-1].split(" ", 1)[1] if said else ""
+    lines = machine.trace(code, theirs, readings, MAX_MS, seed, MAX_STEPS).splitlines()
+    if lines[-1].endswith(machine.TOO_MANY) or (ours[-1] != lines[-1] and "LIMIT" in ours[-1]):
+        both = min(len(ours), len(lines)) - 1
+        ours, lines = ours[:both], lines[:both]
+    assert ours == lines, f"{code.hex(' ')}, seed {seed}"
+    return lines[-1].split(" ", 1)[1] if lines else ""
 
 
 def codes(seed: int, count: int) -> Iterator[tuple[bytes, int, dict[str, list[int]], int]]:
@@ -53,7 +53,7 @@ def codes(seed: int, count: int) -> Iterator[tuple[bytes, int, dict[str, list[in
         if rng.random() < 0.5:
             code = compile_text(programs.program(rng, theirs), kit).code
         else:
-            code = next(each for each in damaged if python_verdict(each, *sizes) == (0, 0))
+            code = next(code for code in damaged if python_verdict(code, *sizes) == (0, 0))
         yield code, which, dict(programs.senses(rng, theirs)), rng.randrange(1, 2**32)
 
 
@@ -78,11 +78,11 @@ def test_late_calls() -> None:
         theirs, kit = KITS[number]
         senses = Senses(readings, MAX_MS, seed=seed)
         ours = run_late(image_for(code, kit), kit, senses, late_ms).splitlines()
-        said = machine.trace(
+        trace = machine.trace(
             code, theirs, readings, MAX_MS, seed, MAX_STEPS, lambda waited, _: late_ms[waited - 1]
         ).splitlines()
-        assert said[: len(ours)] == ours or said[:-1] == ours[: len(said) - 1], code.hex(" ")
-        lines += min(len(ours), len(said) - 1)
+        assert trace[: len(ours)] == ours or trace[:-1] == ours[: len(trace) - 1], code.hex(" ")
+        lines += min(len(ours), len(trace) - 1)
     assert lines > 5000
 
 
@@ -91,8 +91,10 @@ def test_a_watched_move_may_last_longer_than_the_clock() -> None:
 
     def page(image: bytes, kit: object, senses: Senses, late_ms: Sequence[int]) -> str:
         code, theirs = unpack(image).code, KITS[0][0]
-        said = machine.trace(code, theirs, senses.readings, 2**33, late=lambda k, _: late_ms[k - 1])
-        return said.removesuffix("4294967510 DONE\n")
+        lines = machine.trace(
+            code, theirs, senses.readings, 2**33, late=lambda k, _: late_ms[k - 1]
+        )
+        return lines.removesuffix("4294967510 DONE\n")
 
     check_round(run_late)
     check_round(page)

@@ -46,8 +46,8 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
         assert compile_text(laid_out, KIT).image == compiled.image, f"seed {seed}, formatted"
     for image in dict.fromkeys(images):
         for machine in machines:
-            got = machine(image, KIT, Senses(readings, MAX_MS))
-            assert got == want, f"seed {seed}, {image.hex()}:\n{text}"
+            actual = machine(image, KIT, Senses(readings, MAX_MS))
+            assert actual == want, f"seed {seed}, {image.hex()}:\n{text}"
     return want.split()[-1]
 
 

@@ -40,12 +40,12 @@ def compare(codes: Iterable[bytes], sensors: int = SENSORS, actuators: int = ACT
     machine in C++ gets the second.
     """
     codes = list(codes)
-    said = [verifier.verdict(code, sensors, actuators) for code in codes]
+    own_verdicts = [verifier.verdict(code, sensors, actuators) for code in codes]
     without = [
         verifier.verdict(code, sensors, actuators, 0) if NEEDY & {*code} else verdict
-        for code, verdict in zip(codes, said, strict=True)
+        for code, verdict in zip(codes, own_verdicts, strict=True)
     ]
-    for code, *verdicts in zip(codes, said, without, strict=True):
+    for code, *verdicts in zip(codes, own_verdicts, without, strict=True):
         for needs, verdict in zip((0xFF, 0), verdicts, strict=True):
             if not needs and verdict == verdicts[0]:
                 continue
@@ -56,7 +56,7 @@ def compare(codes: Iterable[bytes], sensors: int = SENSORS, actuators: int = ACT
         for code, verdict, (rule, offset) in zip(codes, without, theirs, strict=True):
             ours = rule, offset if rule else 0  # of accepted code, the offset is its length
             assert ours == verdict, f"{code.hex(' ')}: C++ says {ours}, the page {verdict}"
-    return {rule for rule, _ in said}
+    return {rule for rule, _ in own_verdicts}
 
 
 @lru_cache(maxsize=1)
@@ -65,7 +65,9 @@ def every_program() -> list[bytes]:
     kit = load(DEFAULT).kit
     texts = [case.parts["tiniscript"] for case in all_cases() if "tiniscript" in case.parts]
     compiled = [compile_text(text, kit) for text in texts]
-    return [each.code for each in compiled if each.is_right and each.code]
+    return [
+        compilation.code for compilation in compiled if compilation.is_right and compilation.code
+    ]
 
 
 def damaged(programs: list[bytes], seed: int, count: int) -> Iterator[bytes]:
@@ -107,7 +109,7 @@ def test_a_sensor_in_an_instruction_of_one_byte(code: str) -> None:
 
 
 def test_codes_of_up_to_two_bytes() -> None:
-    compare(bytes(each) for size in range(3) for each in product(range(256), repeat=size))
+    compare(bytes(values) for size in range(3) for values in product(range(256), repeat=size))
 
 
 def test_each_rule_is_broken_by_its_cases() -> None:
@@ -158,8 +160,8 @@ def test_no_device_has_a_number_above_31() -> None:
     for many in (32, 33, 255):
         for name, number in (("READ", 31), ("READ", 32), ("PUSH_SENSOR", 32), ("PUSH_READ", 255)):
             code = bytes([codes[name], number])
-            said = compare([code + bytes([codes["SHOW"]]) if name != "READ" else code], many, many)
-            assert said == {0 if number == 31 else RULES["BAD_OPERAND"][0]}
+            rules = compare([code + bytes([codes["SHOW"]]) if name != "READ" else code], many, many)
+            assert rules == {0 if number == 31 else RULES["BAD_OPERAND"][0]}
 
 
 READS = ("words", "lexer", "kinds", "ast", "readings", "expressions", "text", "robot", "tasks",
@@ -176,10 +178,10 @@ def test_it_knows_nothing_of_the_package(name: str) -> None:
         if isinstance(node, (ast.Import, ast.ImportFrom))
         for alias in node.names
     }
-    assert not {each for each in imported if each.startswith("tiniscript")}
-    others = {each for each in imported if each.startswith("tests")}
+    assert not {module for module in imported if module.startswith("tiniscript")}
+    others = {module for module in imported if module.startswith("tests")}
     upstream = ("spec_tables", "arithmetic", "words") if name in CHECKS else (*READS, "arithmetic")
-    assert others <= {f"tests.oracle.{each}" for each in upstream}
+    assert others <= {f"tests.oracle.{module}" for module in upstream}
 
 
 # -- a campaign ---------------------------------------------------------------------------------

@@ -38,15 +38,17 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
     while not both or not unpack(both[0].image).needs & GO:
         text = programs.program(rng, theirs, ways=True)
         both = [compile_text(text, kit, optimize=optimize) for optimize in (True, False)]
-        assert all(found.is_right for found in both), f"seed {seed}:\n{text}"
+        assert all(compilation.is_right for compilation in both), f"seed {seed}:\n{text}"
     readings = programs.senses(rng, theirs)
     want = run(text, theirs, readings, MAX_MS, MAX_STEPS)
-    for image in dict.fromkeys(found.image for found in both):  # often they are the same
-        for each in machines:
-            got = each(image, kit, Senses(readings, MAX_MS, MAX_STEPS))
-            assert same(want, got), f"seed {seed}, {image.hex()}:\n{text}"
-        got = machine.trace(unpack(image).code, theirs, readings, MAX_MS, max_steps=MAX_STEPS)
-        assert machine.TOO_MANY in got or same(want, got), f"seed {seed}, the page:\n{text}"
+    for image in dict.fromkeys(
+        compilation.image for compilation in both
+    ):  # often they are the same
+        for run_on in machines:
+            actual = run_on(image, kit, Senses(readings, MAX_MS, MAX_STEPS))
+            assert same(want, actual), f"seed {seed}, {image.hex()}:\n{text}"
+        actual = machine.trace(unpack(image).code, theirs, readings, MAX_MS, max_steps=MAX_STEPS)
+        assert machine.TOO_MANY in actual or same(want, actual), f"seed {seed}, the page:\n{text}"
     laid_out = format_source(Source(text))
     assert compile_text(laid_out, kit).image == both[0].image, f"seed {seed}"
     return want.splitlines()[-1].split(" ", 1)[1]
@@ -118,8 +120,8 @@ def test_what_both_refuse(text: str) -> None:
     ],
 )
 def test_what_both_take(text: str) -> None:
-    found = compile_text(text, KITS[0][1])
-    assert run_python(found.image, KITS[0][1], Senses()) == run(text)
+    compilation = compile_text(text, KITS[0][1])
+    assert run_python(compilation.image, KITS[0][1], Senses()) == run(text)
 
 
 def test_a_robot_whose_speed_is_not_known_has_no_such_moves() -> None:

@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 
 class Known(NamedTuple):
-    """In a file the only place with `was` becomes something else; `test` then fails."""
+    """In a file the only place with `original` becomes something else; `test` then fails."""
 
     missing: str
     file: str
-    was: str
+    original: str
     becomes: str
     test: str
 

@@ -39,13 +39,13 @@ def board(request: pytest.FixtureRequest) -> Iterator[PtyRobot]:
 def steps(path: Path) -> dict[str, tuple[str, str]]:
     """Return what to do and what must be seen in each step, by its name."""
     rows = re.findall(r"^\| \d+ \| (.+?) \| (.+?) \| (.+?) \|$", path.read_text("utf-8"), re.M)
-    return {name: (do, seen) for name, do, seen in rows}
+    return {name: (do, expected) for name, do, expected in rows}
 
 
 def commands(text: str) -> list[list[str]]:
     """Return the commands in a text, each as its words without `tsc`."""
-    found = re.findall(r"(?:`|^ {4})tsc ([^`\n]+)", text.replace("\\|", "|"), re.M)
-    return [shlex.split(each) for each in found]
+    command_lines = re.findall(r"(?:`|^ {4})tsc ([^`\n]+)", text.replace("\\|", "|"), re.M)
+    return [shlex.split(line) for line in command_lines]
 
 
 def test_both_lists_type_the_same() -> None:
@@ -61,8 +61,8 @@ def test_both_lists_type_the_same() -> None:
 def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_path: Path) -> None:
     """Whose robot it is stays out of it."""
     report = tmp_path / "bring-up.txt"
-    done = on(pty_robot, "doctor", "--yes", "--report", report)
-    assert done.code == 0
+    result = on(pty_robot, "doctor", "--yes", "--report", report)
+    assert result.code == 0
     form = report.read_text("utf-8").split("\n\n")[-1].splitlines()
     assert re.match(r"robot: tinibot, link \d+\.\d+, machine \d+\.\d+, room for \d+ bytes", form[2])
     assert form[2].endswith("last restart: power on")
@@ -73,9 +73,9 @@ def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_
     assert [row.endswith(f": {BLANK_FIELD}") for row in form[6::3]] == [True] * (
         len(FORM_STEPS) - 1
     )
-    said = [(form[k + 1], form[k + 2]) for k in range(3, len(form), 3)]
+    rows = [(form[k + 1], form[k + 2]) for k in range(3, len(form), 3)]
     shown = [(f"   do: {do}", f"   see: {see}") for do, see in steps(LISTS["en"]).values()]
-    assert said == [(do.replace("\\|", "|"), see.replace("\\|", "|")) for do, see in shown]
+    assert rows == [(do.replace("\\|", "|"), see.replace("\\|", "|")) for do, see in shown]
     on(pty_robot, "doctor", "--yes", "--report", report, "--lang", "es")
     assert "1. Responde: 20 de 20 llegaron de inmediato" in report.read_text("utf-8")
 
@@ -98,9 +98,9 @@ def test_the_typed_stop_of_the_list(board: PtyRobot, before: str) -> None:
         board.until(lambda: board.moves, "it drives")
         os.write(port, f"{before}{stop}\n".encode())
         board.until(lambda: not board.moves, "it stands")
-        said = b""
-        while b"// " not in said:
-            said += os.read(port, 4096)
+        data = b""
+        while b"// " not in data:
+            data += os.read(port, 4096)
     finally:
         os.close(port)
 

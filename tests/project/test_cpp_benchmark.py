@@ -29,7 +29,7 @@ def test_a_wrong_value_is_an_error(work: Work) -> None:
 @needs_chip
 @pytest.mark.parametrize(
     ("work", "must"),
-    [pytest.param(*each, id=each[0].name) for each in zip(WORKS, MOST_CYCLES, strict=True)],
+    [pytest.param(*row, id=row[0].name) for row in zip(WORKS, MOST_CYCLES, strict=True)],
 )
 def test_cycles_are_at_most_what_they_must(work: Work, must: float) -> None:
     assert 1 < machine.per_iteration(work) <= must

@@ -52,9 +52,9 @@ FORBIDDEN = ("virtual", "new", "delete", "throw", "try", "float", "double", "got
 def shouting(path: Path) -> set[str]:
     """Return the names in capitals."""
     text = code_of(path)
-    found = set(re.findall(r"\b[A-Z][A-Z0-9_]*\b", text))
+    shouted = set(re.findall(r"\b[A-Z][A-Z0-9_]*\b", text))
     arduinos = ARDUINOS if "#include <Arduino.h>" in text else set()
-    return found - {CHIP_OF_THE_CORE} - arduinos
+    return shouted - {CHIP_OF_THE_CORE} - arduinos
 
 
 @each_row("path", FILES)
@@ -123,12 +123,12 @@ def test_what_exists_in_assembly_too_exists_in_the_files_that_it_names(path: Pat
     about = first_comment(path)
     (same,) = re.findall(r"[Mm]eans? the same as (.*?)[.] [A-Z`]", about)
     twins = [path.parent / name for name in re.findall(r"`([\w/]+\.(?:cpp|h))`", same)]
-    twins += [twin for each in twins if (twin := VM / each.name).exists()]
+    twins += [twin for row in twins if (twin := VM / row.name).exists()]
     code = "\n".join(code_of(twin) for twin in twins if twin.exists())
     defined = set(re.findall(r"\b(\w+)\([^;{}()]*\)(?: const)? \{", code))
     text = path.read_text(encoding="utf-8")
     mangled = re.findall(r"(?:\.global|^function) _ZNK?10tiniscript(\d\w+)", text, re.M)
-    names = [names_in(each)[-1] for each in mangled]
+    names = [names_in(symbol)[-1] for symbol in mangled]
     names += re.findall(r"^starts tiniscript_(\w+)", text, re.M)
     assert names and set(names) <= defined, {*names} - defined
 
@@ -158,11 +158,11 @@ def test_each_header_is_read_once(path: Path) -> None:
 
 def names_in(mangled: str) -> list[str]:
     """Return the names in a name of the linker: `8Receiver5watchEh` has `Receiver` and `watch`."""
-    found, at = [], 0
+    names, at = [], 0
     while digits := re.match(r"\d+", mangled[at:]):
         at += len(digits[0]) + int(digits[0])
-        found.append(mangled[at - int(digits[0]) : at])
-    return found
+        names.append(mangled[at - int(digits[0]) : at])
+    return names
 
 
 def test_what_the_linker_places_by_name_has_that_name() -> None:
@@ -171,14 +171,14 @@ def test_what_the_linker_places_by_name_has_that_name() -> None:
     order = (SOURCES / "src" / "boards" / "avr" / "order.ld").read_text(encoding="utf-8")
     mangled = re.findall(r"\*\(\.text\._ZNK?10tiniscript(?:12_GLOBAL__N_1)?(\d\w+)", order)
     assert len(mangled) > 100
-    for each in mangled:
-        *outer, name = names_in(each)
+    for symbol in mangled:
+        *outer, name = names_in(symbol)
         places = [code]
         if outer:
             kind = outer[0]
             begun = rf"(?:class|struct) {kind}\b[^;{{]*\{{.*?\n\}};|\b{kind}::[^;]*?\("
             places = re.findall(begun, code, re.DOTALL)
-        assert any(re.search(rf"\b{name}\b", place) for place in places), each
+        assert any(re.search(rf"\b{name}\b", place) for place in places), symbol
 
 
 @pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")

@@ -48,10 +48,10 @@ def test_the_road_needs_the_standard_library_alone() -> None:
 
 def test_importing_the_package_imports_nothing_else() -> None:
     """What the library offers is imported when it is asked for."""
-    found = {
+    modules = {
         name for name in modules_imported_by("import tiniscript") if name.startswith("tiniscript")
     }
-    assert found == {"tiniscript"}
+    assert modules == {"tiniscript"}
 
 
 # What a right program may have: names of all kinds, every block, a note, and a warning.
@@ -86,7 +86,7 @@ def test_a_right_program_loads_nothing_for_wrong_ones_or_other_verbs(
         f"assert main([{verb!r}, '--robot', 'grabber', {str(program)!r}]) == 0"
     )
     own = {module for module in modules if module.startswith("tiniscript")}
-    assert not {each for each in own if OF_WRONG.match(each)}
+    assert not {word for word in own if OF_WRONG.match(word)}
     assert len(own) <= 68
     unwanted = {"cobs", "serial", "tomllib", "tomli", "rich", "dataclasses",
                 "tiniscript.link", "tiniscript.base.translations",

@@ -33,7 +33,7 @@ class Command(NamedTuple):
 
 def commands() -> list[Command]:
     """Return every `tsc` command of every console fence, with what the document shows."""
-    found: list[Command] = []
+    command_list: list[Command] = []
     for document in DOCUMENTS:
         fence, collecting = "", False
         for number, row in enumerate(document.read_text(encoding="utf-8").splitlines(), 1):
@@ -43,10 +43,12 @@ def commands() -> list[Command]:
                 words = shlex.split(row[2:])
                 collecting = words[0] in ("tsc", "tiniscript")
                 if collecting:
-                    found.append(Command(document, number, words[1:], ""))
+                    command_list.append(Command(document, number, words[1:], ""))
             elif collecting:
-                found[-1] = found[-1]._replace(shown=found[-1].shown + row + "\n")
-    return found
+                command_list[-1] = command_list[-1]._replace(
+                    shown=command_list[-1].shown + row + "\n"
+                )
+    return command_list
 
 
 @each_row("language, name", sources(ROOT, FRONT_PAGE).items())
@@ -91,7 +93,7 @@ EXAMPLES = [
 ]
 
 
-@pytest.mark.parametrize("example", EXAMPLES, ids=lambda each: f"{each.path.name}:{each.line}")
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda value: f"{value.path.name}:{value.line}")
 def test_python(
     example: Example, request: pytest.FixtureRequest, capsys: pytest.CaptureFixture[str],
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
@@ -109,7 +111,7 @@ def test_python(
 @each_row("name", sources(ROOT, "docs/en/api.md").values())
 def test_each_page_of_the_library_names_all_of_it(name: str) -> None:
     page = (ROOT / name).read_text(encoding="utf-8")
-    absent = [each for each in tiniscript.__all__ if f"`{each}" not in page]
+    absent = [name for name in tiniscript.__all__ if f"`{name}" not in page]
     assert not absent, f"{name} says nothing of {absent}"
     assert len(examples(ROOT / name)) == len(examples(ROOT / "docs" / "en" / "api.md")) >= 8
 
@@ -225,17 +227,17 @@ IN_FILE = re.compile(
 def test_what_architecture_says_is_in_a_file_is_there() -> None:
     text = (ROOT / "docs/develop/architecture.md").read_text(encoding="utf-8")
     paths = text[text.index("### The path of a program") : text.index("### Ten files to read")]
-    found = 0
+    count = 0
     for names, file in IN_FILE.findall(paths):
         matches = [path for path in SOURCES if path.as_posix().endswith(f"/{file}")]
         matches += (ROOT / "vm_arduino" / "src").rglob(file)
         assert matches, file
         code = "\n".join(path.read_text(encoding="utf-8") for path in matches)
         for span in re.findall(r"`([\w:]+)`", names):
-            found += 1
+            count += 1
             name = span.rpartition("::")[2]
             assert re.search(rf"\b{name}\b", code), f"{file} has no {span}"
-    assert found >= 15
+    assert count >= 15
 
 
 @each_row("document", DOCUMENTS)
@@ -255,7 +257,9 @@ def test_a_version_of_the_changelog_has_each_heading_once() -> None:
     assert len(versions) > 2
     for version in versions:
         headings = re.findall(r"(?m)^### (.*)$", version)
-        assert headings == [each for each in order if each in headings], version.split("\n")[0]
+        assert headings == [heading for heading in order if heading in headings], version.split(
+            "\n"
+        )[0]
         assert not re.search(r"(?m)[^\n]\n#", version), "a heading follows an empty line"
 
 

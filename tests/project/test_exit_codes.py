@@ -168,7 +168,7 @@ def test_the_generator_fails_where_any_file_is_stale(
 
 
 class Stage:
-    """A release of two parts, of whose steps the one that `fails` does."""
+    """A release of two parts, in which the step named by `fails` fails."""
 
     def __init__(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: str) -> None:
         self.fails, self.steps = fails, list[str]()
@@ -194,11 +194,11 @@ class Stage:
 
     def clones(self, scratch: Path, *_: object) -> list[Clone]:
         self.step("git")
-        found = []
+        made_clones = []
         for number in (1, 2):
             (scratch / str(number)).mkdir()
-            found.append(Clone(scratch, scratch / str(number), "1", "", 0, number, False))
-        return found
+            made_clones.append(Clone(scratch, scratch / str(number), "1", "", 0, number, False))
+        return made_clones
 
     def make(self, name: str, clone: Clone) -> list[Path]:
         self.step(f"{name} {clone.seed}")

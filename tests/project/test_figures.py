@@ -26,14 +26,14 @@ tools.bench.ways 20 --uno`), and `python -m tests.link.test_typed_stops 1000000`
 @pytest.fixture
 def ran(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     """What it runs, instead of running it: `ways` fails."""
-    found: list[list[str]] = []
+    rows: list[list[str]] = []
 
     def run(command: list[str], **_: Any) -> subprocess.CompletedProcess[str]:
-        found.append(command[2:])
+        rows.append(command[2:])
         return subprocess.CompletedProcess(command, int("tools.bench.ways" in command))
 
     monkeypatch.setattr(subprocess, "run", run)
-    return found
+    return rows
 
 
 def test_it_runs_what_the_page_names(
@@ -94,7 +94,7 @@ def test_the_last_row_of_the_history_of_an_uno_is_what_it_takes_now() -> None:
 
 def test_no_other_row_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     name = "text"
-    row, other = (page.cells(each) for each in page.tables(name)[0].rows)
+    row, other = (page.cells(row) for row in page.tables(name)[0].rows)
     page.show(name, [other, ["`SI|F(2,80)`", "1.00 ms", "2.00 ms"]])
     head, rule, first, second, _ = capsys.readouterr().out.split("\n", 4)
     assert (head, rule) == page.tables(name)[0][:2]
@@ -118,8 +118,8 @@ def test_the_firmware_is_measured_at_each_baud(
     monkeypatch.setattr(link, "build", lambda baud, folder: folder / str(baud))
     monkeypatch.setattr(uno, "missing", lambda: "")
     for most, code in ((2000.0, 0), (100.0, 1)):
-        found = link.on_each_baud(measure, lambda its, _: max(its.values()) <= most)  # noqa: B023
-        assert found == code
+        baud = link.on_each_baud(measure, lambda its, _: max(its.values()) <= most)  # noqa: B023
+        assert baud == code
     breaks = True
     assert link.on_each_baud(measure, lambda *_: True) == 2
     assert "it did not move" in capsys.readouterr().err

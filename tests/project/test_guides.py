@@ -21,7 +21,7 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.support.pty_robot import PtyRobot
 from tests.support.simulated_port import simulated
-from tests.support.texts import said as command_texts
+from tests.support.texts import catalogue_texts as command_texts
 from tiniscript import robots
 from tiniscript.cli import main
 from tiniscript.link import ports
@@ -54,28 +54,30 @@ class Step(NamedTuple):
 
 
 def steps(guide: Path) -> list[Step]:
-    found: list[Step] = []
+    step_list: list[Step] = []
     fence, name = "", ""
     for number, row in enumerate(guide.read_text(encoding="utf-8").splitlines()):
         if row.startswith("```"):
             fence = "" if fence else row[3:].strip() or "text"
             if fence == "tiniscript":
                 assert name, f"{guide.name}:{number + 1}: what is this program called?"
-                found.append(Step(name, [], "", number + 1, number + 1))
+                step_list.append(Step(name, [], "", number + 1, number + 1))
                 name = ""
         elif fence == "console robot" and row.startswith("$ tsc "):
-            found.append(Step("", shlex.split(row)[2:], "", number + 1, number + 1))
+            step_list.append(Step("", shlex.split(row)[2:], "", number + 1, number + 1))
         elif fence in ("console robot", "tiniscript"):
-            found[-1] = found[-1]._replace(text=f"{found[-1].text}{row}\n", last=number + 1)
+            step_list[-1] = step_list[-1]._replace(
+                text=f"{step_list[-1].text}{row}\n", last=number + 1
+            )
         elif not fence:
             named = re.findall(r"`(\w+\.ts)`", row)
             name = named[-1] if named else name
-    return found
+    return step_list
 
 
-def masked(said: str) -> str:
+def masked(text: str) -> str:
     """Return what a command prints, without what is different each time."""
-    rows = [row.rstrip() for row in said.splitlines()]
+    rows = [row.rstrip() for row in text.splitlines()]
     for varies in (
         r"\d+\.\d (?=ms)",
         r"127\.0\.0\.1:\d+",
@@ -88,9 +90,9 @@ def masked(said: str) -> str:
 
 @pytest.fixture
 def pty_robot(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyRobot]:
-    with PtyRobot(robots.load("tinibot").kit, bytes_per_ms=1) as found:
-        found.ask(lambda robot: robot.sense(LIGHT, LIGHT, DISTANCE))
-        yield found
+    with PtyRobot(robots.load("tinibot").kit, bytes_per_ms=1) as robot:
+        robot.ask(lambda robot: robot.sense(LIGHT, LIGHT, DISTANCE))
+        yield robot
 
 
 @each_guide
@@ -134,9 +136,9 @@ def test_what_a_guide_types_prints_what_it_shows(
 
 def _sentences(language: str) -> list[str]:
     """Return all that `tsc` says of robots and ports, with `{}` for each gap."""
-    said = list(command_texts(language).values())
-    said += [value for key, value in command_texts(language, "statuses").items() if "/said" in key]
-    return [re.sub(r"\{\w+\}", "{}", each) for each in said]
+    texts = list(command_texts(language).values())
+    texts += [value for key, value in command_texts(language, "statuses").items() if "/said" in key]
+    return [re.sub(r"\{\w+\}", "{}", text) for text in texts]
 
 
 @each_guide
@@ -144,9 +146,9 @@ def test_the_sentences_of_the_table_are_those_of_tsc(language: str, guide: Path)
     *_, table = guide.read_text(encoding="utf-8").split("\n## ")
     quoted = re.findall(r"^\| `([^`]+)` \|", table, re.M)
     assert len(quoted) >= 5
-    for each in quoted:
-        gaps = re.sub(r"COM\d|/dev/ttyUSB0", "{}", each)
-        assert any(gaps in sentence for sentence in _sentences(language)), each
+    for sentence in quoted:
+        gaps = re.sub(r"COM\d|/dev/ttyUSB0", "{}", sentence)
+        assert any(gaps in sentence for sentence in _sentences(language)), sentence
 
 
 @each_guide

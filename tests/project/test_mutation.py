@@ -33,20 +33,20 @@ def test_every_source_is_of_one_module() -> None:
 
 
 def test_tests_that_name_a_file_are_first_and_long_ones_last() -> None:
-    found = mutation.tests_of("compiler/tiniscript/link/seal.py")
-    assert found[0] == "tests/link/test_seal.py" and found[-1] == "tests/link/test_named_robots.py"
+    tests = mutation.tests_of("compiler/tiniscript/link/seal.py")
+    assert tests[0] == "tests/link/test_seal.py" and tests[-1] == "tests/link/test_named_robots.py"
 
 
 def test_what_is_listed_as_equivalent_is_still_there() -> None:
-    for file, was, _ in equivalent_mutants():
+    for file, old, _ in equivalent_mutants():
         lines = (ROOT / file).read_text(encoding="utf-8").splitlines()
-        assert was in {line.strip() for line in lines}, f"{file}: {was}"
+        assert old in {line.strip() for line in lines}, f"{file}: {old}"
 
 
 def tried(known: Known) -> Try:
     text = (ROOT / known.file).read_text(encoding="utf-8")
-    assert text.count(known.was) == 1, f"{known.missing}: the code has changed: find it again"
-    return Try(known.file, text.replace(known.was, known.becomes), known.test)
+    assert text.count(known.original) == 1, f"{known.missing}: the code has changed: find it again"
+    return Try(known.file, text.replace(known.original, known.becomes), known.test)
 
 
 def test_known_mutants_are_of_code_and_tests_that_are_there() -> None:
@@ -69,7 +69,7 @@ def test_known_mutants_are_noticed(tmp_path: Path) -> None:
             continue
         assert answer != exchanged.PASSES, f"no test notices {known.missing}"
         if answer != exchanged.FAILS:
-            mutant = Mutant(known.file, 0, known.was, known.becomes, one.text)
+            mutant = Mutant(known.file, 0, known.original, known.becomes, one.text)
             noticed = copy.find_noticing_test(mutant, [known.test])
             assert noticed.startswith(f"FAILED {known.test}"), (
                 f"{known.missing}: {answer}, {noticed}"

@@ -56,7 +56,7 @@ def tables(monkeypatch: pytest.MonkeyPatch) -> list[ModuleType]:
     """Add CHEEP to each of the tables; return the modules that have them."""
     op = OP._replace(since=NEXT_MINOR)
     assert opcodes.BY_CODE[op.code] is None
-    by_code = [op if code == op.code else each for code, each in enumerate(opcodes.BY_CODE)]
+    by_code = [op if code == op.code else other for code, other in enumerate(opcodes.BY_CODE)]
     act = oracle.ACTS["BEEP"]._replace(waits=False)
     monkeypatch.setitem(words.WORDS, CHEEP.text, CHEEP)
     monkeypatch.setattr(opcodes, "BY_CODE", by_code)
@@ -111,7 +111,7 @@ def test_the_tables_of_the_machine_in_c_have_its_instruction(
 def test_a_machine_with_its_instruction_compiles_for_a_chip(
     tables: list[ModuleType], tmp_path: Path
 ) -> None:
-    """`image.cpp` asks which version a verdict needs; the GCC of an AVR is the strictest."""
+    """`image.cpp` uses the table of versions. The GCC of an AVR is the strictest compiler."""
     need(avr.missing())
     shutil.copytree(SOURCES / "src" / "vm", tmp_path, dirs_exist_ok=True)
     (tmp_path / "bytecode.h").write_text(cpp_header.header("a test"), encoding="utf-8")

@@ -123,7 +123,10 @@ def test_a_word_with_a_value_does_what_its_instructions_do(program: str, meant: 
     assert compiled.program is not None
     for level in LEVELS.values():
         lacking, as_written = (
-            [(each.code, each.values) for each in find_misfits(its.source, its.program, KIT, level)]
+            [
+                (misfit.code, misfit.values)
+                for misfit in find_misfits(its.source, its.program, KIT, level)
+            ]
             for its in (compiled, compile_text(meant, KIT))
             if its.program is not None
         )
@@ -134,8 +137,8 @@ def test_a_word_with_a_value_does_what_its_instructions_do(program: str, meant: 
 
 def test_a_value_is_named_where_it_is_wrong() -> None:
     program = "SI|F(1, 80);WIGGLE(2 + UP)"
-    (found,) = compile_text(program, KIT).diagnostics
-    assert program[found.span.start : found.span.end] == "UP"
+    (diagnostic,) = compile_text(program, KIT).diagnostics
+    assert program[diagnostic.span.start : diagnostic.span.end] == "UP"
 
 
 def test_a_value_of_such_a_word_is_the_whole_of_one_value() -> None:
@@ -146,10 +149,10 @@ def test_a_value_of_such_a_word_is_the_whole_of_one_value() -> None:
     """
     for word in WORDS.values():
         for name in (its.name.upper() for its in word.arguments if word.stands_for):
-            said = rf"(?<!\w){name}(?!\w)"
+            pattern = rf"(?<!\w){name}(?!\w)"
             assert name not in WORDS, word
-            assert len(re.findall(said, word.stands_for)) == 1, word
-            is_whole = rf"[(,] *{said} *[,)]|= *{said} *(?:;|$)"
+            assert len(re.findall(pattern, word.stands_for)) == 1, word
+            is_whole = rf"[(,] *{pattern} *[,)]|= *{pattern} *(?:;|$)"
             assert re.search(is_whole, word.stands_for), word
 
 
@@ -163,7 +166,7 @@ def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
     assert compiled.program is not None
     sketch = sketch_of(compiled.source, compiled.program, ROBOT, "en")
     assert "beep(0.5, 440);" in sketch and "// HORN" in sketch
-    assert HORN.text in [each["text"] for each in description()["words"]]
+    assert HORN.text in [word["text"] for word in description()["words"]]
 
 
 @each_row("level", LEVELS.values())
@@ -257,13 +260,13 @@ def test_what_needs_no_more_than_the_table_has_a_word_with_a_role_of_its_own(
     tmp_path: Path,
 ) -> None:
     """No robot's reader knows it; it has a block, and a place on the poster and in references."""
-    found = in_fresh_process(OWN_ROLE, tmp_path)
-    assert all(found["lacked"])
-    packed, rows, _ = found["tables"].split("tini_progmem = {")[1:]
+    output = in_fresh_process(OWN_ROLE, tmp_path)
+    assert all(output["lacked"])
+    packed, rows, _ = output["tables"].split("tini_progmem = {")[1:]
     assert "// LAMP" in packed and "// LAMP" not in rows
-    assert found["block"] == ["plain_1", "SI|LAMP(50)\n", "{LAMP} LAMP"]
-    assert found["says"] == SAID["es"]
-    others = re.search(r"(?m)^- Otras instrucciones: .*$", found["reference"])
+    assert output["block"] == ["plain_1", "SI|LAMP(50)\n", "{LAMP} LAMP"]
+    assert output["says"] == SAID["es"]
+    others = re.search(r"(?m)^- Otras instrucciones: .*$", output["reference"])
     assert others and f"`LAMP(POWER)` {SAID['es']}" in others[0]
 
 
@@ -314,11 +317,11 @@ def test_a_page_that_is_full_is_an_error(monkeypatch: pytest.MonkeyPatch) -> Non
 )
 def test_it_is_in_the_references(document: str, language: str, says: str) -> None:
     row = rf"(?m)^- {says}: .*`HORN` = `BEEP\(0\.5, 440\)` (.*)$"
-    found = re.search(row, language_document(document, language))
+    match = re.search(row, language_document(document, language))
     with_values = {
         "WIGGLE(N)": WIGGLE, "DANCE(SECONDS, N)": DANCE, "SHAKE(BEATS, POWER)": SHAKE,
     }  # fmt: skip
-    assert found
-    assert found[1] == " ".join(
+    assert match
+    assert match[1] == " ".join(
         f"`{usage}` = `{word.stands_for}`" for usage, word in with_values.items()
     )

@@ -65,7 +65,7 @@ def repo(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def kept(repo: Path) -> set[str]:
+def repo_files(repo: Path) -> set[str]:
     """What is in the repository, before anything is built there."""
     return files_of(repo)
 
@@ -82,7 +82,7 @@ def built(repo: Path, what: str, target: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def wheel(repo: Path, kept: set[str], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def wheel(repo: Path, repo_files: set[str], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A wheel, unpacked: what pip installs."""
     stale = repo / "build" / "lib"
     for name in (
@@ -109,7 +109,7 @@ def wheel(repo: Path, kept: set[str], tmp_path_factory: pytest.TempPathFactory) 
 
 
 @pytest.fixture(scope="module")
-def unpacked(repo: Path, kept: set[str], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def unpacked(repo: Path, repo_files: set[str], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A source package, unpacked."""
     folder = tmp_path_factory.mktemp("sdist")
     shutil.unpack_archive(built(repo, "build_sdist", folder), folder / "unpacked")
@@ -130,10 +130,12 @@ def python(*words: str, folder: Path, **variables: str) -> subprocess.CompletedP
 
 
 def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
-    wheel: Path, kept: set[str]
+    wheel: Path, repo_files: set[str]
 ) -> None:
-    found = {name for name in files_of(wheel) if name.startswith("tiniscript/")}
-    package = {name.removeprefix("compiler/") for name in kept if name.startswith("compiler/")}
+    packed = {name for name in files_of(wheel) if name.startswith("tiniscript/")}
+    package = {
+        name.removeprefix("compiler/") for name in repo_files if name.startswith("compiler/")
+    }
     package = {
         name for name in package
         if not name.startswith("tiniscript/languages/")
@@ -142,11 +144,11 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
     package |= {f"tiniscript/languages/{name}" for name in cache_files()}
     sources = {
         SOURCES + name.removeprefix("vm_arduino/")
-        for name in kept
+        for name in repo_files
         if name.startswith("vm_arduino/src/")
         or name in ("vm_arduino/platformio.ini", "vm_arduino/partitions.csv")
     }
-    assert found == package | sources | {BUILT, CASES}
+    assert packed == package | sources | {BUILT, CASES}
     assert len(sources) > 50
 
 
@@ -212,8 +214,8 @@ def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, pa
     stand_in.write_text(BUILDS_PAGE)
     stand_in.chmod(0o755)
     ours, theirs = os.openpty()
-    said: list[bytes] = []
-    reader = Thread(target=lambda: said.extend(iter(lambda: rest_of(ours), b"")), daemon=True)
+    packages: list[bytes] = []
+    reader = Thread(target=lambda: packages.extend(iter(lambda: rest_of(ours), b"")), daemon=True)
     reader.start()
     command = [sys.executable, "-c", BUILD.format("build_wheel"), str(tmp_path)]
     stdin, stderr = (
@@ -225,7 +227,7 @@ def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, pa
     os.close(theirs)
     reader.join(HANGS_S)
     os.close(ours)
-    output = completed.stderr or b"".join(said).decode()
+    output = completed.stderr or b"".join(packages).decode()
     assert completed.returncode == 0, output
     assert "made without" in output and FIRMWARE_MISSING in output and CASES_MISSING in output
     assert (PAGE_MISSING in output) == (page == "none")
@@ -255,8 +257,8 @@ def test_an_installation_without_cases_names_the_command_that_makes_them(
     assert lacks.returncode == 2 and not lacks.stdout
     _, _, command = lacks.stderr.strip().rpartition(":  ")
     assert CASES_MISSING in command and str(package) in command
-    done = subprocess.run(shlex.split(command), cwd=sources, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    result = subprocess.run(shlex.split(command), cwd=sources, capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
     assert not (sources / "compiler" / CASES).exists()
     completed = tsc(PYTHONPATH=os.pathsep.join((str(package.parent), str(sources))))
     assert completed.returncode == 0, completed.stderr
@@ -266,9 +268,9 @@ def test_an_installation_without_cases_names_the_command_that_makes_them(
 # -- the source package
 
 
-def test_a_source_package_has_the_whole_repository(unpacked: Path, kept: set[str]) -> None:
-    found = {name for name in files_of(unpacked) if ".egg-info/" not in name}
-    assert found - ADDED == kept - ADDED
+def test_a_source_package_has_the_whole_repository(unpacked: Path, repo_files: set[str]) -> None:
+    packed = {name for name in files_of(unpacked) if ".egg-info/" not in name}
+    assert packed - ADDED == repo_files - ADDED
 
 
 @pytest.mark.sampled(of="source packages")

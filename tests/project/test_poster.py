@@ -44,8 +44,8 @@ def test_what_it_shows_can_be_typed() -> None:
         for code in line.text.split("   "):
             if "(" in code and not re.search(r"\bA\b|ELSEIF", code) and "RANDOM" not in code:
                 taught = "DEF SIDE(SIZE);F(SIZE CM, 60);END_DEF;" if code == "SIDE(30)" else ""
-                found = check_text(taught + code, kit)
-                assert found.is_right, (code, found.diagnostics)
+                compilation = check_text(taught + code, kit)
+                assert compilation.is_right, (code, compilation.diagnostics)
 
 
 @in_both

@@ -30,7 +30,7 @@ def test_a_rewrite_names_its_row(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "expected"),
     [
         ("F(2, 80)", []),
         ("1. F(2, 80)", ["1. F(2, 80): labels", "TS054 {'found': '1.'} made"]),
@@ -44,7 +44,7 @@ def test_a_rewrite_names_its_row(capsys: pytest.CaptureFixture[str]) -> None:
         ("W(1); XYZZY", ["W(1); XYZZY: no reader, so usage.py says what it knows of the mistake"]),
     ],
 )
-def test_what_is_said_of_a_text(text: str, said: list[str]) -> None:
-    found = "\n".join(readers.trace(text)).splitlines()
-    assert [line for line in found if line in said] == said
-    assert bool(found) == bool(said)
+def test_what_is_said_of_a_text(text: str, expected: list[str]) -> None:
+    lines = "\n".join(readers.trace(text)).splitlines()
+    assert [line for line in lines if line in expected] == expected
+    assert bool(lines) == bool(expected)

@@ -66,7 +66,7 @@ class Plugin:
 
     def __init__(self, commits: Sequence[str]) -> None:
         self.commits = commits
-        self.found: list[tuple[list[str], str]] = []
+        self.drawn: list[tuple[list[str], str]] = []
 
     def pytest_addoption(self, parser: pytest.Parser) -> None:
         sampling.add_options(parser)
@@ -83,7 +83,7 @@ class Plugin:
             sampling.leave_out(config, left)
             letters = sampling.some_of(config, "letters", "abcd", 2)
             names = [item.name for item in left]
-            self.found.append(([*names, *letters], sampling.said(config)))
+            self.drawn.append(([*names, *letters], sampling.how_to_repeat(config)))
 
 
 def collected(
@@ -98,70 +98,70 @@ def collected(
     options = ("-q", "--collect-only", "--import-mode=importlib", "-p", "no:cacheprovider",
                "-p", "no:xdist", *words, f"{asked}")  # fmt: skip
     assert pytest.main([*options], [plugin]) == pytest.ExitCode.OK
-    return plugin.found
+    return plugin.drawn
 
 
 def test_each_value_is_in_each_sample_and_each_row_in_one(tmp_path: Path) -> None:
     commits = [*map(str, range(15)), "7"]
     drawn = collected(tmp_path, commits=commits)
-    seen = Counter[str]()
-    for commit, (found, said) in zip(commits, drawn, strict=True):
-        assert f"--sample {commit} " in said
-        count = Counter(name.partition("[")[0] for name in found)
+    counts = Counter[str]()
+    for commit, (names, output) in zip(commits, drawn, strict=True):
+        assert f"--sample {commit} " in output
+        count = Counter(name.partition("[")[0] for name in names)
         assert (count["test_case"], count["test_pin"], count["test_usual"]) == (20, 2, 1)
         assert count["test_board"] + count["test_other_board"] == 2
-        cases = [name[len("test_case[") : -1].split("-") for name in found if "_case" in name]
+        cases = [name[len("test_case[") : -1].split("-") for name in names if "_case" in name]
         assert [int(case) for case, _ in cases] == list(range(20))
         assert set(Counter(chip for _, chip in cases).values()) == {6, 7}
-        kits = {name.split("[")[1][0] for name in found if "same_kit" in name}
-        kits |= {name[:-1].split("-")[1] for name in found if "test_kit" in name}
+        kits = {name.split("[")[1][0] for name in names if "same_kit" in name}
+        kits |= {name[:-1].split("-")[1] for name in names if "test_kit" in name}
         assert count["test_kit"] == 5 and len(kits) == 1
         assert sum(count[letter] for letter in "abcd") == 2
-        seen.update(found)
-    assert sum("_case" in name for name in seen) > 55
-    assert sum("board" in name for name in seen) == 3
-    assert sum("same_kit" in name for name in seen) == 4
-    assert set("abcd") <= set(seen)
+        counts.update(names)
+    assert sum("_case" in name for name in counts) > 55
+    assert sum("board" in name for name in counts) == 3
+    assert sum("same_kit" in name for name in counts) == 4
+    assert set("abcd") <= set(counts)
     assert drawn[7] == drawn[15]
-    ((asked, said),) = collected(tmp_path, "-k", "not usual")  # which asks for none
-    assert sum("_case" in name for name in asked) == 20 and said
+    ((asked, output),) = collected(tmp_path, "-k", "not usual")  # which asks for none
+    assert sum("_case" in name for name in asked) == 20 and output
 
 
 @pytest.mark.parametrize(
     ("words", "of"), [(["--whole"], ""), (["-k", "case"], ""), ([], "::test_case")]
 )
 def test_what_is_asked_for_has_all_its_rows(words: list[str], of: str, tmp_path: Path) -> None:
-    ((found, said),) = collected(tmp_path, *words, of=of)
-    assert sum("_case" in name for name in found) == 60 and said == ""
-    assert found[-4:] == [*"abcd"]
+    ((names, output),) = collected(tmp_path, *words, of=of)
+    assert sum("_case" in name for name in names) == 60 and output == ""
+    assert names[-4:] == [*"abcd"]
 
 
 def test_of_files_some_are_whole_and_each_of_them_some_time(tmp_path: Path) -> None:
     commits = [*map(str, range(20)), "7"]
-    seen = Counter[str]()
+    counts = Counter[str]()
     drawn = collected(tmp_path, of=None, commits=commits)
-    for found, _ in drawn:
-        names = [name for name in found if any(side in name for side in SIDES)]
+    for collected_names, _ in drawn:
+        names = [name for name in collected_names if any(side in name for side in SIDES)]
         whole = [name.removeprefix("test_more_of_") for name in names if "more_of" in name]
         assert len(whole) == 2 and len(names) == 4
         assert {name.partition("[")[0] for name in names if "more" not in name} == {
             f"test_{side}" for side in whole
         }
-        seen.update(names)
-    assert len(seen) == 3 * len(SIDES)
+        counts.update(names)
+    assert len(counts) == 3 * len(SIDES)
     assert drawn[7] == drawn[20]
     left = f"{tmp_path / 'test_left.py'}"
     for commit in commits:
-        ((found, _),) = collected(tmp_path, left, of=None, commits=[commit])
-        assert "test_more_of_left" in found  # it was named
-    ((found, _),) = collected(tmp_path, "--whole", of=None)
-    assert sum(side in name for name in found for side in SIDES) == 3 * len(SIDES)
+        ((collected_names, _),) = collected(tmp_path, left, of=None, commits=[commit])
+        assert "test_more_of_left" in collected_names  # it was named
+    ((collected_names, _),) = collected(tmp_path, "--whole", of=None)
+    assert sum(side in name for name in collected_names for side in SIDES) == 3 * len(SIDES)
 
 
 def test_a_tenth_of_the_long_tests_is_drawn_and_each_of_them_some_time(tmp_path: Path) -> None:
     def long_tests(*words: str, of: str | None = None, commit: str = "7") -> list[str]:
-        ((found, _),) = collected(tmp_path, *words, of=of, commits=[commit])
-        return [name for name in found if name.startswith("test_long")]
+        ((names, _),) = collected(tmp_path, *words, of=of, commits=[commit])
+        return [name for name in names if name.startswith("test_long")]
 
     assert long_tests() == []
     assert len(long_tests("--whole")) == len(long_tests(of="")) == 20
@@ -172,11 +172,11 @@ def test_a_tenth_of_the_long_tests_is_drawn_and_each_of_them_some_time(tmp_path:
 
 
 def test_all_rows_of_one_test_run_and_each_that_fails_is_named() -> None:
-    seen = []
+    lines = []
 
     @each_row("name, number", [("a", 1), ("b", 2), pytest.param("c", 3, id="third"), ("d", 4)])
     def test(number: int, name: str, lang: str) -> None:
-        seen.append(name + lang)
+        lines.append(name + lang)
         assert number != 2, "two"
         if name == "c":
             raise KeyError(name)
@@ -184,7 +184,7 @@ def test_all_rows_of_one_test_run_and_each_that_fails_is_named() -> None:
     assert list(inspect.signature(test).parameters) == ["lang"]
     with pytest.raises(AssertionError) as why:
         test(lang="en")
-    assert seen == ["aen", "ben", "cen", "den"]
+    assert lines == ["aen", "ben", "cen", "den"]
     first, second = str(why.value).split("\n\n")
     assert first.startswith("('b', 2): AssertionError: two")
     assert second == "third: KeyError: 'c'"

@@ -76,12 +76,12 @@ def ci(folder: Path) -> tuple[list[str], dict[str, str]]:
 @pytest.mark.skipif(os.geteuid() == 0, reason="root is another user there")
 def test_ci_runs_the_tests_as_users_do(tmp_path: Path) -> None:
     """Without what hides failing tests; with the pip configuration that the machine has."""
-    rows, seen = ci(tmp_path / "clone")
+    rows, environment = ci(tmp_path / "clone")
     assert rows[0].startswith("BARE=-m not root, ")
     assert rows[1].startswith("--tenth -m not root, ")
-    assert not set(SPECIAL) & set(seen)
-    assert (seen["CI"], seen["PIP_INDEX_URL"]) == ("true", "file:///no 'ne")
-    assert int(seen["FILES"]) == 1024
+    assert not set(SPECIAL) & set(environment)
+    assert (environment["CI"], environment["PIP_INDEX_URL"]) == ("true", "file:///no 'ne")
+    assert int(environment["FILES"]) == 1024
 
 
 @pytest.mark.root
@@ -89,17 +89,20 @@ def test_ci_of_root_runs_the_tests_as_a_new_user(tmp_path: Path) -> None:
     """With packages of Debian, and the tests of other users, by root; again and again."""
     clone = tmp_path / "clone"
     for _ in range(2):
-        rows, seen = ci(clone)
-        assert {*rows[:2]} == {"packages by 0", f"BARE=-m not root, {seen['USER']}"}
-        assert rows[2] == f"--tenth -m not root, {seen['USER']}"
+        rows, environment = ci(clone)
+        assert {*rows[:2]} == {"packages by 0", f"BARE=-m not root, {environment['USER']}"}
+        assert rows[2] == f"--tenth -m not root, {environment['USER']}"
         assert rows[-1] == "-m pytest -n 2 -p no:cacheprovider -m root tests/x.py by 0"
-        assert not {*SPECIAL, "SECRET"} & set(seen)
-        assert (seen["CI"], seen["PIP_INDEX_URL"]) == ("true", "file:///no 'ne")
-        assert (seen["https_proxy"], seen["FILES"]) == ("http://p:1", "1024")
-        assert (seen["PIP"], seen["NPM"]) == ("[global] of root", "registry of root")
-        assert (seen["HISTORY"], seen["THERE"]) == ("first", ".ci .git new tests tools ")
-        assert seen["HOME"].startswith("/home/") and not Path(seen["HOME"]).exists()
-        assert subprocess.run(["id", seen["USER"]], capture_output=True).returncode
+        assert not {*SPECIAL, "SECRET"} & set(environment)
+        assert (environment["CI"], environment["PIP_INDEX_URL"]) == ("true", "file:///no 'ne")
+        assert (environment["https_proxy"], environment["FILES"]) == ("http://p:1", "1024")
+        assert (environment["PIP"], environment["NPM"]) == ("[global] of root", "registry of root")
+        assert (environment["HISTORY"], environment["THERE"]) == (
+            "first",
+            ".ci .git new tests tools ",
+        )
+        assert environment["HOME"].startswith("/home/") and not Path(environment["HOME"]).exists()
+        assert subprocess.run(["id", environment["USER"]], capture_output=True).returncode
         shutil.rmtree(clone)
 
 
@@ -319,8 +322,10 @@ def test_an_old_python_is_told_where_to_get_one(
 def test_a_computer_without_internet_is_told_of_proxies_and_the_stick(folder: Path) -> None:
     """Before what pip says of itself, of which the end is enough."""
     python = folder / ".venv" / "bin" / "python"
-    said = "  Traceback (most recent call last)\n  ERROR: no setuptools\nERROR: no network\n"
-    python.write_text(f"#!/bin/sh\ncase $* in *' install '*) printf '{said}' >&2; exit 1;; esac\n")
+    output = "  Traceback (most recent call last)\n  ERROR: no setuptools\nERROR: no network\n"
+    python.write_text(
+        f"#!/bin/sh\ncase $* in *' install '*) printf '{output}' >&2; exit 1;; esac\n"
+    )
     completed = subprocess.run(
         [sys.executable, str(folder / "tools" / "environment.py"), "[virtual]"],
         capture_output=True, encoding="utf-8",
@@ -332,7 +337,7 @@ def test_a_computer_without_internet_is_told_of_proxies_and_the_stick(folder: Pa
     assert "HTTPS_PROXY" in completed.stderr and "USB" in completed.stderr
     assert "Traceback" not in completed.stderr
     assert completed.stderr.endswith("\nERROR: no setuptools\nERROR: no network\n")
-    assert (folder / ".venv" / "pip.log").read_text() == said
+    assert (folder / ".venv" / "pip.log").read_text() == output
 
 
 def test_the_first_command_drives_the_virtual_robot(
@@ -433,6 +438,6 @@ def test_every_sentence_of_the_first_command_has_all_languages() -> None:
     from tools import environment
 
     for table in (environment.TEXTS, load_first_command().TEXTS):
-        for said in table.values():
-            assert len({*said}) == len(environment.LANGUAGES)
-            assert len({frozenset(re.findall(r"\{\w+\}", each)) for each in said}) == 1
+        for sentences in table.values():
+            assert len({*sentences}) == len(environment.LANGUAGES)
+            assert len({frozenset(re.findall(r"\{\w+\}", text)) for text in sentences}) == 1

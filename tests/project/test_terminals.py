@@ -46,21 +46,21 @@ def played(lines: list[str], language: str) -> list[str]:
     from tiniscript.virtual.robot import VirtualRobot
 
     robot = VirtualRobot(robots.load("tinibot").with_language(language), floor())
-    found = []
+    transcript = []
     for k, line in enumerate(lines):
         if line.startswith(ANSWER):
             continue
         wanted = next(
-            (n for n, each in enumerate(lines[k + 1 :]) if not each.startswith(ANSWER)),
+            (n for n, line in enumerate(lines[k + 1 :]) if not line.startswith(ANSWER)),
             len(lines) - k - 1,
         )
-        said = robot.step(robot.now_ms + 1, line.encode() + b"\r\n")
+        data = robot.step(robot.now_ms + 1, line.encode() + b"\r\n")
         end_ms = robot.now_ms + LONGEST_MS
-        while said.count(b"\n") < wanted and robot.now_ms < end_ms:
-            said += robot.step(robot.now_ms + 1)
-        said += robot.step(robot.now_ms + SILENT_MS)
-        found += [line, *said.decode().splitlines()]
-    return found
+        while data.count(b"\n") < wanted and robot.now_ms < end_ms:
+            data += robot.step(robot.now_ms + 1)
+        data += robot.step(robot.now_ms + SILENT_MS)
+        transcript += [line, *data.decode().splitlines()]
+    return transcript
 
 
 @pytest.mark.parametrize(("language", "lines"), EVERY)

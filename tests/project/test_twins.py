@@ -151,15 +151,19 @@ def methods_in_cpp(file: str, name: str) -> set[str]:
 def attributes_in_python(file: str, name: str) -> set[str]:
     """Return the names of public attributes that a class sets."""
     tree = ast.parse((PYTHON / file).read_text(encoding="utf-8"))
-    body = next(each for each in tree.body if isinstance(each, ast.ClassDef) and each.name == name)
+    body = next(
+        statement
+        for statement in tree.body
+        if isinstance(statement, ast.ClassDef) and statement.name == name
+    )
     return {
-        each.attr
-        for each in ast.walk(body)
-        if isinstance(each, ast.Attribute)
-        and isinstance(each.ctx, ast.Store)
-        and isinstance(each.value, ast.Name)
-        and each.value.id == "self"
-        and not each.attr.startswith("_")
+        node.attr
+        for node in ast.walk(body)
+        if isinstance(node, ast.Attribute)
+        and isinstance(node.ctx, ast.Store)
+        and isinstance(node.value, ast.Name)
+        and node.value.id == "self"
+        and not node.attr.startswith("_")
     }
 
 
@@ -178,16 +182,19 @@ def methods_in_python(file: str, name: str) -> Iterator[str]:
 
 @each_row("twins", [TASKS, MACHINES, RECEIVERS])
 def test_twins_have_the_same_names(twins: Twins) -> None:
-    cpp = {each for row in twins.cpp for each in methods_in_cpp(*row)}
-    python = {each for row in twins.python for each in methods_in_python(*row)}
+    cpp = {name for row in twins.cpp for name in methods_in_cpp(*row)}
+    python = {name for row in twins.python for name in methods_in_python(*row)}
     if twins.has_attributes:
         python = python.union(*(attributes_in_python(*row) for row in twins.python))
     assert len(cpp & python) > 5
     assert cpp - python == set(twins.in_cpp)
     assert python - cpp == set(twins.in_python)
-    for said, names in ((twins.in_cpp, python), (twins.in_python, cpp)):
+    for reason_by_name, names in ((twins.in_cpp, python), (twins.in_python, cpp)):
         named = {
-            word.strip(" _") for each in said.values() if each[0] != "(" for word in each.split(",")
+            word.strip(" _")
+            for names in reason_by_name.values()
+            if names[0] != "("
+            for word in names.split(",")
         }
         assert named <= names
 
@@ -225,5 +232,5 @@ def test_what_both_keep_of_a_program_has_one_name() -> None:
     }  # fmt: skip
     assert cpp - python == only_cpp.keys()
     assert {"clock_ms", "pc", "random_state", "stack", "started_ms", "variables"} <= cpp & python
-    for said in only_cpp.values():
-        assert said.startswith("(") or {*said.split(", ")} <= python
+    for reason in only_cpp.values():
+        assert reason.startswith("(") or {*reason.split(", ")} <= python

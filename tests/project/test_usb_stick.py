@@ -39,13 +39,13 @@ def stick(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def wheel_of(found: Distribution, folder: Path) -> None:
+def wheel_of(distribution: Distribution, folder: Path) -> None:
     """Make a wheel of what is installed."""
-    name = re.sub(r"[-.]+", "_", found.metadata["Name"])
-    tag = re.findall(r"(?m)^Tag: (\S+)$", found.read_text("WHEEL") or "")[-1]
+    name = re.sub(r"[-.]+", "_", distribution.metadata["Name"])
+    tag = re.findall(r"(?m)^Tag: (\S+)$", distribution.read_text("WHEEL") or "")[-1]
     rows = []
-    with zipfile.ZipFile(folder / f"{name}-{found.version}-{tag}.whl", "w") as wheel:
-        for file in found.files or ():
+    with zipfile.ZipFile(folder / f"{name}-{distribution.version}-{tag}.whl", "w") as wheel:
+        for file in distribution.files or ():
             inside = file.as_posix()
             if ".." in inside or inside.endswith((".pyc", "RECORD", "INSTALLER", "REQUESTED")):
                 continue
@@ -62,22 +62,22 @@ def installed(root: str, extras: set[str]) -> dict[str, Distribution]:
     """Return a distribution's requirements, and theirs, that this computer has."""
     from packaging.requirements import Requirement
 
-    found: dict[str, Distribution] = {}
+    distributions: dict[str, Distribution] = {}
     waiting = [(root, extras)]
     while waiting:
         name, wanted = waiting.pop()
         package = distribution(name)
         for text in package.requires or ():
             need = Requirement(text)
-            environments = [{"extra": each} for each in wanted] or [{"extra": ""}]
+            environments = [{"extra": extra} for extra in wanted] or [{"extra": ""}]
             if need.marker and not any(
                 need.marker.evaluate(environment) for environment in environments
             ):
                 continue
-            if need.name not in found:
-                found[need.name] = distribution(need.name)
+            if need.name not in distributions:
+                distributions[need.name] = distribution(need.name)
                 waiting.append((need.name, set(need.extras)))
-    return found
+    return distributions
 
 
 @pytest.mark.sampled(of="sticks that pip reads")
@@ -87,8 +87,8 @@ def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
             pytest.skip(f"no package {needed}")
     wheels = stick / "wheels"
     wheels.mkdir()
-    for each in installed("tiniscript", {"radio", "virtual"}).values():
-        wheel_of(each, wheels)
+    for installed_one in installed("tiniscript", {"radio", "virtual"}).values():
+        wheel_of(installed_one, wheels)
     copy = tmp_path / "copy"  # a build leaves folders behind
     copy.mkdir()
     for name in ("compiler", "vm_arduino", "pyproject.toml", "setup.py", "README.md", "LICENSE"):
@@ -252,14 +252,14 @@ def test_a_phone_shows_each_page_of_a_teacher_whole(stick: Path) -> None:
     slides = "getComputedStyle(document.querySelector('.slide')).display"
     with studio.driver(of_studio=False) as driver, studio.browser(driver) as browser:
         phone = browser.new_page(viewport={"width": 390, "height": 844})
-        found = {}
+        sizes = {}
         for page in pages:
             phone.goto(page.as_uri(), wait_until="domcontentloaded")
-            found[page.name] = phone.evaluate(f"[{wide}, {cut}]")
+            sizes[page.name] = phone.evaluate(f"[{wide}, {cut}]")
             is_drawn = page.parent == stick / "pages" / "wiring"
             assert not is_drawn or phone.evaluate(slides) == "block"
-    assert {name: value for name, value in found.items() if value != [False, 0]} == {}
-    assert len(found) > 20
+    assert {name: value for name, value in sizes.items() if value != [False, 0]} == {}
+    assert len(sizes) > 20
 
 
 def test_a_folder_with_something_in_it_is_left_alone(tmp_path: Path) -> None:
@@ -271,7 +271,7 @@ def test_a_folder_with_something_in_it_is_left_alone(tmp_path: Path) -> None:
 def wheel(folder: Path, name: str, needs: Sequence[str] = (), tag: str = "py3-none-any") -> Path:
     """Make a wheel with nothing in it."""
     head = f"Metadata-Version: 2.1\nName: {name}\nVersion: 1\n"
-    head += "".join(f"Requires-Dist: {each}\n" for each in needs)
+    head += "".join(f"Requires-Dist: {need}\n" for need in needs)
     path = folder / f"{name}-1-{tag}.whl"
     with zipfile.ZipFile(path, "w") as zip_file:
         zip_file.writestr(f"{name}-1.dist-info/METADATA", head)
@@ -302,8 +302,8 @@ def test_markers_are_those_of_the_target(tmp_path: Path) -> None:
         ("windows", "3.12", {"only_windows"}),
         ("mac-apple", "3.10", {"only_old"}),
     ):
-        found = fetched(tmp_path, tmp_path / f"{system}{python}", system, python, ours)
-        assert {each.split("-")[0] for each in found} == {"robot", *wanted}
+        names = fetched(tmp_path, tmp_path / f"{system}{python}", system, python, ours)
+        assert {name.split("-")[0] for name in names} == {"robot", *wanted}
 
 
 def test_linux_gets_the_wheel_with_the_parts_in_c(tmp_path: Path) -> None:
@@ -315,9 +315,9 @@ def test_linux_gets_the_wheel_with_the_parts_in_c(tmp_path: Path) -> None:
 
 def test_a_wheel_without_its_parts_in_c_is_for_every_system(tmp_path: Path) -> None:
     old = tmp_path / "thing-1-cp311-cp311-linux_x86_64.whl"
-    said = "Wheel-Version: 1.0\nRoot-Is-Purelib: false\nTag: cp311-cp311-linux_x86_64\n"
+    metadata = "Wheel-Version: 1.0\nRoot-Is-Purelib: false\nTag: cp311-cp311-linux_x86_64\n"
     files = {"thing/__init__.py": "", "thing/fast.cpython-311-x86_64-linux-gnu.so": "x",
-             "thing-1.dist-info/WHEEL": said, "thing-1.dist-info/RECORD": ""}  # fmt: skip
+             "thing-1.dist-info/WHEEL": metadata, "thing-1.dist-info/RECORD": ""}  # fmt: skip
     with zipfile.ZipFile(old, "w") as wheel:
         for name, text in files.items():
             wheel.writestr(zipfile.ZipInfo(name, (2020, 1, 2, 3, 4, 6)), text)
@@ -327,16 +327,16 @@ def test_a_wheel_without_its_parts_in_c_is_for_every_system(tmp_path: Path) -> N
     assert path.name == "thing-1-py3-none-any.whl"
     with zipfile.ZipFile(path) as wheel:
         assert {row.date_time for row in wheel.infolist()} == {when}, "another time, other bytes"
-        assert not [each for each in wheel.namelist() if each.endswith(".so")]
-        said = wheel.read("thing-1.dist-info/WHEEL").decode()
-        assert "Root-Is-Purelib: true" in said
-        assert re.findall(r"(?m)^Tag: (.*)$", said) == ["py3-none-any"]
+        assert not [path for path in wheel.namelist() if path.endswith(".so")]
+        metadata = wheel.read("thing-1.dist-info/WHEEL").decode()
+        assert "Root-Is-Purelib: true" in metadata
+        assert re.findall(r"(?m)^Tag: (.*)$", metadata) == ["py3-none-any"]
         record = wheel.read("thing-1.dist-info/RECORD").decode()
     assert len(record.splitlines()) == 3
 
 
 def test_a_stick_is_for_each_python_that_tsc_is_for() -> None:
     assert PYTHONS[0] == "3.10"
-    assert [int(each.split(".")[1]) for each in PYTHONS] == list(range(10, 10 + len(PYTHONS)))
+    assert [int(version.split(".")[1]) for version in PYTHONS] == list(range(10, 10 + len(PYTHONS)))
     title = usb_stick.__doc__ or ""
     assert f"Python {PYTHONS[0]} to {PYTHONS[-1]}" in title

@@ -20,7 +20,7 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
 from tests.support.rows import each_row
-from tests.support.texts import said as said_in
+from tests.support.texts import catalogue_texts as said_in
 from tiniscript.base import files
 from tiniscript.base.languages import languages
 from tiniscript.cli import EXIT_OF_CLOSED_PIPE, streams
@@ -58,10 +58,10 @@ def test_an_output_that_windows_would_lose_is_refused(
     monkeypatch.chdir(tmp_path)
     Path("prog.ts").write_text(PROGRAM)
     monkeypatch.setattr(sys, "platform", "win32")
-    for language, said in (("en", "file with this name"), ("es", "este nombre")):
-        done = tsc("compile", "prog.ts", "-o", "aux.bin", "--lang", language)
-        assert done.code == 2
-        assert said in done.err
+    for language, expected in (("en", "file with this name"), ("es", "este nombre")):
+        result = tsc("compile", "prog.ts", "-o", "aux.bin", "--lang", language)
+        assert result.code == 2
+        assert expected in result.err
     assert not Path("aux.bin").exists()
     assert tsc("compile", "prog.ts", "-o", "good.bin").code == 0
 
@@ -76,8 +76,8 @@ def test_a_device_is_no_program(tsc: Tsc, tmp_path: Path, monkeypatch: pytest.Mo
     assert tsc("check", *names).code == 0
     monkeypatch.setattr(sys, "platform", "win32")
     for name in names:
-        done = tsc("check", name, "--lang", "en")
-        assert done.code == 2 and "there is no file" in done.err, name
+        result = tsc("check", name, "--lang", "en")
+        assert result.code == 2 and "there is no file" in result.err, name
         assert is_device(name) and not is_device(f"{name}/prog.ts"), name
     assert not is_device("console.ts")
 
@@ -89,19 +89,19 @@ def test_a_pattern_means_its_files(
     monkeypatch.chdir(tmp_path)
     for name in ("b.ts", "a.ts", "[1].ts", "notes.txt"):
         Path(name).write_text("SI|F(2 80)\n")
-    done = tsc("check", "*.ts", "--lang", "en")
-    assert done.code == 2 and "there is no file *.ts" in done.err
+    result = tsc("check", "*.ts", "--lang", "en")
+    assert result.code == 2 and "there is no file *.ts" in result.err
     from serial.tools import list_ports  # noqa: F401 - it looks at the platform when imported
 
     monkeypatch.setattr(sys, "platform", "win32")
     assert tsc("check", "--fix", "?.ts", "[1]*.ts", "--lang", "en").code == 0
     for name in ("b.ts", "a.ts", "[1].ts"):
         assert Path(name).read_text() == "SI|F(2, 80)\n"
-    done = tsc("check", "*.ts", "b.ts", "--lang", "en")
-    assert [line for line in done.out.splitlines() if line.startswith("programs: 3")]
+    result = tsc("check", "*.ts", "b.ts", "--lang", "en")
+    assert [line for line in result.out.splitlines() if line.startswith("programs: 3")]
     assert Path("notes.txt").read_text() == "SI|F(2 80)\n"
-    done = tsc("check", "*.tini", "--lang", "en")
-    assert done.code == 2 and "*.tini" in done.err
+    result = tsc("check", "*.tini", "--lang", "en")
+    assert result.code == 2 and "*.tini" in result.err
 
 
 # -- texts
@@ -119,28 +119,28 @@ def test_a_program_of_notepad_is_the_same_program(
             text = begin + program.replace("\n", end)
             Path(f"{kind}_{name}.ts").write_bytes(text.encode())
         assert tsc("compile", f"right_{name}.ts").code == 0
-        done = tsc("check", f"wrong_{name}.ts")
-        assert done.code == 1
-        outputs.add(done.out + done.err)
+        result = tsc("check", f"wrong_{name}.ts")
+        assert result.code == 1
+        outputs.add(result.out + result.err)
     assert Path("right_a.bin").read_bytes() == Path("right_b.bin").read_bytes()
-    assert len({each.replace("wrong_b", "wrong_a") for each in outputs}) == 1
+    assert len({output.replace("wrong_b", "wrong_a") for output in outputs}) == 1
 
 
 # -- outputs that are no terminal
 
 
-def encoded(said: str, encoding: str) -> str:
+def encoded(text: str, encoding: str) -> str:
     """Return what is read of a sentence that was written in an encoding."""
     streams.register()
-    return said.encode(encoding, streams.ERROR_HANDLER).decode(encoding)
+    return text.encode(encoding, streams.ERROR_HANDLER).decode(encoding)
 
 
 @each_row("encoding", ["cp1252", "cp850", "cp437"])
 def test_every_sentence_can_be_read_in_an_encoding_of_windows(encoding: str) -> None:
-    said = [each for language in languages() for each in said_in(language).values()]
-    assert len(said) > 500
-    for each in said:
-        assert "\\u" not in encoded(each, encoding), each
+    sentences = [sentence for language in languages() for sentence in said_in(language).values()]
+    assert len(sentences) > 500
+    for sentence in sentences:
+        assert "\\u" not in encoded(sentence, encoding), sentence
 
 
 def test_signs_without_a_code_become_plain_ones() -> None:
@@ -403,7 +403,11 @@ def test_a_file_that_is_open_elsewhere_is_replaced_a_moment_later(
 
 def test_programs_on_a_command_line_stand_in_double_quotes() -> None:
     """PowerShell, cmd and every shell take those; cmd hands single ones on to tsc."""
-    said = [each for language in languages() for each in said_in(language).values()]
+    sentences = [sentence for language in languages() for sentence in said_in(language).values()]
     pages = [*ROOT.glob("README*.md"), *ROOT.glob("docs/*/*.md"), *ROOT.glob("tools/try*")]
-    said += [page.read_text(encoding="utf-8") for page in pages]
-    assert not [found for each in said for found in re.findall(r"(?:-e|tsc live) '[^']*'", each)]
+    sentences += [page.read_text(encoding="utf-8") for page in pages]
+    assert not [
+        command
+        for sentence in sentences
+        for command in re.findall(r"(?:-e|tsc live) '[^']*'", sentence)
+    ]

@@ -28,8 +28,8 @@ THEIRS = {"apt-get", "git", "env", "sh", "py", "python", "python3", ".venv/bin/p
 
 
 def loaded(path: Path) -> dict[str, Any]:
-    found: dict[str, Any] = yaml.load(path.read_text(encoding="utf-8"), Loader=yaml.BaseLoader)
-    return found
+    workflow: dict[str, Any] = yaml.load(path.read_text(encoding="utf-8"), Loader=yaml.BaseLoader)
+    return workflow
 
 
 def steps() -> Iterator[tuple[str, dict[str, Any]]]:
@@ -41,11 +41,11 @@ def steps() -> Iterator[tuple[str, dict[str, Any]]]:
 
 def commands() -> list[list[str]]:
     """Return every command of every step, as words of a shell."""
-    found = []
+    lines = []
     for _, step in steps():
         for line in step.get("run", "").replace("\\", "/").splitlines():
-            found += [shlex.split(part) for part in line.split("&&")]
-    return found
+            lines += [shlex.split(part) for part in line.split("&&")]
+    return lines
 
 
 def test_a_workflow_is_well_formed_and_trusts_nobody() -> None:
@@ -118,9 +118,9 @@ def test_lines_of_tsc_do_what_they_should() -> None:
     ours = [words for words in commands() if words[0] == "tsc"]
     assert len(ours) == 2
     for words in ours:
-        done = process(*words[1:])
-        assert done.code == 0, done.err
-    assert "drove" in done.out + done.err
+        result = process(*words[1:])
+        assert result.code == 0, result.err
+    assert "drove" in result.out + result.err
 
 
 def test_the_rehearsal_knows_its_options(capsys: pytest.CaptureFixture[str]) -> None:
@@ -131,5 +131,5 @@ def test_the_rehearsal_knows_its_options(capsys: pytest.CaptureFixture[str]) -> 
     options = [word for word in words if word.startswith("--")]
     options += re.findall(r"'(--[a-z-]+)'", (FOLDER / "release.yml").read_text(encoding="utf-8"))
     assert len(options) == 2
-    for each in options:
-        assert each in known
+    for option in options:
+        assert option in known

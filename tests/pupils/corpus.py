@@ -40,32 +40,34 @@ class Entry(NamedTuple):
 
     language: str
     program: str
-    said: tuple[str, ...]
+    messages: tuple[str, ...]
     mended: str | None
     asides: tuple[str, ...] = ()
 
 
 @cache
 def entries() -> tuple[Entry, ...]:
-    found = []
+    entries = []
     for language in LANGUAGES:
         for part in PART.findall((FOLDER / f"{language}.txt").read_text(encoding="utf-8")):
-            program, rows, changed = (each.split("\n")[:-1] for each in part)
+            program, rows, changed = (rows.split("\n")[:-1] for rows in part)
             asides = tuple(row for row in rows if row.startswith((INTENT, MEANT)))
-            said = [row for row in rows if row not in asides]
-            messages = tuple(row.partition(" ")[2].partition(FOR)[0] for row in said if row != ">")
-            mended = _mended(program, said, changed)
-            found.append(Entry(language, "\n".join(program), messages, mended, asides))
-    return tuple(found)
+            message_rows = [row for row in rows if row not in asides]
+            messages = tuple(
+                row.partition(" ")[2].partition(FOR)[0] for row in message_rows if row != ">"
+            )
+            mended = _mended(program, message_rows, changed)
+            entries.append(Entry(language, "\n".join(program), messages, mended, asides))
+    return tuple(entries)
 
 
-def _mended(program: list[str], said: list[str], changed: list[str]) -> str | None:
+def _mended(program: list[str], messages: list[str], changed: list[str]) -> str | None:
     """Return the program that the rows below it say, or None where they change nothing."""
     if changed and not changed[0][1:2].isdigit():
         return "\n".join(row[1:].removeprefix(" ") for row in changed)
     lines = [line.rstrip() for line in program]
     rows = [row[1:].split(" ", 1) for row in changed]
-    for row in said:
+    for row in messages:
         if row.startswith(">="):
             number, _, fix = row[3:].split(" ", 2)
             line = program[int(number) - 1]
@@ -106,40 +108,44 @@ def found_in(entry: Entry) -> Entry:
     source = Source(program)
     messages = [message(diagnostic, source, "es") for diagnostic in diagnostics]
     mended = repair_program(program, check).text
-    said = tuple(f"{each.line} {each.code} {each.fix}".rstrip() for each in messages)
-    kept = "\n".join(line.rstrip() for line in mended.split("\n"))  # as the file keeps it
-    return entry._replace(said=said, mended=kept or None if mended != program else None)
+    rows_of_messages = tuple(
+        f"{message.line} {message.code} {message.fix}".rstrip() for message in messages
+    )
+    new_program = "\n".join(line.rstrip() for line in mended.split("\n"))  # as the file keeps it
+    return entry._replace(
+        messages=rows_of_messages, mended=new_program or None if mended != program else None
+    )
 
 
-def write(found: list[Entry]) -> None:
-    for language in {entry.language for entry in found}:
-        rows = [row for entry in found if entry.language == language for row in _rows(entry)]
+def write(entries: list[Entry]) -> None:
+    for language in {entry.language for entry in entries}:
+        rows = [row for entry in entries if entry.language == language for row in _rows(entry)]
         (FOLDER / f"{language}.txt").write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
 def _rows(entry: Entry) -> list[str]:
     """Return a program and what is said of it, as the file has them."""
-    said = [f"> {each}" for each in entry.said]
+    message_rows = [f"> {row}" for row in entry.messages]
     above = [entry.program, *entry.asides]
     if entry.mended is None:
-        return [*above, *(said or [">"])]
+        return [*above, *(message_rows or [">"])]
     program, mended = entry.program.split("\n"), entry.mended.split("\n")
     pairs = enumerate(zip(program, mended, strict=False), 1)
     changed = {number: new for number, (old, new) in pairs if old.rstrip() != new}
-    marked = list(said)
-    for k, each in enumerate(entry.said):
-        number, _, fix = (*each.split(" ", 2), "")[:3]
+    marked = list(message_rows)
+    for k, row in enumerate(entry.messages):
+        number, _, fix = (*row.split(" ", 2), "")[:3]
         line, new = program[int(number) - 1], changed.get(int(number))
         if fix and new == _indent(line) + fix:
-            marked[k] = f">= {each}"
+            marked[k] = f">= {row}"
             del changed[int(number)]
         elif fix and new is not None and (part := _part(line, fix, new)):
-            marked[k] = f">= {each}{FOR}{part}"
+            marked[k] = f">= {row}{FOR}{part}"
             del changed[int(number)]
     rows = [f"={number} {line}".rstrip() for number, line in changed.items()]
     if _mended(program, marked, rows) == entry.mended:
         return [*above, *marked, *rows]
-    return [*above, *said, *(f"= {line}".rstrip() for line in mended)]
+    return [*above, *message_rows, *(f"= {line}".rstrip() for line in mended)]
 
 
 # Mistakes whose repair writes a number in another way: a unit, a letter for a digit, `X++`, `50.`,

@@ -42,7 +42,7 @@ def name_of(program: str) -> str:
 
 
 def judges() -> list[Path]:
-    return sorted(path for each in JUDGES for path in PACKAGE.glob(each))
+    return sorted(path for judge in JUDGES for path in PACKAGE.glob(judge))
 
 
 def forks(sources: Iterable[str]) -> int:
@@ -100,7 +100,7 @@ def reached(programs: Sequence[Entry]) -> list[frozenset[Branch]]:
 
     files = [str(path) for path in judges()]
     measured = Coverage(data_file=None, branch=True, include=files, config_file=False)
-    found = []
+    branches = []
     for entry in programs:
         check.cache_clear()
         measured.erase()
@@ -110,38 +110,38 @@ def reached(programs: Sequence[Entry]) -> list[frozenset[Branch]]:
         finally:
             measured.stop()
         data = measured.get_data()
-        found.append(frozenset(
+        branches.append(frozenset(
             (file, *arc) for file in data.measured_files() for arc in data.arcs(file) or ()
         ))  # fmt: skip
-    return _branches(found)
+    return _branches(branches)
 
 
-def _branches(found: Sequence[frozenset[Branch]]) -> list[frozenset[Branch]]:
+def _branches(branches: Sequence[frozenset[Branch]]) -> list[frozenset[Branch]]:
     """Return of the steps from line to line those that might have gone elsewhere."""
     ways: dict[tuple[str, int], set[int]] = {}
-    for file, start, end in frozenset().union(*found):
+    for file, start, end in frozenset().union(*branches):
         ways.setdefault((file, start), set()).add(end)
     is_branch = {at for at, ends in ways.items() if len(ends) > 1}
-    return [frozenset(arc for arc in arcs if arc[:2] in is_branch) for arcs in found]
+    return [frozenset(arc for arc in arcs if arc[:2] in is_branch) for arcs in branches]
 
 
-def chosen(found: Sequence[frozenset[Branch]], before: Iterable[int] = ()) -> list[int]:
+def chosen(branches: Sequence[frozenset[Branch]], before: Iterable[int] = ()) -> list[int]:
     """Return the numbers of few sets that have together what all have.
 
     Each time the one that adds most; of two, rather one of `before`, so that little changes.
     """
-    kept, left = set(before), set().union(*found)
-    heap = [(-len(each), k not in kept, k) for k, each in enumerate(found)]
+    kept, uncovered = set(before), set().union(*branches)
+    heap = [(-len(branch_set), k not in kept, k) for k, branch_set in enumerate(branches)]
     heapq.heapify(heap)
     taken = []
-    while left:
+    while uncovered:
         _, is_new, k = heapq.heappop(heap)
-        adds = -len(found[k] & left)
+        adds = -len(branches[k] & uncovered)
         if heap and (adds, is_new, k) > heap[0]:
             heapq.heappush(heap, (adds, is_new, k))
             continue
         taken.append(k)
-        left -= found[k]
+        uncovered -= branches[k]
     return sorted(taken)
 
 
@@ -149,10 +149,10 @@ def main() -> None:
     programs = entries()
     known = set(covered()) if LIST.exists() else set()
     found_in(programs[0])  # what is loaded and made once is nobody's branch
-    found = reached(programs)
-    taken = chosen(found, [k for k, entry in enumerate(programs) if entry in known])
+    branches = reached(programs)
+    taken = chosen(branches, [k for k, entry in enumerate(programs) if entry in known])
     first = head(
-        len(taken), len(frozenset().union(*found)), [program.program for program in programs]
+        len(taken), len(frozenset().union(*branches)), [program.program for program in programs]
     )
     rows = (_row(programs[k].program) for k in taken)
     LIST.write_text("\n".join((first, *rows)) + "\n", encoding="utf-8")

@@ -56,10 +56,10 @@ def test_a_damaged_program_is_repaired_or_left(seed: int) -> None:
     for diagnostic in diagnostics[:20]:
         edits = edits_of(diagnostic)
         assert edits is None or apply_edits(text, edits) != text
-    done = repair_program(text, check)
-    assert mistake_count(done.diagnostics_left) <= mistake_count(diagnostics)
-    assert done.diagnostics_left == check(done.text)
-    assert repair_program(done.text, check).text == done.text
+    repaired_program = repair_program(text, check)
+    assert mistake_count(repaired_program.diagnostics_left) <= mistake_count(diagnostics)
+    assert repaired_program.diagnostics_left == check(repaired_program.text)
+    assert repair_program(repaired_program.text, check).text == repaired_program.text
     for diagnostic in diagnostics[:20]:  # each alone
         edits = edits_of(diagnostic)
         alone = repair_program(text, partial(_only, text, diagnostic))

@@ -50,10 +50,10 @@ def wrong_in(
     changed = apply_edits(text, edits)
     own = sorted(edits_of(diagnostic) or edits)
     spans = [span for edit, span in zip(sorted(edits), put_in(edits), strict=True) if edit in own]
-    said = next((diagnostic.values[gap] for gap in SAID if diagnostic.values.get(gap)), "")
-    at = changed.find(said, max(0, spans[0].start - len(said))) if said else -1
+    value = next((diagnostic.values[gap] for gap in SAID if diagnostic.values.get(gap)), "")
+    at = changed.find(value, max(0, spans[0].start - len(value))) if value else -1
     if 0 <= at < spans[-1].end:
-        spans.append(Span(at, at + len(said)))
+        spans.append(Span(at, at + len(value)))
     return [
         diagnostic.code.number for diagnostic in check(changed)
         if diagnostic.is_mistake

@@ -34,11 +34,11 @@ def numbers(text: str) -> list[str]:
 
 def loses_a_number(text: str, edits: list[Edit]) -> bool:
     """Whether a change drops one of the program's numbers."""
-    left = numbers(apply_edits(text, edits))
+    numbers_left = numbers(apply_edits(text, edits))
     for number in numbers(text):
-        if number not in left:
+        if number not in numbers_left:
             return True
-        left.remove(number)
+        numbers_left.remove(number)
     return False
 
 
@@ -87,15 +87,15 @@ def test_few_reach_what_all_reach() -> None:
 def test_the_corpus_is_as_it_was(
     request: pytest.FixtureRequest, programs: tuple[Entry, ...]
 ) -> None:
-    found = [found_in(program) for program in programs]
+    entries = [found_in(program) for program in programs]
     if request.config.getoption("--accept"):
-        write(found)
-        pairs = zip(programs, found, strict=True)
-        new = [now.program for was, now in pairs if now.said and not was.said]
+        write(entries)
+        pairs = zip(programs, entries, strict=True)
+        new = [now.program for old_entry, now in pairs if now.messages and not old_entry.messages]
         add(new, [entry.program for entry in programs])
         return
-    changed = [(old, new) for old, new in zip(programs, found, strict=True) if old != new]
-    assert not changed, f"{len(changed)} of {len(found)}, the first: {changed[0]}"
+    changed = [(old, new) for old, new in zip(programs, entries, strict=True) if old != new]
+    assert not changed, f"{len(changed)} of {len(entries)}, the first: {changed[0]}"
 
 
 def test_each_repair_helps_and_keeps_the_numbers(programs: tuple[Entry, ...]) -> None:

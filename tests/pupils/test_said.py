@@ -33,8 +33,8 @@ def test_a_note_keeps_all_and_changes_nothing(program: str) -> None:
         assert edits
         text = apply_edits(text, edits)
     lines = [line.partition("//") for line in text.split("\n")]
-    said = [f"{head.rstrip()} {note.strip()}".rstrip() for head, _, note in lines]
-    assert said == program.split("\n")
+    notes = [f"{head.rstrip()} {note.strip()}".rstrip() for head, _, note in lines]
+    assert notes == program.split("\n")
 
 
 @pytest.mark.parametrize(
@@ -98,4 +98,6 @@ def test_a_copied_call_is_never_taken_for_another_program(program: str, language
 @pytest.mark.parametrize("program", ["F(1, 80) forever", "W(1) siempre"])
 def test_what_goes_on_without_end_is_a_program(program: str) -> None:
     [diagnostic] = check(f"SI|{program}")
-    assert not any(each.is_mistake for each in check(f"SI|{diagnostic.values['endless']}"))
+    assert not any(
+        diagnostic.is_mistake for diagnostic in check(f"SI|{diagnostic.values['endless']}")
+    )

@@ -46,12 +46,12 @@ def test_si_before_orders_in_words_asks_nothing(head: str, words: str) -> None:
     "words", ["hay una pared, para", "DISTANCE < 10 avanza", "see a wall stop"]
 )
 def test_si_before_a_question_asks(words: str) -> None:
-    assert not any(each.code.number == "TS036" for each in check(f"si {words}"))
+    assert not any(diagnostic.code.number == "TS036" for diagnostic in check(f"si {words}"))
 
 
-@pytest.mark.parametrize("said", SPOKEN)
-def test_signs_that_are_named_are_written(said: tuple[str, ...]) -> None:
-    opened, closed, comma, separator, bar, forward, right = said
+@pytest.mark.parametrize("signs", SPOKEN)
+def test_signs_that_are_named_are_written(signs: tuple[str, ...]) -> None:
+    opened, closed, comma, separator, bar, forward, right = signs
     call = f"{forward} {opened} 2 {comma} 80 {closed}".strip()
     turn = f"{right} {opened} 1 {comma} 50 {closed}".strip()
     meant = {f"{call} {separator} {turn}": "F(2, 80);R(1, 50)", call: "F(2, 80)"}
@@ -75,7 +75,9 @@ def test_a_typed_variable_above_si_comes_behind_it(kind: str, head: str) -> None
         begun = "".join(head.split()).upper()
         right = f"{begun}vel = 70{end}{note}\n{more.replace('int ', '')}F(2, vel)"
         assert (
-            apply_edits(wrong, [it for each in check(wrong) for it in edits_of(each) or []])
+            apply_edits(
+                wrong, [it for diagnostic in check(wrong) for it in edits_of(diagnostic) or []]
+            )
             == right
         )
         assert repair_program(wrong, check).text == right
@@ -89,12 +91,14 @@ def test_values_without_a_word_get_those_that_take_them(
     values: str, words: list[str], place: str
 ) -> None:
     text = place.format(f"({values})")
-    (diagnostic,) = [each for each in check(text) if each.is_mistake]
+    (diagnostic,) = [diagnostic for diagnostic in check(text) if diagnostic.is_mistake]
     offered = [diagnostic.values["one"], diagnostic.values.get("another")]
     assert [it for it in offered if it] == [f"{word}({values})" for word in words], text
     for language in ("en", "es", "pt"):
-        said = message(diagnostic, Source(text), language)
-        assert f"({values})" in said.message and ("SB|" in said.message) is (place == "SB|{}")
+        full_message = message(diagnostic, Source(text), language)
+        assert f"({values})" in full_message.message and ("SB|" in full_message.message) is (
+            place == "SB|{}"
+        )
 
 
 STARTS = ("start", "begin,", "empieza y", "comienza,", "comece e", "Start and")
@@ -119,9 +123,9 @@ def test_words_say_how_a_program_starts(head: str, words: str) -> None:
 @pytest.mark.parametrize("head", BUTTONS[:2])
 def test_a_value_that_nobody_gave_is_called_an_example(head: str) -> None:
     (diagnostic,) = check(f"{head} go forward")
-    said = message(diagnostic, Source(""), "en")
-    assert "SB|F(2, 80)" in said.fix
-    assert said.fix.endswith("examples: 2 s, 80 %")
+    full_message = message(diagnostic, Source(""), "en")
+    assert "SB|F(2, 80)" in full_message.fix
+    assert full_message.fix.endswith("examples: 2 s, 80 %")
 
 
 @pytest.mark.parametrize(
@@ -153,10 +157,10 @@ def test_what_a_sketch_has_in_its_setup_begins_the_program(body: str, frame: str
     gaps = ("\n",) if "//" in body or not body else (" ", "\n  ")
     for (rest, loop), gap, brace in product(rests.items(), gaps, (" {", "\n{")):
         text = f"{frame}{brace}{gap}{body}{gap.rstrip(' ') or ' '}}}\n{rest}"
-        made = apply_edits(text, edits_of(check(text)[0]) or [])
-        made = repair_program(made, check).text
-        assert compile(made).code == compile(f"{right}\n{loop}").code, text
-        assert made.startswith(f"{begun}|"), text
+        repaired = apply_edits(text, edits_of(check(text)[0]) or [])
+        repaired = repair_program(repaired, check).text
+        assert compile(repaired).code == compile(f"{right}\n{loop}").code, text
+        assert repaired.startswith(f"{begun}|"), text
 
 
 @pytest.mark.parametrize("marks", ["\u201c\u201d", '""', "''", "\u00ab\u00bb"])

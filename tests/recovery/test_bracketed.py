@@ -20,17 +20,21 @@ INSIDE = ("7", "DISTANCE < 23", "7.5, 23", "ABS(7)")
 def test_what_stands_in_needless_brackets_is_named(word: str, place: str) -> None:
     for inside, language in product(INSIDE, ("en", "es", "pt")):
         text = place.format(f"{word}({inside})")
-        said = [message(each, Source(text), language) for each in check(text) if each.is_mistake]
-        named = [each for each in said if each.code in ("TS039", "TS118")]
+        messages = [
+            message(diagnostic, Source(text), language)
+            for diagnostic in check(text)
+            if diagnostic.is_mistake
+        ]
+        named = [message for message in messages if message.code in ("TS039", "TS118")]
         number = "23" if "23" in inside else "7"
-        assert named or said, text
-        assert all(number in each.message + each.fix for each in named), (text, named)
+        assert named or messages, text
+        assert all(number in message.message + message.fix for message in named), (text, named)
 
 
 @pytest.mark.parametrize("place", PLACES)
 def test_a_question_in_needless_brackets_is_asked(place: str) -> None:
     text = place.format("STOP(DISTANCE < 10)")
-    offers = [each.values.get("fix") for each in check(text)]
+    offers = [diagnostic.values.get("fix") for diagnostic in check(text)]
     assert "IF(DISTANCE < 10);STOP;ENDIF" in offers
 
 

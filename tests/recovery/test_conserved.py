@@ -32,18 +32,18 @@ PLACES = (
 
 def units() -> list[tuple[str, str, float]]:
     """Return one word for each unit of the lexicons, which it is, and how much one is."""
-    found = {}
+    unit_of = {}
     for language in languages():
         for row in read_language_file(language, "lexicon.txt").split("\n"):
             if row.startswith("unit ") and row.split()[1] in ("s", "cm", "°", "%", "Hz"):
                 _, unit, scale = row.partition("|")[0].split()
-                found[unit, int(scale) / 1000] = row.partition("|")[2].split()[0].lower()
-    return [(word, *its) for its, word in found.items()]
+                unit_of[unit, int(scale) / 1000] = row.partition("|")[2].split()[0].lower()
+    return [(word, *its) for its, word in unit_of.items()]
 
 
 def numbers(text: str) -> list[tuple[float, str]]:
     """Return the numbers of a program with their signs, and the unit of each by its place."""
-    found = []
+    pairs = []
     for match in re.finditer(r"(?<![\w.])\d+(?:\.\d+)?", text):
         before, after = text[: match.start()], text[match.end() :]
         own = next((unit for pattern, unit in PLACES if pattern.search(before)), None)
@@ -51,20 +51,20 @@ def numbers(text: str) -> list[tuple[float, str]]:
             way = re.match(r"(?i) ?(CM|DEG)\b", after)
             own = {"CM": "cm", "DEG": "°"}[way[1].upper()] if way else "s"
         is_minus = re.search(r"(?:[(,=<>+*/]|^)\s*-$", before) is not None
-        found.append((-float(match[0]) if is_minus else float(match[0]), own or ""))
-    return found
+        pairs.append((-float(match[0]) if is_minus else float(match[0]), own or ""))
+    return pairs
 
 
-def is_kept(written: str, value: float, unit: str, made: str) -> bool:
+def is_kept(written: str, value: float, unit: str, repaired: str) -> bool:
     """Whether a program has a number with its sign and unit, or still as it was written."""
-    return written in made or any(
-        abs(each - value) < 0.001 and (not own or not unit or own == unit)
-        for each, own in numbers(made)
+    return written in repaired or any(
+        abs(number - value) < 0.001 and (not own or not unit or own == unit)
+        for number, own in numbers(repaired)
     )
 
 
 ROWS: list[rewrites.SignRow | rewrites.TokenRow] = [*rewrites.sign_rows(), *rewrites.token_rows()]
-EXAMPLES = [each.example[0] for each in ROWS]
+EXAMPLES = [row.example[0] for row in ROWS]
 WRITTEN = [
     *("{}({}, 60)".replace("{}", word, 1) for word in "FBLR"),
     *("W({})", "SHOW({})", "X = {}\nSHOW(X)", "X = {}\nW(X)", "X = {}\nF(X, 60)\nR(X, 60)"),
@@ -75,24 +75,24 @@ WRITTEN = [
 
 def variants(text: str) -> list[tuple[str, str, float, str]]:
     """Return a program with another sign or a unit at each of its numbers, and that number."""
-    found = []
+    texts = []
     for match in NUMBER.finditer(text):
         value = float(match[0])
         start, end = match.span()
         if text[:start].rstrip()[-1:] not in ("-", "+"):
-            found.append((f"{text[:start]}-{text[start:]}", f"-{match[0]}", -value, ""))
+            texts.append((f"{text[:start]}-{text[start:]}", f"-{match[0]}", -value, ""))
         for written, unit, scale in units():
             new = f"{text[:end]} {written}{text[end:]}"
-            found.append((new, f"{match[0]} {written}", value * scale, unit))
-    return found
+            texts.append((new, f"{match[0]} {written}", value * scale, unit))
+    return texts
 
 
 @pytest.mark.sampled("text", keep=15)
 @pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
 def test_no_repair_loses_a_sign_or_a_unit_in_the_example_of_a_row(text: str) -> None:
     for wrong, written, value, unit in variants(text):
-        made = repair_program(wrong, check).text
-        assert is_kept(written, value, unit, made), (wrong, made)
+        repaired = repair_program(wrong, check).text
+        assert is_kept(written, value, unit, repaired), (wrong, repaired)
 
 
 @pytest.mark.sampled("text", keep=15)
@@ -107,9 +107,9 @@ def test_what_is_only_shown_keeps_a_unit_or_says_that_it_loses_it(text: str) -> 
         ]
         is_part = re.search(rf"\d\. {re.escape(written)}", wrong)  # of one number: `2. 80`
         for diagnostic in shown if unit and not is_part else ():
-            made = apply_edits(wrong, edits_of(diagnostic) or [])
+            repaired = apply_edits(wrong, edits_of(diagnostic) or [])
             lost = diagnostic.values.get("lost", "")
-            assert written in lost or is_kept(written, value, unit, made), (wrong, made)
+            assert written in lost or is_kept(written, value, unit, repaired), (wrong, repaired)
 
 
 @pytest.mark.sampled("part")
@@ -123,9 +123,9 @@ def loses_nothing(text: str) -> None:
         for word, unit, scale in units():
             written = f"{sign}{number}{space}{word}"
             wrong = text.replace("{}", written)
-            made = repair_program(wrong, check).text
+            repaired = repair_program(wrong, check).text
             value = float(number) * scale * (-1 if sign else 1)
-            assert is_kept(written, value, unit, made), (wrong, made)
+            assert is_kept(written, value, unit, repaired), (wrong, repaired)
 
 
 @pytest.mark.parametrize(
@@ -169,7 +169,7 @@ def test_what_a_repair_loses_or_does_more(
 
 
 @pytest.mark.parametrize(
-    ("wrong", "made"),
+    ("wrong", "repaired"),
     [
         ("T = 500 ms;W(T)", "T = 0.5;W(T)"),
         ("F(5, 60) UNTIL(TIME > 500 ms)", "F(5, 60) UNTIL(TIME > 0.5)"),
@@ -183,8 +183,8 @@ def test_what_a_repair_loses_or_does_more(
         ("DEF PASO;S\nENDDEF PASO\nPASO;PASO", "DEF PASO;S\nEND_DEF\nPASO;PASO"),
     ],
 )
-def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(wrong: str, made: str) -> None:
-    assert repair_program(wrong, check).text == made
+def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(wrong: str, repaired: str) -> None:
+    assert repair_program(wrong, check).text == repaired
 
 
 @pytest.mark.parametrize(
@@ -230,8 +230,8 @@ def test_no_repair_takes_a_sign_for_a_command_out() -> None:
     assert ("S", "\U0001f6d1") in signs
     for word, sign in signs:
         for text in ("F(2, 80) {}", "F(2, 80){}", "F(2, 80); {}", "S\n{}", "SI|F(2, 80)\n  {} "):
-            made = repair_program(text.format(sign), check).text
-            assert sign in made or made.rstrip().endswith(word), (sign, text, made)
+            repaired = repair_program(text.format(sign), check).text
+            assert sign in repaired or repaired.rstrip().endswith(word), (sign, text, repaired)
 
 
 def test_what_one_line_would_lose_costs_the_others_nothing() -> None:

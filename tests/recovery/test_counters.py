@@ -26,7 +26,7 @@ BETWEEN = ("\n", "\n  ")
 
 def mended(wrong: str) -> str:
     """Return a program with all that its messages offer."""
-    edits = [edit for each in check(wrong) for edit in edits_of(each) or []]
+    edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
     return apply_edits(wrong, edits)
 
 
@@ -35,7 +35,7 @@ def mended(wrong: str) -> str:
 def test_a_counter_that_is_used_grows_from_its_first_value(head: str, end: str) -> None:
     for name, (first, last), body, between in product(NAMES, RANGES, BODIES, BETWEEN):
         values = {"v": name, "a": first, "b": last, "c": last + 1}
-        begun, inside, ended = (each.format(**values) for each in (head, body, end))
+        begun, inside, ended = (part.format(**values) for part in (head, body, end))
         wrong = f"SI|W(3)\n{begun}{between}{inside}\n{ended}\nS"
         loop = f"LOOP({last - first + 1});{name.upper()} = {name.upper()} + 1"
         right = f"{name.upper()} = {first - 1};{loop}"
@@ -57,8 +57,10 @@ def test_one_that_is_not_used_says_how_often(text: str, name: str) -> None:
     ["FOR 3 TO 5", "FOR I = 5 TO 1", "FOR I = 1 TO V", "REPEAT 4", "FOR F = 1 TO 3", "I = 1 TO"],
 )  # fmt: skip
 def test_what_counts_otherwise_is_left(text: str) -> None:
-    made = [each.values.get("fix", "") for each in check(f"SI|{text}\nSHOW(I)\nEND_LOOP")]
-    assert not any("+ 1" in each for each in made)
+    fixes = [
+        diagnostic.values.get("fix", "") for diagnostic in check(f"SI|{text}\nSHOW(I)\nEND_LOOP")
+    ]
+    assert not any("+ 1" in line for line in fixes)
 
 
 STEPS = {

@@ -26,15 +26,15 @@ AROUND = (("LOOP(2)", "END_LOOP"), ("DEF PASSO", "END_DEF;PASSO"), ("LOOP(FOREVE
 BEFORE = ("SI|", "SI|W(3);", "SB|V = 3;F(V, 60);")
 
 
-def said(text: str) -> tuple[str, str]:
-    (found,) = [each for each in check(text) if each.is_mistake]
-    shown = message(found, Source(text), "en")
+def code_and_fix(text: str) -> tuple[str, str]:
+    (diagnostic,) = [diagnostic for diagnostic in check(text) if diagnostic.is_mistake]
+    shown = message(diagnostic, Source(text), "en")
     assert shown.code == "TS024"
     return shown.message, shown.fix
 
 
 def places(body: tuple[str, ...]) -> str:
-    return ", ".join(each.split(";")[-1] for each in body)
+    return ", ".join(line.split(";")[-1] for line in body)
 
 
 @pytest.mark.parametrize("between", [";", "; ", " ; "])
@@ -44,7 +44,7 @@ def test_each_place_is_named_and_none_is_made(
 ) -> None:
     for body in BODIES:
         text = begun + between.join((block[0], *body))
-        _, tried = said(text)
+        _, tried = code_and_fix(text)
         assert (
             tried
             == f"Where does the block end? Write ;{block[1]} after one of these: {places(body)}"
@@ -62,7 +62,7 @@ def test_the_inner_block_lacks_its_end_where_the_outer_one_has_its_own(
         return  # the end may be of either
     text = "SI|" + ";".join((around[0], block[0], *body, around[1]))
     name = block[0].partition("(")[0]
-    assert said(text) == (
+    assert code_and_fix(text) == (
         f"This {name} has no {block[1]}",
         f"Where does the block end? Write ;{block[1]} after one of these: {places(body)}",
     )
@@ -74,21 +74,22 @@ def test_the_inner_block_lacks_its_end_where_the_outer_one_has_its_own(
 def test_an_endless_loop_in_a_task_ends_where_that_ends(body: tuple[str, ...], tail: str) -> None:
     text = "SI|" + ";".join(("TASK", "LOOP(FOREVER)", *body, "END_TASK")) + tail
     last = body[-1]
-    assert said(text) == ("This LOOP has no END_LOOP", f"Write ;END_LOOP after {last}")
+    assert code_and_fix(text) == ("This LOOP has no END_LOOP", f"Write ;END_LOOP after {last}")
     assert repair_program(text, check).text == text.replace("END_TASK", "END_LOOP;END_TASK")
 
 
 @pytest.mark.parametrize("block", BLOCKS)
 def test_one_place_is_no_question(block: tuple[str, str]) -> None:
     text = f"SI|{block[0]}; F(1, 60)"
-    assert said(text)[1] == f"Write ;{block[1]} after F(1, 60)"
+    assert code_and_fix(text)[1] == f"Write ;{block[1]} after F(1, 60)"
 
 
 def test_it_ends_in_its_last_branch_and_before_the_end_of_another() -> None:
     text = "SI|IF(DISTANCE < 9);S;W(2);ELSE;W(1);F(1, 60)"
     assert (
-        said(text)[1] == "Where does the block end? Write ;ENDIF after one of these: W(1), F(1, 60)"
+        code_and_fix(text)[1]
+        == "Where does the block end? Write ;ENDIF after one of these: W(1), F(1, 60)"
     )
-    (found,) = check("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP")
-    made = apply_edits("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP", edits_of(found) or [])
-    assert made == "SI|LOOP(2);IF(DISTANCE < 9);S;ENDIF;END_LOOP"
+    (diagnostic,) = check("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP")
+    repaired = apply_edits("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP", edits_of(diagnostic) or [])
+    assert repaired == "SI|LOOP(2);IF(DISTANCE < 9);S;ENDIF;END_LOOP"

@@ -22,7 +22,7 @@ SAID = {"en": "is an example", "es": "es solo un ejemplo", "pt": "é só um exem
 def test_a_power_that_is_missing_is_the_one_of_the_others(word: str, place: str) -> None:
     for power in ("50", "35"):
         wrong = place.format(f"{word}(1)", p=power)
-        diagnostic = next(each for each in check(wrong) if each.is_mistake)
+        diagnostic = next(diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake)
         assert diagnostic.values["fix"] == f"{word}(1, {power})", wrong
         assert not diagnostic.values.get("sample"), wrong
 
@@ -30,7 +30,7 @@ def test_a_power_that_is_missing_is_the_one_of_the_others(word: str, place: str)
 @pytest.mark.parametrize("place", PLACES)
 def test_where_the_others_have_several_it_is_an_example(place: str) -> None:
     wrong = place.format("R(1)", p="50") + ";L(1, 30)"
-    diagnostic = next(each for each in check(wrong) if each.is_mistake)
+    diagnostic = next(diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake)
     assert (diagnostic.values["fix"], diagnostic.values["sample"]) == ("R(1, 80)", "80 %"), wrong
 
 
@@ -39,12 +39,12 @@ def test_where_the_others_have_several_it_is_an_example(place: str) -> None:
 def test_an_example_is_said_to_be_one(place: str, language: str) -> None:
     for call, fix, sample in (("R(1)", "R(1, 80)", "80 %"), ("BEEP(1)", "BEEP(1, 440)", "440 Hz")):
         text = place.format(call)
-        diagnostic = next(each for each in check(text) if each.is_mistake)
-        said = message(diagnostic, Source(text), language)
-        assert said.fix == fix, text  # and can be copied as it stands
-        assert f"{sample} {SAID[language]}" in said.message, text
+        diagnostic = next(diagnostic for diagnostic in check(text) if diagnostic.is_mistake)
+        full_message = message(diagnostic, Source(text), language)
+        assert full_message.fix == fix, text  # and can be copied as it stands
+        assert f"{sample} {SAID[language]}" in full_message.message, text
 
 
 @pytest.mark.parametrize("text", ["F(2, 8O)", "F(dos, ochenta)", "W(uno)", "F(2 seg 80)"])
 def test_a_number_that_is_written_in_another_form_is_no_example(text: str) -> None:
-    assert not any(each.values.get("sample") for each in check(text))
+    assert not any(diagnostic.values.get("sample") for diagnostic in check(text))

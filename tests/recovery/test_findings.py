@@ -99,10 +99,10 @@ def test_no_repair_loses_a_sign_or_a_point(word: str) -> None:
     changed = []
     for values, form, between in product(pairs, FORMS, BETWEEN):
         wrong = form.format(word, between.join(values))
-        made = repair_program(wrong, check).text
-        numbers = [float(each) for each in re.findall(r"-?[0-9]*\.?[0-9]+", made)]
-        if made != wrong and numbers != [float(value) for value in values]:
-            changed.append((wrong, made))
+        repaired = repair_program(wrong, check).text
+        numbers = [float(number) for number in re.findall(r"-?[0-9]*\.?[0-9]+", repaired)]
+        if repaired != wrong and numbers != [float(value) for value in values]:
+            changed.append((wrong, repaired))
     assert all(re.match(r"[RM]\.[0-9]+\.", wrong) for wrong, _ in changed)  # `F.2.80` is F(2, 80)
 
 
@@ -119,7 +119,9 @@ def test_no_repair_loses_a_sign_or_a_point(word: str) -> None:
 )  # fmt: skip
 def test_a_block_is_told_with_its_end(wrong: str, slips: list[tuple[str, str, str]]) -> None:
     codes_and_places = [(diagnostic.code.number, diagnostic.values) for diagnostic in check(wrong)]
-    assert [(code, said["whole"], said.get("ends", "")) for code, said in codes_and_places] == slips
+    assert [
+        (code, values["whole"], values.get("ends", "")) for code, values in codes_and_places
+    ] == slips
 
 
 def test_a_block_that_never_ends_is_told_with_its_last_line() -> None:

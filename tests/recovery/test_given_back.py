@@ -32,9 +32,9 @@ def test_a_return_and_its_uses_are_one_mistake(
     text = between.join(lines)
     (diagnostic,) = check(text)
     assert text[slice(*diagnostic.span)] == word
-    said = message(diagnostic, Source(text), "en")
-    assert said.code == "TS051"
-    assert f"RESULT = {result} here, DOUBLE(4) on a line" in said.fix
+    full_message = message(diagnostic, Source(text), "en")
+    assert full_message.code == "TS051"
+    assert f"RESULT = {result} here, DOUBLE(4) on a line" in full_message.fix
 
 
 @pytest.mark.parametrize("use", USES)

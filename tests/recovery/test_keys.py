@@ -35,11 +35,13 @@ PLACES = (
 ORDERS = ("F(1, 60)", "S")
 
 
-@pytest.mark.sampled("said", "side", keep=100)
-@pytest.mark.parametrize(("said", "side"), CASES)
-def test_a_key_in_own_words_becomes_its_reading_wherever_it_is_asked(said: str, side: str) -> None:
+@pytest.mark.sampled("key_text", "side", keep=100)
+@pytest.mark.parametrize(("key_text", "side"), CASES)
+def test_a_key_in_own_words_becomes_its_reading_wherever_it_is_asked(
+    key_text: str, side: str
+) -> None:
     for place in PLACES:
-        assert repair_program(place.replace("{}", said), check).text == place.replace(
+        assert repair_program(place.replace("{}", key_text), check).text == place.replace(
             "{}", f"KEY_{side}"
         ), place
 
@@ -51,9 +53,9 @@ def test_another_key_is_told_all_that_there_are_and_asks_for_no_number(
 ) -> None:
     for place in PLACES:
         text = place.replace("{}", key + other, 1).replace("{}", "KEY_A")
-        (found,) = check(text)
-        said = message(found, Source(text), "en").message
-        assert found.code.number == "TS103" and all(each in said for each in KEYS), text
+        (diagnostic,) = check(text)
+        key_text = message(diagnostic, Source(text), "en").message
+        assert diagnostic.code.number == "TS103" and all(key in key_text for key in KEYS), text
         assert repair_program(text, check).text == text
 
 
@@ -62,14 +64,14 @@ def test_another_key_is_told_all_that_there_are_and_asks_for_no_number(
 @pytest.mark.parametrize("side", SIDES)
 def test_an_order_for_a_key_is_asked_for_it(side: str, order: str, sign: str) -> None:
     for key, word in product((*OF_KEYS, "KEY_"), SIDES[side]):
-        said = f"KEY_{side}" if key == "KEY_" else f"{key} {word}"
-        wrong = f"SI|{said}{sign}{order}\nW(3)"
-        (found,) = check(wrong)
+        text = f"KEY_{side}" if key == "KEY_" else f"{key} {word}"
+        wrong = f"SI|{text}{sign}{order}\nW(3)"
+        (diagnostic,) = check(wrong)
         right = f"SI|WHEN(KEY_{side});{order};END_WHEN\nW(3)"
-        assert apply_edits(wrong, edits_of(found) or []) == right
-        inside = f"SI|LOOP(FOREVER);{said}{sign}{order};END_LOOP"
-        (found,) = check(inside)
-        assert found.values["fix"] == f"IF(KEY_{side});{order};ENDIF"
+        assert apply_edits(wrong, edits_of(diagnostic) or []) == right
+        inside = f"SI|LOOP(FOREVER);{text}{sign}{order};END_LOOP"
+        (diagnostic,) = check(inside)
+        assert diagnostic.values["fix"] == f"IF(KEY_{side});{order};ENDIF"
 
 
 STICK = {"UP": "PAD_Y > 0", "DOWN": "PAD_Y < 0", "LEFT": "PAD_X < 0", "RIGHT": "PAD_X > 0"}
@@ -81,9 +83,9 @@ def test_a_side_of_the_stick_is_shown_as_its_number_and_as_an_arrow(stick: str, 
     forms = ("{k} {s}", "{k}_{s}", "{k} = {s}", "{s} {k}", "{k}({s})", "{k} {s} = TRUE")
     for place, form, word in product(PLACES, forms, SIDES[side]):
         wrong = place.replace("{}", form.format(k=stick, s=word), 1).replace("{}", "KEY_A")
-        (found,) = check(wrong)
+        (diagnostic,) = check(wrong)
         values = {"fix": STICK[side], "arrow": f"KEY_{side}"}
-        assert {name: found.values.get(name) for name in values} == values, wrong
+        assert {name: diagnostic.values.get(name) for name in values} == values, wrong
         assert repair_program(wrong, check).text == wrong
 
 
@@ -91,8 +93,8 @@ def test_a_side_of_the_stick_is_shown_as_its_number_and_as_an_arrow(stick: str, 
 def test_an_axis_with_its_side_is_asked_for_its_number(side: str) -> None:
     for place, form in product(PLACES, ("PAD_X {}", "PAD_X = {}", "STICK_X_{}", "PAD_Y == {}")):
         wrong = place.replace("{}", form.replace("{}", side), 1).replace("{}", "KEY_A")
-        (found,) = check(wrong)
-        assert (found.values["fix"], found.values["arrow"]) == (STICK[side], "")
+        (diagnostic,) = check(wrong)
+        assert (diagnostic.values["fix"], diagnostic.values["arrow"]) == (STICK[side], "")
 
 
 @pytest.mark.parametrize("side", ["L", "R"])
@@ -105,8 +107,8 @@ def test_a_letter_for_a_sensor_is_shown_as_that_sensor(side: str) -> None:
             "LOOP(2);{};END_LOOP",
             "DEF A1;{};END_DEF",
         ):
-            (found,) = (it for it in check(place.replace("{}", text)) if it.is_mistake)
-            assert found.values["reading"] == f"LIGHT_{side}", place
+            (diagnostic,) = (it for it in check(place.replace("{}", text)) if it.is_mistake)
+            assert diagnostic.values["reading"] == f"LIGHT_{side}", place
 
 
 @pytest.mark.parametrize("stem", ["LIGHT", "luz"])
@@ -129,8 +131,10 @@ def test_a_light_in_own_words_becomes_its_reading(stem: str, way: str, side: str
      "DEF TECLA(UP);F(UP, 60);END_DEF;TECLA(2);F(1 60)", "F(2 60) // press key A"],
 )  # fmt: skip
 def test_names_of_a_program_and_notes_are_no_keys(text: str) -> None:
-    assert {each.code.number for each in check(f"SI|{text}")} == {"TS017"}
+    assert {diagnostic.code.number for diagnostic in check(f"SI|{text}")} == {"TS017"}
 
 
 def test_a_button_of_the_robot_is_still_none() -> None:
-    assert [each.code.number for each in check("SI|IF(BUTTON);F(1, 60);ENDIF")] == ["TS120"]
+    assert [diagnostic.code.number for diagnostic in check("SI|IF(BUTTON);F(1, 60);ENDIF")] == [
+        "TS120"
+    ]

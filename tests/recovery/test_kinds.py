@@ -1,4 +1,4 @@
-"""Kinds of mistakes, and what is told of each: on one line and on several, in other words."""
+"""Kinds of mistakes, and what is said about each: on one line and on several, in other words."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ PAIRS = ("F", "B", "L", "R", "M", "BEEP", "RANDOM", "ROUND", "MIN", "MAX")
 
 def codes_and_fixes(text: str) -> list[tuple[str, str]]:
     """Return the code of each message, and what it says to try."""
-    said = (message(diagnostic, Source(text), "en") for diagnostic in check(text))
-    return [(each.code, each.fix) for each in said]
+    messages = (message(diagnostic, Source(text), "en") for diagnostic in check(text))
+    return [(message.code, message.fix) for message in messages]
 
 
 def messages(text: str) -> list[str]:
@@ -206,9 +206,9 @@ def test_a_slip_of_a_unit_is_one(word: str, unit: str) -> None:
     slips = {unit[1] + unit[0] + unit[2:], "X" + unit[1:], unit[:1] + unit[2:], unit + unit[-1]}
     for slip in {slip for slip in slips if len(slip) > 1} - {"XEG"}:
         for text in (f"SI|{word}(20 {slip}, 60)", f"SI|W(1);BLA(2)\nV = 5;{word}(V {slip}, 60);S"):
-            said = [fix for _, fix in codes_and_fixes(text)]
-            assert not any("Take" in fix for fix in said), text
-            assert any(f"{unit}, 60)" in fix for fix in said), (text, said)
+            fixes = [fix for _, fix in codes_and_fixes(text)]
+            assert not any("Take" in fix for fix in fixes), text
+            assert any(f"{unit}, 60)" in fix for fix in fixes), (text, fixes)
 
 
 # -- a ; between two values -----------------------------------------------------------------------
@@ -220,8 +220,8 @@ def test_a_semicolon_between_two_values_is_named(word: str, beside: str) -> None
     call = f"{word}(40; 60)" if word in PAIRS[:6] else f"SHOW({word}(1; 2))"
     comma = call.replace(";", ",")
     text = f"SI|{beside}{call}"
-    said = [(code, fix) for code, fix in codes_and_fixes(text) if comma in fix]
-    assert said and said[0][0] in ("TS017", "TS019"), codes_and_fixes(text)
+    offers = [(code, fix) for code, fix in codes_and_fixes(text) if comma in fix]
+    assert offers and offers[0][0] in ("TS017", "TS019"), codes_and_fixes(text)
     assert not {"TS042", "TS088"} & {code for code, _ in codes_and_fixes(text)}
 
 
@@ -285,7 +285,7 @@ def test_named_values_of_a_def_stand_in_its_order(call: str, right: str, between
 @pytest.mark.parametrize("end", ["FIM", "FIN", "END"])
 @pytest.mark.parametrize("text", ["SEMPRE; F(1, 60); {}", "W(1)\nSIEMPRE\nF(1, 60)\n{}\n"])
 def test_an_end_that_ends_a_block_is_no_word_too_many(text: str, end: str) -> None:
-    assert not any("not needed" in each for each in messages(f"SI|{text.format(end)}"))
+    assert not any("not needed" in message for message in messages(f"SI|{text.format(end)}"))
     assert "THEN is not needed here." in messages("IF(DISTANCE < 9) THEN;S;ENDIF")
 
 
@@ -300,9 +300,9 @@ def test_a_power_is_named_with_all_of_its_sign(sign: str) -> None:
 
 
 def test_two_offers_say_how_their_brackets_differ() -> None:
-    (said,) = codes_and_fixes("SI|D = MAX(LIGHT_L, 4 + LIGHT_R")
+    (offer,) = codes_and_fixes("SI|D = MAX(LIGHT_L, 4 + LIGHT_R")
     first, second = "(in the brackets: LIGHT_L, 4 + LIGHT_R)", "(in the brackets: LIGHT_L, 4)"
-    assert said[1].index(first) < said[1].index(second)
+    assert offer[1].index(first) < offer[1].index(second)
 
 
 @pytest.mark.parametrize("word", ["PARA", "for", "para"])
@@ -364,7 +364,7 @@ def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
     for question in ("KEY_A", COMPARED):
         line = f"{order} {word}({question});B(1, 50)"
         text = f"SI|DEF P;S;END_DEF\n{around.format(line)}"
-        assert any(each.is_mistake for each in check(text))
+        assert any(diagnostic.is_mistake for diagnostic in check(text))
         assert repair_program(text, check).text == text
         ended = f"SI|DEF P;S;END_DEF\n{around.format(f'{line};{end}')}"
         assert f"{order};{word}({question});B(1, 50);{end}" in repair_program(ended, check).text

@@ -36,15 +36,15 @@ def labelled(label: str, program: tuple[str, ...]) -> list[str]:
 def test_a_label_is_taken_out_wherever_its_instruction_stands(label: str) -> None:
     for program, (begun, between) in product(PROGRAMS, PLACES):
         wrong = begun + between.join(labelled(label, program))
-        assert {each.code.number for each in check(wrong)} == {"TS054"}, wrong
+        assert {diagnostic.code.number for diagnostic in check(wrong)} == {"TS054"}, wrong
         assert repair_program(wrong, check).text == begun + between.join(program), wrong
 
 
 @pytest.mark.parametrize("label", LABELS)
 def test_it_is_told_before_the_setup_below_a_title_and_beside_another_mistake(label: str) -> None:
     rows = labelled(label, ("SI|F(2, 60)", "R(2 60)"))
-    found = [each.code.number for each in check("\n".join(["My square", *rows]))]
-    assert found == ["TS073", "TS054", "TS054", "TS017"]
+    codes = [diagnostic.code.number for diagnostic in check("\n".join(["My square", *rows]))]
+    assert codes == ["TS073", "TS054", "TS054", "TS017"]
 
 
 @pytest.mark.parametrize(
@@ -55,4 +55,4 @@ def test_it_is_told_before_the_setup_below_a_title_and_beside_another_mistake(la
      "TASK 1: F(2, 80)", "X = |5 - DISTANCE|"],
 )  # fmt: skip
 def test_what_may_be_more_than_a_label_stays(text: str) -> None:
-    assert "TS054" not in {each.code.number for each in check(f"SI|{text}")}
+    assert "TS054" not in {diagnostic.code.number for diagnostic in check(f"SI|{text}")}

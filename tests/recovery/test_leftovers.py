@@ -23,9 +23,9 @@ def test_words_after_an_order_without_values_are_taken_out(
     place: str, order: str, words: str
 ) -> None:
     wrong = place.format(f"{order} {words}")
-    (found,) = [each for each in check(wrong) if each.is_mistake]
-    assert message(found, Source(wrong), "en").fix == f"Remove {words}"
-    assert apply_edits(wrong, edits_of(found) or []) == place.format(order)
+    (diagnostic,) = [diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake]
+    assert message(diagnostic, Source(wrong), "en").fix == f"Remove {words}"
+    assert apply_edits(wrong, edits_of(diagnostic) or []) == place.format(order)
     assert repair_program(wrong, check).text == wrong
 
 
@@ -35,8 +35,8 @@ def test_and_so_are_words_after_an_end(end: str, words: str) -> None:
     head = {"END_LOOP": "LOOP(2)", "END_WHILE": "WHILE(DISTANCE > 9)"}[end]
     for tail in ("", ";S", "\nW(1)"):
         wrong = f"SI|{head};F(1, 60);{end} {words}{tail}"
-        (found,) = [each for each in check(wrong) if each.is_mistake]
-        assert apply_edits(wrong, edits_of(found) or []) == wrong.replace(f" {words}", "")
+        (diagnostic,) = [diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake]
+        assert apply_edits(wrong, edits_of(diagnostic) or []) == wrong.replace(f" {words}", "")
 
 
 @pytest.mark.parametrize(
@@ -45,7 +45,7 @@ def test_and_so_are_words_after_an_end(end: str, words: str) -> None:
      "V = 3;S V", "STOP UNTIL(DISTANCE > 9)", "S stop", "S // now"],
 )  # fmt: skip
 def test_what_may_be_an_order_or_a_value_is_no_leftover(text: str) -> None:
-    assert not any(each.values.get("needless") for each in check(f"SI|{text}"))
+    assert not any(diagnostic.values.get("needless") for diagnostic in check(f"SI|{text}"))
 
 
 @pytest.mark.parametrize("before", ["R(1, 60)", "S", "LOOP(2);W(1);END_LOOP", "SHOW(DISTANCE)"])
@@ -63,15 +63,15 @@ def test_a_second_start_behind_an_instruction_is_a_separator(
 @pytest.mark.parametrize("between", [";", "\n"])
 def test_a_task_that_is_called_has_no_name_and_begins_by_itself(between: str) -> None:
     wrong = between.join(("SI|TASK siren", "BEEP(1, 440)", "END_TASK", "START siren", "F(4, 70)"))
-    said = [message(each, Source(wrong), "en").fix for each in check(wrong)]
-    assert said == ["TASK", "Remove siren"]
+    fixes = [message(diagnostic, Source(wrong), "en").fix for diagnostic in check(wrong)]
+    assert fixes == ["TASK", "Remove siren"]
 
 
 @pytest.mark.parametrize("word", ["Fim", "FIM.", "Fin;", "end", "End."])
 @pytest.mark.parametrize("above", ["F(2, 80)", "Espere(1)", "Br(2, 80)", "R(1 60);S"])
 def test_an_end_of_all_is_not_needed_whatever_else_is_wrong(above: str, word: str) -> None:
     wrong = f"SI|W(1)\n{above}\n{word}"
-    assert "TS044" in {each.code.number for each in check(wrong)}
+    assert "TS044" in {diagnostic.code.number for diagnostic in check(wrong)}
     for head, end in (("LOOP(2)", "END_LOOP"), ("IF(DISTANCE < 9)", "ENDIF")):
         block = f"SI|{head}\nF(2, 80)\n{word.rstrip('.;')}"
         assert repair_program(block, check).text == f"SI|{head}\nF(2, 80)\n{end}"

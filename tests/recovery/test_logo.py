@@ -35,9 +35,9 @@ def test_a_line_of_logo_is_rebuilt_as_a_whole(line: str, right: str, place: str)
         words = {"o": loop, "f": forward, "b": backward, "r": to_right, "l": left}
         wrong = place.format(line.format(**words))
         diagnostics = check(wrong)
-        edits = [edit for each in diagnostics for edit in edits_of(each) or []]
+        edits = [edit for diagnostic in diagnostics for edit in edits_of(diagnostic) or []]
         assert apply_edits(wrong, edits) == place.format(right.format(p=80)), wrong
-        assert [each.values.get("sample") for each in diagnostics] == ["80 %"], wrong
+        assert [diagnostic.values.get("sample") for diagnostic in diagnostics] == ["80 %"], wrong
         assert repair_program(wrong, check).text == wrong
 
 
@@ -61,7 +61,7 @@ def test_the_power_is_the_one_of_the_program(place: str) -> None:
     ],
 )
 def test_what_may_be_seconds_or_a_power_is_no_logo(text: str) -> None:
-    assert not any("CM" in each.values.get("fix", "") for each in check(text))
+    assert not any("CM" in diagnostic.values.get("fix", "") for diagnostic in check(text))
 
 
 TAUGHT = (("TO SQUARE", "END"), ("para cuadrado", "fin"), ("aprenda quadrado", "fim"))
@@ -73,12 +73,13 @@ def test_a_word_that_is_taught_is_a_def(line: str, right: str, head: str, end: s
     words = {"o": "repeat", "f": "fd", "b": "bk", "r": "rt", "l": "lt"}
     name = head.split()[1].upper()
     wrong = f"{head}\n{line.format(**words)}\n{end}\n{name}"
-    edits = [edit for each in check(wrong) for edit in edits_of(each) or []]
+    edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
     assert apply_edits(wrong, edits) == f"DEF {name}\n{right.format(p=80)}\nEND_DEF\n{name}"
 
 
 @pytest.mark.parametrize(("head", "end"), [("para todo", "fin"), ("para robot", "fin")])
 def test_a_word_without_a_body_teaches_nothing(head: str, end: str) -> None:
     assert not any(
-        "DEF" in each.values.get("fix", "") for each in check(f"F(2, 80)\n{head}\n{end}")
+        "DEF" in diagnostic.values.get("fix", "")
+        for diagnostic in check(f"F(2, 80)\n{head}\n{end}")
     )

@@ -30,7 +30,7 @@ def test_a_pair_is_one_m_with_both_powers(pair: tuple[str, str], place: str) -> 
     for between, (left, right), is_turned in product(BETWEEN, POWERS, (False, True)):
         calls = (f"{pair[0]}({left})", f"{pair[1]}({right})")
         wrong = place.format(between.join(calls[::-1] if is_turned else calls))
-        edits = [edit for each in check(wrong) for edit in edits_of(each) or []]
+        edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
         assert apply_edits(wrong, edits) == place.format(f"M({left}, {right})"), wrong
         assert repair_program(wrong, check).text == wrong  # its power is no percentage elsewhere
 
@@ -41,7 +41,7 @@ def test_of_one_alone_it_is_said_that_m_has_both(place: str, language: str) -> N
     for pair in PAIRS:
         for name in pair:
             text = place.format(f"{name}(60)")
-            (shown,) = [message(each, Source(text), language) for each in check(text)]
+            (shown,) = [message(diagnostic, Source(text), language) for diagnostic in check(text)]
             assert "M(50, 80)" in shown.fix, text
 
 
@@ -49,7 +49,7 @@ def test_of_one_alone_it_is_said_that_m_has_both(place: str, language: str) -> N
 def test_a_name_that_a_program_defines_is_its_own(between: str) -> None:
     defs = (f"DEF MOTOR_{side}(X);M(X, X);END_DEF" for side in "LR")
     text = between.join((*defs, "MOTOR_L(60)", "MOTOR_R(30)", "F(2 80)"))
-    assert [each.code.number for each in check(text)] == ["TS017"]
+    assert [diagnostic.code.number for diagnostic in check(text)] == ["TS017"]
 
 
 ON = {"forward": "F", "robot.backward": "B", "mBot.turnLeft": "L", "derecha": "R", "F": "F"}
@@ -63,18 +63,20 @@ OFF = ("stop()", "mBot.stop()", "S", "parar()")
 def test_motors_on_and_off_after_a_wait_are_a_move(off: str, place: str) -> None:
     for between, (on, word), (wait, time) in product(BETWEEN, ON.items(), WAITS.items()):
         wrong = place.format(between.join((f"{on}(50)", wait, off)))
-        edits = [edit for each in check(wrong) for edit in edits_of(each) or []]
+        edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
         assert apply_edits(wrong, edits) == place.format(f"{word}({time}, 50)"), wrong
         twice = place.format(between.join((f"{on}(50)", wait, "left(40)", wait, off)))
-        edits = [edit for each in check(twice) for edit in edits_of(each) or []]
+        edits = [edit for diagnostic in check(twice) for edit in edits_of(diagnostic) or []]
         assert apply_edits(twice, edits) == place.format(f"{word}({time}, 50);L({time}, 40)"), twice
 
 
 @pytest.mark.parametrize("text", ["F(2);W(2);S", "F(50);W(2)", "F(2, 50);W(2);S", "F(50);S;W(2)"])
 def test_no_motor_is_on_without_a_power_a_wait_and_an_end(text: str) -> None:
-    assert "F(2, 50)" not in [each.values.get("fix") for each in check(text) if each.repair]
+    assert "F(2, 50)" not in [
+        diagnostic.values.get("fix") for diagnostic in check(text) if diagnostic.repair
+    ]
 
 
 def test_a_word_of_the_program_switches_no_motor() -> None:
     wrong = "DEF GO(X);F(X, 60);END_DEF;GO(50);W(2);S;F(2 80)"
-    assert [each.values.get("fix") for each in check(wrong)] == ["F(2, 80)"]
+    assert [diagnostic.values.get("fix") for diagnostic in check(wrong)] == ["F(2, 80)"]

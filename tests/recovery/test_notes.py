@@ -29,7 +29,9 @@ def test_a_note_begins_with_another_sign_and_is_told_once(sign: str, place: str)
     for note in NOTES:
         wrong = place.replace("{}", sign + note)
         diagnostics = check(wrong)
-        assert [each.code for each in diagnostics] == [codes.OTHER_NOTE] * len(diagnostics), wrong
+        assert [diagnostic.code for diagnostic in diagnostics] == [codes.OTHER_NOTE] * len(
+            diagnostics
+        ), wrong
         right = place.replace("{}", f"// {note}")
         assert repair_program(wrong, check).text == right
 
@@ -53,4 +55,6 @@ def test_a_note_that_may_be_an_order_is_not_made_one(sign: str, order: str) -> N
 def test_a_sign_where_a_value_is_begins_no_note(sign: str) -> None:
     values = ("F({}a, 80)", "F(2, {}a)", "X = {}a", "W(1 + {}a)", "IF(DISTANCE < {}a);S;ENDIF")
     for value, before in product(values, ("", "SI|", "S;")):
-        assert codes.OTHER_NOTE not in [each.code for each in check(before + value.format(sign))]
+        assert codes.OTHER_NOTE not in [
+            diagnostic.code for diagnostic in check(before + value.format(sign))
+        ]

@@ -61,9 +61,9 @@ def test_no_sentence_on_a_def_ends_with_a_gap_or_takes_another_word(language: st
             *([program(header, f"({numbers})", count)] if header else []),
         ):
             for diagnostic in check(text):
-                said = message(diagnostic, Source(text, ""), language)
-                assert not re.search(r":\s*(?:DEF)?\s*$", said.message), said
-                assert not re.match(r"Y\b", said.message), said
+                full_message = message(diagnostic, Source(text, ""), language)
+                assert not re.search(r":\s*(?:DEF)?\s*$", full_message.message), full_message
+                assert not re.match(r"Y\b", full_message.message), full_message
 
 
 # -- what is said of each call, in every language -----------------------------------------------
@@ -78,8 +78,8 @@ def test_a_word_that_nothing_teaches_is_told_of_def_whatever_its_values(name: st
         text = f"{name}({given})"
         first = check(text)[0]
         for language in languages():
-            said = message(first, Source(text, ""), language)
-            assert f"DEF {name}(" in said.fix, (text, language, said)
+            full_message = message(first, Source(text, ""), language)
+            assert f"DEF {name}(" in full_message.fix, (text, language, full_message)
 
 
 @pytest.mark.parametrize("count", range(1, PARAMETERS + 1))
@@ -87,12 +87,14 @@ def test_another_count_of_values_shows_the_call_and_says_how_many(count: int) ->
     usage = f"SIDE({', '.join(NAMES[:count])})"
     for given in range(PARAMETERS + 2):
         text = f"DEF {usage}\nS\nEND_DEF\nSIDE({', '.join(['60'] * given)})"
-        found = [each for each in check(text) if each.code.number == "TS141"]
-        assert len(found) == (given != count), text
-        for language, diagnostic in product(languages(), found):
-            said = message(diagnostic, Source(text, ""), language)
-            assert usage in said.message + said.fix, said
-            assert re.search(rf"\b{count} val(ue|or)e?s?\b", said.message), said
+        diagnostics = [
+            diagnostic for diagnostic in check(text) if diagnostic.code.number == "TS141"
+        ]
+        assert len(diagnostics) == (given != count), text
+        for language, diagnostic in product(languages(), diagnostics):
+            full_message = message(diagnostic, Source(text, ""), language)
+            assert usage in full_message.message + full_message.fix, full_message
+            assert re.search(rf"\b{count} val(ue|or)e?s?\b", full_message.message), full_message
 
 
 KINDS = (
@@ -113,10 +115,10 @@ def test_a_body_that_needs_another_kind_names_the_first_call(
         (f"DEF SIDE(n);{body};END_DEF;DEF TWO(K);SIDE(K);END_DEF;TWO({given})", "SIDE"),
         (f"N = {given};{body}", ""),
     ):
-        (diagnostic,) = (each for each in check(text) if each.code.number == code)
+        (diagnostic,) = (diagnostic for diagnostic in check(text) if diagnostic.code.number == code)
         for language in languages():
-            said = message(diagnostic, Source(text, ""), language).fix
-            assert ("SIDE" in said) == bool(called), (text, said)
+            fix = message(diagnostic, Source(text, ""), language).fix
+            assert ("SIDE" in fix) == bool(called), (text, fix)
 
 
 EXTRAS = (" = 5", "=5", " + 1", "=-5", " = (5)", " = MAX(1, 2)", " < 3")
@@ -129,9 +131,9 @@ def test_what_follows_a_name_in_a_def_is_named_and_its_header_shown(count: int, 
     right = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
     for place in range(count):
         wrong = right.replace(names[place], names[place] + extra, 1)
-        (found,) = check(wrong)
-        assert found.code.number == "TS091", wrong
-        assert found.values["fix"] == right.split("\n")[0], wrong
+        (diagnostic,) = check(wrong)
+        assert diagnostic.code.number == "TS091", wrong
+        assert diagnostic.values["fix"] == right.split("\n")[0], wrong
 
 
 @pytest.mark.parametrize("count", range(2, PARAMETERS + 1))
@@ -142,8 +144,11 @@ def test_a_comma_that_is_missing_in_a_def_is_shown_in_its_header(count: int) -> 
         joints = [" " if bits >> k & 1 else ", " for k in range(count - 1)]
         head = "".join(map("".join, zip(names, [*joints, ""], strict=True)))
         wrong = right.replace(", ".join(names), head, 1)
-        (found,) = check(wrong)
-        assert (found.code.number, found.values["fix"]) == ("TS017", right.split("\n")[0]), wrong
+        (diagnostic,) = check(wrong)
+        assert (diagnostic.code.number, diagnostic.values["fix"]) == (
+            "TS017",
+            right.split("\n")[0],
+        ), wrong
 
 
 @pytest.mark.parametrize("word", sorted(word for word in WORDS if WORDS[word].is_call))
@@ -159,9 +164,9 @@ def test_a_def_by_a_word_of_the_language_is_renamed_with_its_calls(word: str, co
     wrong = program.format(word)
     (diagnostic,) = check(wrong)
     assert diagnostic.code.number == "TS105"
-    made = apply_edits(wrong, edits_of(diagnostic) or [])
-    assert made == program.format(f"{word}_1")
-    assert not [each for each in check(made) if each.is_mistake]
+    repaired = apply_edits(wrong, edits_of(diagnostic) or [])
+    assert repaired == program.format(f"{word}_1")
+    assert not [diagnostic for diagnostic in check(repaired) if diagnostic.is_mistake]
 
 
 UNKNOWN = ("I", "FOO", "HACER", "XX")
@@ -178,7 +183,7 @@ def test_calls_in_a_row_are_instructions_also_of_unknown_words(place: str) -> No
         first, *others = check(wrong)
         assert first.code.number == "TS013", wrong
         assert apply_edits(wrong, edits_of(first) or []) == place.format(";".join(calls)), wrong
-        assert [each.values.get("found") for each in others] == [word], wrong
+        assert [other.values.get("found") for other in others] == [word], wrong
 
 
 @pytest.mark.parametrize("point", [". ", " . ", ".  "])

@@ -30,8 +30,8 @@ def test_a_unit_that_is_a_value_goes_to_its_own(
     begun = "V = 12;" if "V" in (value, power) else ""
     for place in PLACES:
         wrong, right = (
-            place.replace("SI|", f"SI|{begun}").format(each)
-            for each in (
+            place.replace("SI|", f"SI|{begun}").format(call)
+            for call in (
                 form.format(w=word, u=unit, v=value, p=power),
                 f"{word}({value} {unit}, {power})",
             )
@@ -48,7 +48,7 @@ def test_a_comma_between_thousands_is_none_between_values(place: str) -> None:
 
 @pytest.mark.parametrize("text", ["W(1,500)", "BEEP(1,500, 440)", "F(1,500)", "MAX(1,500)"])
 def test_where_decimals_go_the_comma_may_be_theirs(text: str) -> None:
-    assert not any("1500" in each.values.get("fix", "") for each in check(f"SI|{text}"))
+    assert not any("1500" in diagnostic.values.get("fix", "") for diagnostic in check(f"SI|{text}"))
 
 
 @pytest.mark.parametrize("place", PLACES)
@@ -58,11 +58,11 @@ def test_the_seconds_of_motors_are_those_of_a_wait(
     place: str, time: str, left: str, right: str
 ) -> None:
     wrong = place.replace("SI|", "SI|V = 12;").format(f"M({left}, {right}, {time})")
-    (found,) = [each for each in check(wrong) if each.is_mistake]
+    (diagnostic,) = [diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake]
     shown = f"M({left}, {right});W({time})" + ";S" * place.endswith("|{}")
-    assert message(found, Source(wrong), "en").fix == shown
-    made = apply_edits(wrong, edits_of(found) or [])
-    assert made == wrong.replace(f"M({left}, {right}, {time})", shown)
+    assert message(diagnostic, Source(wrong), "en").fix == shown
+    repaired = apply_edits(wrong, edits_of(diagnostic) or [])
+    assert repaired == wrong.replace(f"M({left}, {right}, {time})", shown)
     assert repair_program(wrong, check).text == wrong  # it may run on, too
 
 

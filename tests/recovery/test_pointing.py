@@ -25,7 +25,7 @@ def alike(text: str) -> str:
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(4))
 def test_the_text_under_the_caret_is_what_the_message_names(part: int) -> None:
-    seen = 0
+    count = 0
     for entry in entries()[part::4]:
         source = Source(entry.program)
         for diagnostic in check(entry.program):
@@ -35,14 +35,14 @@ def test_the_text_under_the_caret_is_what_the_message_names(part: int) -> None:
             if not named or diagnostic.code in OTHERS or not names_found(diagnostic):
                 continue
             if named in alike(line):
-                seen += 1
+                count += 1
                 end = shown.end_column - 1 if shown.end_line == shown.line else len(line)
                 assert alike(line[shown.column - 1 : end]) == named, (entry.program, diagnostic)
-    assert seen > 200
+    assert count > 200
 
 
 @each_row(
-    "program, found",
+    "program, piece",
     [
         ("DISTÂNCIA := 5", ":="),
         ("TAMAÑO := 5", ":="),
@@ -53,9 +53,9 @@ def test_the_text_under_the_caret_is_what_the_message_names(part: int) -> None:
         ("se NÃO(DISTANCE < 10);S;FIM", "se"),
     ],
 )
-def test_a_message_names_the_sign_alone(program: str, found: str) -> None:
+def test_a_message_names_the_sign_alone(program: str, piece: str) -> None:
     diagnostic = check(program)[0]
-    assert diagnostic.values["found"].lower() == program[slice(*diagnostic.span)] == found
+    assert diagnostic.values["found"].lower() == program[slice(*diagnostic.span)] == piece
 
 
 @each_row(

@@ -30,12 +30,12 @@ OF_A_LINE = ("^^", "$$", r"\A", r"\Z")
 
 def examples() -> list[str]:
     """Return the examples of all rows that speak of an instruction, each on one line."""
-    found = []
+    texts = []
     for pattern, *_, example in chain(rewrites.cells(rows.SIGNS), rewrites.cells(rows.TOKENS)):
         wrong = example.rpartition(" => ")[0].strip()
-        if not any(each in pattern for each in OF_A_LINE) and "//" not in example:
-            found.append(re.sub(r"\s*⏎\s*", ";", re.sub(r"^SI\s*\|", "", wrong)))
-    return [*dict.fromkeys(found)]
+        if not any(sign in pattern for sign in OF_A_LINE) and "//" not in example:
+            texts.append(re.sub(r"\s*⏎\s*", ";", re.sub(r"^SI\s*\|", "", wrong)))
+    return [*dict.fromkeys(texts)]
 
 
 @lru_cache(None)
@@ -60,7 +60,7 @@ def words_of(text: str) -> tuple[str, ...]:
 
 
 def ends(text: str) -> int:
-    return sum(each in WORD_OF_END for each in texts(lexemes(text)))
+    return sum(text in WORD_OF_END for text in texts(lexemes(text)))
 
 
 @pytest.mark.sampled("part")

@@ -38,13 +38,13 @@ ROWS: list[rewrites.SignRow | rewrites.TokenRow] = [*rewrites.sign_rows(), *rewr
 @each_row("row", [pytest.param(row, id=row.example[0][:50]) for row in ROWS])
 def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.TokenRow | rewrites.SignRow) -> None:
     wrong, right = row.example
-    made = []
+    readings = []
     for kit in KITS:
-        found = Recovery(wrong, kit, partial(mistakes, kit)).best_candidate()
-        made.append(found and found.text)
-        if made[-1] == right:
+        candidate = Recovery(wrong, kit, partial(mistakes, kit)).best_candidate()
+        readings.append(candidate and candidate.text)
+        if readings[-1] == right:
             return
-    assert made == [right]
+    assert readings == [right]
 
 
 def meant(text: str) -> Candidate | None:
@@ -52,14 +52,20 @@ def meant(text: str) -> Candidate | None:
 
 
 def mistakes(kit: Kit, text: str) -> list[Code]:
-    return [each.code for each in analyze(text, kit).diagnostics if each.is_mistake]
+    return [
+        diagnostic.code for diagnostic in analyze(text, kit).diagnostics if diagnostic.is_mistake
+    ]
 
 
 def right_programs() -> list[str]:
     folders = catalogue.folders()
-    answers = [answer.program for each in folders for answer in catalogue.answers(each)[0]]
-    kept = [entry.program for entry in entries() if not entry.said]
-    return [each for each in (*programs(), *answers, *kept) if not mistakes(KIT, each)]
+    answers = [answer.program for folder in folders for answer in catalogue.answers(folder)[0]]
+    programs_right = [entry.program for entry in entries() if not entry.messages]
+    return [
+        program
+        for program in (*programs(), *answers, *programs_right)
+        if not mistakes(KIT, program)
+    ]
 
 
 def test_a_right_program_is_read_without_a_rewrite() -> None:
@@ -74,7 +80,7 @@ def test_a_right_program_is_read_without_a_rewrite() -> None:
 
 def is_whole(line: list[Lexeme]) -> bool:
     """Whether no bracket of a line is closed on another one, and no `=` compares behind `=`."""
-    signs = [each.text for each in line]
+    signs = [lexeme.text for lexeme in line]
     return signs.count("(") == signs.count(")") and signs[3:4] != ["="]
 
 
@@ -95,11 +101,11 @@ def is_whole(line: list[Lexeme]) -> bool:
 def test_an_explanation_has_a_slip_and_its_edits(
     wrong: str, code: str, values: dict[str, str], edit: Edit
 ) -> None:
-    found = meant(wrong)
-    assert found is not None
-    (said,) = explain_candidate(wrong, found)
-    assert (said.code, said.edits) == (CODES[code], [edit])
-    assert said.values_as(said.code) == {**values, "whole": "", "ends": ""}
+    candidate = meant(wrong)
+    assert candidate is not None
+    (explanation,) = explain_candidate(wrong, candidate)
+    assert (explanation.code, explanation.edits) == (CODES[code], [edit])
+    assert explanation.values_as(explanation.code) == {**values, "whole": "", "ends": ""}
 
 
 ASKED_FOR = {codes.BAD_NAME: {"found"}, codes.NAME_WITH_SPACE: {"found"}}  # by `dedupe`
@@ -121,16 +127,16 @@ def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
             text = languages.find_text("messages", f"{code.number}/{part}/{k}", "en")
     assert named <= set().union(*asked) | ASKED_FOR.get(code, set())
     own = {"found", "right", "before", "word", "usage", "fix", "letter", "takes"}
-    whole = [each & own for each in asked if each <= own | OF_BLOCKS]
+    whole = [names & own for names in asked if names <= own | OF_BLOCKS]
     assert code in OTHERS_SAY or set().union(*whole) <= named
 
 
 def test_a_line_is_searched_once_for_the_same_names() -> None:
     line = lexemes("F(2 80)")
     one, same, other = (Names([lexemes(text)], KIT) for text in ("", "", "X = 1"))
-    found = lines.read(line, one)
-    assert lines.read(line, same) is found
-    assert lines.read(line, other) is not found
+    readings = lines.read(line, one)
+    assert lines.read(line, same) is readings
+    assert lines.read(line, other) is not readings
 
 
 def test_the_parser_says_where_it_cannot_go_on() -> None:
@@ -158,8 +164,8 @@ def test_the_parser_says_where_it_cannot_go_on() -> None:
     ],
 )
 def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
-    found = meant(wrong)
-    assert found is None or not found.is_applied
+    candidate = meant(wrong)
+    assert candidate is None or not candidate.is_applied
 
 
 @pytest.mark.parametrize(
@@ -176,8 +182,8 @@ def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
     ],
 )
 def test_what_can_mean_nothing_else_is_made(wrong: str, right: str | None) -> None:
-    found = meant(wrong)
-    assert (found.text if found and found.is_applied else None) == right
+    candidate = meant(wrong)
+    assert (candidate.text if candidate and candidate.is_applied else None) == right
 
 
 @pytest.mark.parametrize(
@@ -197,8 +203,8 @@ def test_words_of_a_kit_are_read_on_its_robots_alone(
     wrong: str, kit: str, right: str | None
 ) -> None:
     own = robots.load(kit).kit
-    found = Recovery(wrong, own, partial(mistakes, own)).best_candidate()
-    assert (found.text if found and found.is_applied else None) == right
+    candidate = Recovery(wrong, own, partial(mistakes, own)).best_candidate()
+    assert (candidate.text if candidate and candidate.is_applied else None) == right
 
 
 @pytest.mark.parametrize(
@@ -209,8 +215,11 @@ def test_words_of_a_kit_are_read_on_its_robots_alone(
     ],
 )
 def test_what_may_be_meant_is_a_question(wrong: str, asked: str | None) -> None:
-    found = meant(wrong)
-    assert (found and found.text, bool(found and found.is_applied)) == (asked, False)
+    candidate = meant(wrong)
+    assert (candidate and candidate.text, bool(candidate and candidate.is_applied)) == (
+        asked,
+        False,
+    )
 
 
 @pytest.mark.parametrize(("how", "is_made"), [("applied", False), ("offered", True)])
@@ -229,4 +238,4 @@ def test_a_program_for_another_robot_gets_messages(kit: OracleKit) -> None:
     """Its words are unknown wherever they are, at the begin of a line within brackets too."""
     for seed in range(40, 60):
         text = written.program(random.Random(seed), kit)
-        assert any(check_text(text, each).diagnostics for each in KITS), seed
+        assert any(check_text(text, kit).diagnostics for kit in KITS), seed

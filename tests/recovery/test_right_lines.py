@@ -33,25 +33,25 @@ _START = re.compile(r"(?i)\b(?:S[IB]\s*\||PING)")
 
 @cache
 def right() -> list[str]:
-    own = [*programs(), *(entry.program for entry in entries() if not entry.said), *ODD]
-    return sorted(each for each in own if _starts_at_once(each) and not _mistakes(each))
+    own = [*programs(), *(entry.program for entry in entries() if not entry.messages), *ODD]
+    return sorted(line for line in own if _starts_at_once(line) and not _mistakes(line))
 
 
 @cache
 def wrong() -> list[str]:
     """Return lines that are wrong for themselves: of pupils, none of them meant for a block."""
-    found = ["F(2;80)"]
+    lines = ["F(2;80)"]
     for entry in entries():
         line = entry.program
         if re.search(r"[\n|{}]|//|~", line) or "(" not in line or not _mistakes(line):
             continue
-        said = [
+        texts = [
             line,
             *(value for diagnostic in check(line) for value in diagnostic.values.values()),
         ]
-        if not {*re.findall(r"\w+", " ".join(said).upper())} & _OF_BLOCKS:
-            found.append(line)
-    return sorted(found)
+        if not {*re.findall(r"\w+", " ".join(texts).upper())} & _OF_BLOCKS:
+            lines.append(line)
+    return sorted(lines)
 
 
 _OF_BLOCKS = {word for word, row in WORDS.items() if row.role.belongs_to_blocks} | {"SI", "SB"}

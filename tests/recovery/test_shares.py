@@ -24,8 +24,8 @@ def test_a_percentage_of_a_sensor_is_shown_as_its_number(
 ) -> None:
     for place in PLACES:
         wrong = place.replace("{}", asked + percent)
-        (found,) = check(wrong)
-        tried = message(found, Source(wrong), "en").fix
+        (diagnostic,) = check(wrong)
+        tried = message(diagnostic, Source(wrong), "en").fix
         assert f"write {share};" in tried and tried.endswith(f"write {asked}"), place
         assert repair_program(wrong, check).text == wrong
 

@@ -12,8 +12,9 @@ from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, scan
 
-RIGHT = [each.text for each in programs()
-         if each.robot == "tinibot" and "~" not in each.text and not check(each.text)]  # fmt: skip
+RIGHT = [program.text for program in programs()
+         if program.robot == "tinibot" and "~" not in program.text
+         and not check(program.text)]  # fmt: skip
 STEPS = ("{}++", "{}--", "{} ++", "{} --")
 BEGINS = (";", "|", NEWLINE)  # before the name that gets a value
 FRAMES = (
@@ -41,7 +42,7 @@ def test_a_plus_before_a_number_goes_and_the_number_stays(part: int) -> None:
                 continue
             wrong = f"{text[: token.start]}+{text[token.start :]}"
             diagnostics = check(wrong)
-            assert [(each.code, each.span.start) for each in diagnostics] == [
+            assert [(diagnostic.code, diagnostic.span.start) for diagnostic in diagnostics] == [
                 (codes.EXTRA_WORD, token.start)
             ], wrong
             assert (
@@ -67,7 +68,7 @@ def test_one_more_or_less_is_read_everywhere(step: str, frame: str) -> None:
     sign = step.strip("{} ")[0]
     mended = repair_program(text, check).text
     assert f"SPEED = SPEED {sign}" in mended and mended.count("SPEED") == 4
-    assert not [each for each in check(mended) if each.code.is_mistake]
+    assert not [diagnostic for diagnostic in check(mended) if diagnostic.code.is_mistake]
 
 
 @pytest.mark.parametrize("word", ["AND", "OR"])
@@ -78,7 +79,7 @@ def test_one_more_or_less_is_read_everywhere(step: str, frame: str) -> None:
 def test_questions_in_brackets_of_their_own_are_one(frame: str, word: str) -> None:
     text = frame.format(f"(DISTANCE < 10) {word} (LIGHT_L < 20)")
     mended = repair_program(text, check).text
-    assert not [each for each in check(mended) if each.code.is_mistake]
+    assert not [diagnostic for diagnostic in check(mended) if diagnostic.code.is_mistake]
     assert mended.replace(" ", "") == frame.format(
         f"((DISTANCE < 10) {word}(LIGHT_L < 20))"
     ).replace(" ", "")

@@ -1,4 +1,4 @@
-"""The rows of suggestions: what is told of words behind an instruction, and what is read then."""
+"""The rows of suggestions: what is said about words after an instruction, and what is read."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ KIT = robots.load(robots.DEFAULT).kit
 def test_the_example_of_a_row_is_told_as_it_says(row: SuggestionRow) -> None:
     wrong, expected = row.example
     name, _, value = expected.partition("=")
-    beside = [each.diagnostic for each in find_suggestions(wrong, KIT)]
+    beside = [suggestion.diagnostic for suggestion in find_suggestions(wrong, KIT)]
     assert len(beside) < 2
-    found = [
-        each
-        for each in beside or check(wrong)
-        if row.code in (each.code, None)
-        and expected in (f"{name}={each.values.get(name)}", each.code.number)
+    diagnostics = [
+        diagnostic
+        for diagnostic in beside or check(wrong)
+        if row.code in (diagnostic.code, None)
+        and expected in (f"{name}={diagnostic.values.get(name)}", diagnostic.code.number)
     ]
-    assert found and value == found[0].values.get(name, "")
-    assert {*row.values} - {"?", "*"} <= {*found[0].values}
+    assert diagnostics and value == diagnostics[0].values.get(name, "")
+    assert {*row.values} - {"?", "*"} <= {*diagnostics[0].values}
 
 
 def test_what_was_found_is_told_by_the_row_of_its_example() -> None:
@@ -79,18 +79,18 @@ def test_each_heading_names_the_laws_that_its_rows_keep(table: str) -> None:
     ],
 )
 def test_what_is_no_note_is_left_to_others(wrong: str) -> None:
-    found = {each.diagnostic.code.number for each in find_suggestions(wrong, KIT)}
-    assert not found & {"TS071", "TS085"}
+    codes = {suggestion.diagnostic.code.number for suggestion in find_suggestions(wrong, KIT)}
+    assert not codes & {"TS071", "TS085"}
 
 
 def test_a_block_is_no_note_of_what_stands_before_it() -> None:
-    found = {each.code.number for each in check("B(1, 60) IF(DISTANCE < 10)\nS\nENDIF")}
-    assert not found & {"TS071", "TS085"}
+    codes = {diagnostic.code.number for diagnostic in check("B(1, 60) IF(DISTANCE < 10)\nS\nENDIF")}
+    assert not codes & {"TS071", "TS085"}
 
 
 def test_what_is_wrong_beside_the_words_is_told_too() -> None:
-    found = check("F(2 80) hola\nW(2) espero; AVANZA(1, 80)")
-    assert [(each.code.number, each.values["fix"]) for each in found] == [
+    diagnostics = check("F(2 80) hola\nW(2) espero; AVANZA(1, 80)")
+    assert [(diagnostic.code.number, diagnostic.values["fix"]) for diagnostic in diagnostics] == [
         ("TS017", "F(2, 80)"),
         ("TS085", "// hola"),  # its instruction has a repair of its own
         ("TS085", ""),  # something else follows on the line
@@ -110,7 +110,7 @@ def test_what_stands_above_is_meant_again(wrong: str, expected: dict[str, str]) 
 
 @pytest.mark.parametrize("wrong", ["LOOP(2)\n...\nEND_LOOP", "idem", '"\nF(2, 80)', "F(2, 80)."])
 def test_nothing_stands_above_that_could_be_meant(wrong: str) -> None:
-    assert not {each.code.number for each in check(wrong)} & {"TS130", "TS131"}
+    assert not {diagnostic.code.number for diagnostic in check(wrong)} & {"TS130", "TS131"}
 
 
 def test_what_follows_a_question_in_words_is_told_with_it() -> None:
@@ -130,8 +130,8 @@ def test_a_repair_beside_words_does_not_drop_them() -> None:
 
 
 def test_a_number_of_another_unit_is_converted() -> None:
-    (found,) = check("S 500 ms")
-    assert found.values["fix"] == "S;W(0.5)"
+    (diagnostic,) = check("S 500 ms")
+    assert diagnostic.values["fix"] == "S;W(0.5)"
 
 
 @pytest.mark.parametrize(
@@ -147,5 +147,5 @@ def test_a_number_of_another_unit_is_converted() -> None:
     ],
 )  # fmt: skip
 def test_values_of_a_row_are_filled(wrong: str, values: dict[str, str]) -> None:
-    (found,) = check(wrong)
-    assert values.items() <= found.values.items()
+    (diagnostic,) = check(wrong)
+    assert values.items() <= diagnostic.values.items()

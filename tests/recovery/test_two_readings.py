@@ -35,7 +35,9 @@ AROUND = ("{}", "SI|W(1);{}", "{};S", "LOOP(3);{};END_LOOP", "DEF A1;{};END_DEF;
 def test_words_that_may_be_a_note_are_one_first(words: str, language: str) -> None:
     for place in (*LAST, *BEFORE_OTHERS):
         text = place.format(f"F(3, 50) {words}")
-        diagnostic = next(each for each in check(text) if each.code.number in ("TS085", "TS074"))
+        diagnostic = next(
+            diagnostic for diagnostic in check(text) if diagnostic.code.number in ("TS085", "TS074")
+        )
         fix = message(diagnostic, Source(text), language).fix
         note = f"F(3, 50) // {words}" if place in LAST else f"// {words}"
         assert 0 < fix.find(note) < fix.find(ASIDES[words]), text
@@ -50,7 +52,9 @@ def test_an_else_that_asks_the_opposite_asks_nothing(
 ) -> None:
     body = between.join((f"IF({asked})", "B(1, 60)", f"ELSE({other})", "F(1, 60)", "ENDIF"))
     wrong = around.format(body)
-    diagnostic = next(each for each in check(wrong) if each.code.number == "TS039")
+    diagnostic = next(
+        diagnostic for diagnostic in check(wrong) if diagnostic.code.number == "TS039"
+    )
     assert (diagnostic.values["fix"], diagnostic.values["rival"]) == ("ELSE", f"ELSEIF({other})"), (
         wrong
     )
@@ -62,7 +66,9 @@ def test_an_else_that_asks_the_opposite_asks_nothing(
 @pytest.mark.parametrize("other", ["DISTANCE > 40", "LIGHT_L > 20", "DISTANCE < 10"])
 def test_an_else_that_asks_something_else_is_an_elseif(around: str, other: str) -> None:
     wrong = around.format(f"IF(DISTANCE < 20);B(1, 60);ELSE({other});F(1, 60);ENDIF")
-    diagnostic = next(each for each in check(wrong) if each.code.number == "TS039")
+    diagnostic = next(
+        diagnostic for diagnostic in check(wrong) if diagnostic.code.number == "TS039"
+    )
     assert diagnostic.values["fix"] == f"ELSEIF({other})"
 
 

@@ -94,29 +94,34 @@ def test_what_is_wrong_is_said_in_a_sentence(clone: Path) -> None:
     for why, change in WRONG.items():
         change(clone)
         commit(clone)
-        found = list(facts.complaints(clone))
-        assert len(found) == 1 and why in found[0] and len(found[0]) < 200, (why, found)
+        complaints = list(facts.complaints(clone))
+        assert len(complaints) == 1 and why in complaints[0] and len(complaints[0]) < 200, (
+            why,
+            complaints,
+        )
         git(clone, "reset", "-q", "--hard", "HEAD~")
 
 
 def test_a_file_that_is_not_committed_is_named(clone: Path) -> None:
     (clone / "new.txt").touch()
-    (found,) = facts.complaints(clone)
-    assert found.startswith("1 files are not committed, new.txt among them.")
+    (complaint,) = facts.complaints(clone)
+    assert complaint.startswith("1 files are not committed, new.txt among them.")
 
 
 def test_another_commit_with_the_tag_of_this_version_is_told(clone: Path) -> None:
     git(clone, "tag", f"v{VERSION}")
     commit(clone)
-    (found,) = facts.complaints(clone)
-    assert found == f"The tag v{VERSION} is that of another commit: give this one a new version."
+    (complaint,) = facts.complaints(clone)
+    assert (
+        complaint == f"The tag v{VERSION} is that of another commit: give this one a new version."
+    )
 
 
 def test_a_tag_of_another_version_is_told(clone: Path) -> None:
     git(clone, "tag", "v1.2.3")
     git(clone, "tag", "seen")
-    (found,) = facts.complaints(clone)
-    assert "v1.2.3" in found and VERSION in found
+    (complaint,) = facts.complaints(clone)
+    assert "v1.2.3" in complaint and VERSION in complaint
 
 
 def test_a_release_gets_its_tag_once(clone: Path) -> None:
@@ -140,18 +145,23 @@ def test_an_address_has_one_place() -> None:
     assert facts.with_address(once, URL) == once
 
 
+@pytest.mark.parametrize("is_tagged", [False, True])
 def test_an_address_is_kept_where_it_is_another_one(
-    clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_tagged: bool
 ) -> None:
+    """What is ready to be released still is."""
     monkeypatch.setattr(release, "ROOT", clone)
+    if is_tagged:
+        release.tag(clone, VERSION)
     for url, commits in ((URL, 1), ("https://example.org/other", 2)):
         scratch = tmp_path / str(commits)
         scratch.mkdir()
-        made, _ = release._clones(scratch, url, whole_stick=False)
-        kept = subprocess.run(["git", "-C", made.root, "log", "--format=%s"], text=True,
+        shared_clone, _ = release._clones(scratch, url, whole_stick=False)
+        log = subprocess.run(["git", "-C", shared_clone.root, "log", "--format=%s"], text=True,
                               capture_output=True, check=True)  # fmt: skip
-        assert len(kept.stdout.splitlines()) == commits
-        assert made.address == url
+        assert len(log.stdout.splitlines()) == commits
+        assert shared_clone.address == url
+        assert list(facts.complaints(shared_clone.root)) == []
 
 
 def test_this_repository_agrees_with_itself() -> None:

@@ -23,11 +23,11 @@ def test_a_process_that_builds_has_the_time_of_the_commit_and_no_settings(
 ) -> None:
     monkeypatch.setenv("PYTHONSTARTUP", "x")
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1")
-    found = Clone(tmp_path, tmp_path, "1", "", 77, 2, False).environment()
-    assert found["SOURCE_DATE_EPOCH"] == "77"
-    assert found["PYTHONHASHSEED"] == "2"
-    assert found["PYTHONPATH"].startswith(str(tmp_path))
-    assert "PYTHONSTARTUP" not in found
+    variables = Clone(tmp_path, tmp_path, "1", "", 77, 2, False).environment()
+    assert variables["SOURCE_DATE_EPOCH"] == "77"
+    assert variables["PYTHONHASHSEED"] == "2"
+    assert variables["PYTHONPATH"].startswith(str(tmp_path))
+    assert "PYTHONSTARTUP" not in variables
 
 
 @pytest.mark.parametrize(

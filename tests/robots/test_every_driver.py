@@ -55,8 +55,8 @@ def test_a_device_is_read_or_set_by_firmware_and_sketch(driver: Driver) -> None:
 @pytest.mark.parametrize("driver", DRIVERS.values(), ids=names([*DRIVERS.values()]))
 def test_a_driver_is_told_to_who_writes_a_profile(driver: Driver) -> None:
     sample = ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml"
-    said = re.findall(r"(?m)^# {3,}(.*)", sample.read_text(encoding="utf-8"))
-    assert re.search(rf"\b{driver.name}\b", " ".join(said)), "python -m tools.generate"
+    headings = re.findall(r"(?m)^# {3,}(.*)", sample.read_text(encoding="utf-8"))
+    assert re.search(rf"\b{driver.name}\b", " ".join(headings)), "python -m tools.generate"
 
 
 def test_a_driver_that_a_sketch_does_not_know_is_named() -> None:
@@ -186,7 +186,7 @@ def with_parts(chip: str, parts: Sequence[str]) -> Robot:
     boards_with_some = (with_discs(chip, DISCS[0]).board, robots.load("tinibot").board)
     chosen: dict[str, Any] = dict.fromkeys(OPTIONAL)
     for name in set(OPTIONAL) & set(parts):
-        chosen[name] = next(filter(None, (getattr(each, name) for each in boards_with_some)))
+        chosen[name] = next(filter(None, (getattr(board, name) for board in boards_with_some)))
     return kit_robot._replace(board=kit_robot.board._replace(**chosen))
 
 

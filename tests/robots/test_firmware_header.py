@@ -45,23 +45,23 @@ def table(board: str, name: str) -> list[str]:
 def test_pins_are_where_the_core_has_them(board: str) -> None:
     ports = table(board, "digital_pin_to_port_PGM")
     masks = table(board, "digital_pin_to_bit_mask_PGM")
-    found = {
+    bits = {
         pin: Bit(port[1].lower(), int(re.sub(r"\D", "", mask)))
         for pin, (port, mask) in enumerate(zip(ports, masks, strict=True))
     }
-    assert dict(AVRS[board].bit_by_pin) == found
+    assert dict(AVRS[board].bit_by_pin) == bits
 
 
 @needs_core
 @pytest.mark.parametrize("board", sorted(AVRS))
 def test_pwm_is_where_the_core_has_it(board: str) -> None:
-    found = {
+    compares = {
         pin: Compare(int(name[5]), name[6].lower())
         for pin, name in enumerate(table(board, "digital_pin_to_timer_PGM"))
         if name != "NOT_ON_TIMER"
     }
-    assert dict(AVRS[board].compare_by_pin) == found
-    assert {pin: compare.timer for pin, compare in found.items()} == dict(
+    assert dict(AVRS[board].compare_by_pin) == compares
+    assert {pin: compare.timer for pin, compare in compares.items()} == dict(
         CHIPS[board].timer_of_pwm_pin
     )
 
@@ -96,14 +96,14 @@ def test_shipped_headers_are_for_every_board_that_they_fit() -> None:
         ("tinibot32", ["esp32dev"]),
         ("tinibotc3", ["esp32c3"]),
     ):
-        found = []
+        fitting = []
         for board in firmware.BOARDS:
             try:
-                found.append(wired(board, name))
+                fitting.append(wired(board, name))
             except ProfileRefused:
                 continue
-        assert [robot.board.chip for robot in found] == fit
-        header = firmware.header(found, f"python -m tools.generate from robots/{name}.toml.")
+        assert [robot.board.chip for robot in fitting] == fit
+        header = firmware.header(fitting, f"python -m tools.generate from robots/{name}.toml.")
         assert header == (KITS / f"{name}.h").read_text(encoding="utf-8")
 
 
@@ -194,8 +194,8 @@ def test_two_echoes_have_their_vectors_once() -> None:
 
 def test_board_writes_the_header(tsc: Tsc, tmp_path: Path) -> None:
     target = tmp_path / "own.h"
-    done = tsc("firmware", "--board", "liner", "-o", target)
-    assert done.code == 0 and "pio run -d vm_arduino -e nano" in done.out
+    result = tsc("firmware", "--board", "liner", "-o", target)
+    assert result.code == 0 and "pio run -d vm_arduino -e nano" in result.out
     header = target.read_text(encoding="utf-8")
     assert (
         header
@@ -221,7 +221,7 @@ def test_board_refuses_what_it_cannot_read(tsc: Tsc) -> None:
 
 
 def test_the_header_of_an_esp32(tsc: Tsc) -> None:
-    said = tsc("firmware", "--board", "tinibotc3").out
+    output = tsc("firmware", "--board", "tinibotc3").out
     for line in (
         "#if defined(CONFIG_IDF_TARGET_ESP32C3)  // esp32c3",
         "#define tiniscript_motors_two_wire",
@@ -230,8 +230,8 @@ def test_the_header_of_an_esp32(tsc: Tsc) -> None:
         "constexpr TwoWire kLeftMotor = {{{3}, 2}, {{4}, 3}};",  # a channel each, from an even one
         "  return {{2}, {{6}}};",
     ):
-        assert line in said.splitlines()
-    assert "kPort" not in said and "ultrasonic_vectors" not in said
+        assert line in output.splitlines()
+    assert "kPort" not in output and "ultrasonic_vectors" not in output
 
 
 # -- the Arduino IDE's own builder

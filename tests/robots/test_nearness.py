@@ -57,11 +57,11 @@ def test_more_in_common_counts_before_fewer_others() -> None:
 def test_the_command_says_it_of_a_file_and_of_nothing_shipped(tsc: Tsc, tmp_path: Path) -> None:
     own = tmp_path / "mine.toml"
     own.write_text(TEXTS["tinibot"], encoding="utf-8")
-    done = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
-    assert "Your robot has the same kit as tinibot" in done.err
+    result = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
+    assert "Your robot has the same kit as tinibot" in result.err
     own.write_text(TEXTS["grabber"].replace("[0, 180]", "[0, 90]"), encoding="utf-8")
-    done = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
-    assert done.err == (
+    result = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
+    assert result.err == (
         "The robot that comes with tsc and is nearest to yours is grabber. In common: DISTANCE,"
         " TEMPERATURE, BUTTON, LED. Only grabber has: GRIPPER. Only yours has: GRIPPER.\n"
     )

@@ -13,7 +13,7 @@ import pytest
 
 from tests.support.edited_robots import TEXTS, edited
 from tests.support.rows import each_row
-from tests.support.texts import LANGUAGES, said
+from tests.support.texts import LANGUAGES, catalogue_texts
 from tiniscript import robots
 from tiniscript.robots.boards import NEEDS
 from tiniscript.robots.profile import ProfileRefused, Robot
@@ -138,7 +138,7 @@ def test_refusals(code: str, name: str, old: str, new: str, path: str | None) ->
     if path is None:
         assert codes(refused) == [code]
     else:
-        assert (code, path) in [(each, values["path"]) for each, values in refused.reasons]
+        assert (code, path) in [(reason, values["path"]) for reason, values in refused.reasons]
     for language in LANGUAGES:
         assert all(sentence for sentence in describe(refused, language))
 
@@ -241,7 +241,7 @@ def test_every_code_has_a_test() -> None:
         | {"no_such_robot", *(code for code, *_ in FILES)}
         | {code for code, *_ in REFUSED}
     )
-    texts = said("en", "refusals")
+    texts = catalogue_texts("en", "refusals")
     codes = {key.removeprefix("profile/") for key in texts if key.startswith("profile/")}
     assert tested == {code for code in codes if not code.endswith("/near")}
     assert {f"need/{need}" for need in NEEDS} == {key for key in texts if key[:5] == "need/"}
@@ -251,8 +251,8 @@ def test_all_complaints_come_at_once() -> None:
     text = edited("tinibot", "range = [0, 400]", "range = [4, 0]")
     text = text.replace("trigger = 4", "trigger = 1").replace('"LIGHT_R"', '"LOOP"', 1)
     text = text.replace("length_cm = 21", "length = 21")
-    found = codes(refusal(text))
-    assert {"range_empty", "pin_of_link", "name_is_word", "missing", "unknown_key"} <= set(found)
+    paths = codes(refusal(text))
+    assert {"range_empty", "pin_of_link", "name_is_word", "missing", "unknown_key"} <= set(paths)
 
 
 def test_a_missing_table_is_one_complaint() -> None:
@@ -302,19 +302,21 @@ def test_a_refusal_says_what_to_do() -> None:
     ],
 )  # fmt: skip
 def test_one_slip_is_one_complaint(name: str, old: str, new: str, sentences: list[str]) -> None:
-    said = describe(refusal(edited(name, old, new)), "en")
-    assert len(said) == len(sentences), said
-    for sentence, found in zip(sentences, said, strict=True):
-        assert sentence in found
+    complaints = describe(refusal(edited(name, old, new)), "en")
+    assert len(complaints) == len(sentences), complaints
+    for sentence, complaint in zip(sentences, complaints, strict=True):
+        assert sentence in complaint
 
 
 def test_another_name_in_the_kit_names_the_tables_that_need_it_too() -> None:
-    said = describe(refusal(edited("tinibot", 'name = "DISTANCE"', 'name = "DISTANCIA"')), "en")
-    assert [each.partition(":")[0] for each in said] == [
+    sentences = describe(
+        refusal(edited("tinibot", 'name = "DISTANCE"', 'name = "DISTANCIA"')), "en"
+    )
+    assert [sentence.partition(":")[0] for sentence in sentences] == [
         "board.sensors.DISTANCE", "body.sensors.DISTANCE",
         *(f"labels.{label}.DISTANCE" for label in robots.load("tinibot").labels),
     ]  # fmt: skip
-    assert all(each.endswith("Did you mean DISTANCIA?") for each in said)
+    assert all(sentence.endswith("Did you mean DISTANCIA?") for sentence in sentences)
 
 
 def test_what_is_shown_is_short_and_printable() -> None:

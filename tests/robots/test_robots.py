@@ -46,8 +46,8 @@ def test_a_shipped_robot_is_what_its_toml_says(name: str) -> None:
 
 def test_the_default_is_the_robot_of_the_paper() -> None:
     robot = robots.load(robots.DEFAULT)
-    seen = [(sensor.name, sensor.unit, sensor.low, sensor.high) for sensor in robot.kit.sensors]
-    assert seen == [
+    sensors = [(sensor.name, sensor.unit, sensor.low, sensor.high) for sensor in robot.kit.sensors]
+    assert sensors == [
         ("LIGHT_R", "", 0, 1_023_000),
         ("LIGHT_L", "", 0, 1_023_000),
         ("DISTANCE", "cm", 0, 400_000),
@@ -111,9 +111,9 @@ def test_the_fingerprint_sees_names_kinds_and_order() -> None:
         'driver = "analog"', 'driver = "digital"', 1
     )
     texts = [swapped.replace("LIGHT_X", "LIGHT_L"), renamed, other_kind]
-    found = {read(text, "x").kit.fingerprint for text in texts}
-    assert len(found) == 3
-    assert FINGERPRINTS["tinibot"] not in found
+    fingerprints = {read(text, "x").kit.fingerprint for text in texts}
+    assert len(fingerprints) == 3
+    assert FINGERPRINTS["tinibot"] not in fingerprints
 
 
 # ---- reading
@@ -183,8 +183,8 @@ def test_a_wire_that_is_optional_may_be_missing() -> None:
 def test_motor_drivers(motors: str, settings: dict[str, int]) -> None:
     before, _, after = TEXTS["tinibot"].partition("\n[board.motors]\n")
     pins = after.partition("left_pwm")[2].partition("\n\n")
-    kept = f"left_pwm{pins[0]}" if "l293d" in motors else ""
-    text = f"{before}\n[board.motors]\n{motors}\n{kept}\n{pins[2]}"
+    used_pin = f"left_pwm{pins[0]}" if "l293d" in motors else ""
+    text = f"{before}\n[board.motors]\n{motors}\n{used_pin}\n{pins[2]}"
     assert read(text, "x").board.motors.settings == settings
 
 

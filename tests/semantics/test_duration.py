@@ -13,10 +13,10 @@ KIT = robots.load("tinibot").kit
 
 
 def lasting(text: str, is_optimized: bool = True) -> Duration:
-    found = check_text(text, KIT)
-    assert found.is_right and found.program is not None, found.diagnostics
+    compilation = check_text(text, KIT)
+    assert compilation.is_right and compilation.program is not None, compilation.diagnostics
     return duration_of_program(
-        optimize_program(found.program) if is_optimized else found.program, KIT
+        optimize_program(compilation.program) if is_optimized else compilation.program, KIT
     )
 
 

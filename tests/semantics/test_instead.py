@@ -67,8 +67,8 @@ def test_a_move_of_another_unit_and_a_robot_without_one_get_a_number_of_their_ow
     assert fix_of("SI|DISTANCE = 30;R(DISTANCE, 60)").startswith("R does not take CM")
     kit = TINIBOT._replace(speed=0, turn=0)
     (diagnostic,) = check_text("SI|DISTANCE = 30;F(DISTANCE, 60)", kit).diagnostics
-    said = message(diagnostic, Source("SI|DISTANCE = 30;F(DISTANCE, 60)"), "en")
-    assert said.fix.startswith("F takes a time here, not CM")
+    full_message = message(diagnostic, Source("SI|DISTANCE = 30;F(DISTANCE, 60)"), "en")
+    assert full_message.fix.startswith("F takes a time here, not CM")
     assert fix_of("SI|LIGHT_L = 300;F(LIGHT_L, 60)") == "LIGHT_L_1 = 300"
 
 
@@ -132,15 +132,15 @@ def test_a_break_in_the_else_leaves_out_the_other_way_round() -> None:
      "SI|IF(DISTANCE < 9);BREAK;ENDIF;DEF A;S;END_DEF;A"],
 )  # fmt: skip
 def test_where_nothing_or_more_is_left_out_no_branch_is_offered(text: str) -> None:
-    said = next(it for it in check(text) if it.code.number == "TS115")
-    assert not said.values.get("fix") and said.repair is None
+    diagnostic = next(it for it in check(text) if it.code.number == "TS115")
+    assert not diagnostic.values.get("fix") and diagnostic.repair is None
 
 
 # -- a lamp -----------------------------------------------------------------------------------
 
 LAMPS = sorted(
-    word for word, said in lexicon().items()
-    if any(it.kind == "LED" and not it.value for it in said) and word != "LED"
+    word for word, entries in lexicon().items()
+    if any(it.kind == "LED" and not it.value for it in entries) and word != "LED"
 )  # fmt: skip
 LIGHTS = ["LIGHT", "LUZ"]
 SWITCHED = ["ON", "OFF", "HIGH", "LOW", "TRUE", "FALSE", "1", "0"]
@@ -155,8 +155,8 @@ def found_by(text: str, kit: Kit) -> list[Diagnostic]:
 @pytest.mark.parametrize("word", [*LAMPS, *LIGHTS])
 def test_a_robot_without_a_lamp_says_so(word: str, given: str, around: str) -> None:
     text = around.format(f"{word}({given})")
-    (said,) = [message(it, Source(text), "en") for it in found_by(text, TINIBOT)]
-    assert (said.code, f"no lamp that a program can switch with {word}" in said.message) == (
+    (shown,) = [message(it, Source(text), "en") for it in found_by(text, TINIBOT)]
+    assert (shown.code, f"no lamp that a program can switch with {word}" in shown.message) == (
         "TS122", True,
     )  # fmt: skip
 

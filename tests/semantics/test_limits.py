@@ -19,14 +19,14 @@ def variables(count: int) -> str:
 
 
 def defs(count: int) -> str:
-    made = ";".join(f"DEF D{k};S;END_DEF" for k in range(count))
-    return made + ";" + ";".join(f"D{k}" for k in range(count))
+    defs_text = ";".join(f"DEF D{k};S;END_DEF" for k in range(count))
+    return defs_text + ";" + ";".join(f"D{k}" for k in range(count))
 
 
 def calls(count: int) -> str:
     """So many calls that are open at once: the first DEF calls nothing."""
-    made = ["DEF C0;S;END_DEF", *(f"DEF C{k};C{k - 1};END_DEF" for k in range(1, count))]
-    return ";".join([*made, f"C{count - 1}"])
+    def_rows = ["DEF C0;S;END_DEF", *(f"DEF C{k};C{k - 1};END_DEF" for k in range(1, count))]
+    return ";".join([*def_rows, f"C{count - 1}"])
 
 
 def deep(count: int) -> str:
@@ -58,17 +58,19 @@ LIMITS = [
 ]
 
 
-@pytest.mark.parametrize(("made", "limit", "code"), LIMITS)
+@pytest.mark.parametrize(("make", "limit", "code"), LIMITS)
 def test_what_just_fits_and_what_does_not(
-    made: Callable[[int], str], limit: int, code: Code
+    make: Callable[[int], str], limit: int, code: Code
 ) -> None:
-    fitting = compile_text(made(limit), KIT)
+    fitting = compile_text(make(limit), KIT)
     assert fitting.is_right and fitting.image, [
         diagnostic.code.number for diagnostic in fitting.diagnostics
     ]
-    found = check_text(made(limit + 1), KIT)
-    assert {diagnostic.code for diagnostic in found.diagnostics if diagnostic.is_mistake} == {code}
-    assert found.diagnostics[0].values.get("limit", str(limit)) == str(limit)
+    compilation = check_text(make(limit + 1), KIT)
+    assert {diagnostic.code for diagnostic in compilation.diagnostics if diagnostic.is_mistake} == {
+        code
+    }
+    assert compilation.diagnostics[0].values.get("limit", str(limit)) == str(limit)
 
 
 def test_the_second_value_of_an_argument_lies_above_the_first() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from tests.support.advised_programs import ADVISED_PROGRAMS
 from tests.support.rows import each_row
-from tests.support.texts import said
+from tests.support.texts import catalogue_texts
 from tiniscript import check_text, robots
 from tiniscript.base.source import apply_edits
 from tiniscript.diagnostics import codes
@@ -23,9 +23,9 @@ KIT = robots.load("tinibot").kit
 
 @each_row("text, code", ADVISED_PROGRAMS)
 def test_advice(text: str, code: str) -> None:
-    found = check_text(text, KIT)
-    assert found.is_right
-    assert [diagnostic.code.number for diagnostic in found.diagnostics] == [code]
+    compilation = check_text(text, KIT)
+    assert compilation.is_right
+    assert [diagnostic.code.number for diagnostic in compilation.diagnostics] == [code]
 
 
 @each_row(
@@ -115,13 +115,13 @@ def test_no_advice(text: str) -> None:
 
 
 # What the catalogue says is wrong; `tests/diagnostics/test_rendering.py` holds what each is told.
-WRONG = [text for key, text in said("en", "messages").items() if key.endswith("/wrong")]
+WRONG = [text for key, text in catalogue_texts("en", "messages").items() if key.endswith("/wrong")]
 
 
 def test_the_table_has_every_warning() -> None:
     warnings = {code for code in codes.CODES.values() if not code.is_mistake}
-    found = {code for row in lints.TABLE for code in row.codes}
-    assert found == warnings - set(lints.FOUND_ELSEWHERE)
+    warned_codes = {code for row in lints.TABLE for code in row.codes}
+    assert warned_codes == warnings - set(lints.FOUND_ELSEWHERE)
     names = {code: name for name, code in vars(codes).items() if isinstance(code, codes.Code)}
     for code, module in lints.FOUND_ELSEWHERE.items():
         source = find_spec(f"tiniscript.{module}")
@@ -135,10 +135,10 @@ def test_a_row_reports_its_codes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def watched(row: lints.Row) -> lints.Row:
         def find(*given: Any) -> None:
-            found = given[-1].diagnostics
-            before = len(found)
+            diagnostics = given[-1].diagnostics
+            before = len(diagnostics)
             row.report(*given)
-            reported[row] |= {each.code for each in found[before:]}
+            reported[row] |= {diagnostic.code for diagnostic in diagnostics[before:]}
 
         return row._replace(report=find)
 
@@ -182,9 +182,9 @@ def test_a_loop_is_put_around_a_task_that_is_done_once(text: str, wanted: str) -
 
 
 def warned(text: str) -> list[str]:
-    found = check_text(text, KIT)
-    assert found.is_right, text
-    return [each.code.number for each in found.diagnostics]
+    compilation = check_text(text, KIT)
+    assert compilation.is_right, text
+    return [diagnostic.code.number for diagnostic in compilation.diagnostics]
 
 
 @pytest.mark.parametrize("number", ["3", "20", "100", "250", "300", "500", "600", "1000", "10000"])
@@ -207,10 +207,12 @@ def test_a_while_that_its_moves_never_end_is_turned_round(word: str, sign: str) 
     is_turned = (word, sign[0]) in (("F", "<"), ("B", ">"))
     for body in (move, f"{move};{move}", f"SHOW(DISTANCE);{move}", f"BEEP(0.1, 440);{move}"):
         text = f"WHILE(DISTANCE {sign} 20);{body};END_WHILE"
-        found = [it for it in check_text(text, KIT).diagnostics if it.code is codes.TURNED_ROUND]
-        assert bool(found) is is_turned, text
-        for each in found:
-            right = text.replace(f"WHILE(DISTANCE {sign} 20)", each.values["fix"])
+        diagnostics = [
+            it for it in check_text(text, KIT).diagnostics if it.code is codes.TURNED_ROUND
+        ]
+        assert bool(diagnostics) is is_turned, text
+        for diagnostic in diagnostics:
+            right = text.replace(f"WHILE(DISTANCE {sign} 20)", diagnostic.values["fix"])
             assert "TS824" not in warned(right), right
         for other in (f"{move};R(0.2, 60)", f"IF(LIGHT_L > 9);S;ENDIF;{move}", f"{move};BREAK"):
             assert "TS824" not in warned(f"WHILE(DISTANCE {sign} 20);{other};END_WHILE"), other
@@ -245,20 +247,22 @@ def test_what_min_and_max_leave_is_one_number_or_many(low: int, high: int) -> No
             f"{outer}({inner}({high}, X), {low})",
         ):  # fmt: skip
             program = f"X = DISTANCE;F(1, {text});SHOW(X)"
-            found = [
+            diagnostics = [
                 it for it in check_text(program, KIT).diagnostics if it.code is codes.KNOWN_ANSWER
             ]
-            assert bool(found) is is_known, text
-            assert all(it.values["number"] == str(low) for it in found)
+            assert bool(diagnostics) is is_known, text
+            assert all(it.values["number"] == str(low) for it in diagnostics)
 
 
 @pytest.mark.parametrize("past", ["W(9)", "F(4, 60);B(5, 60)", "WHILE(TIME < 9);W(1);END_WHILE"])
 @pytest.mark.parametrize("limit", [5, 9, 10])
 def test_a_clock_that_is_past_is_told_with_what_comes_later(past: str, limit: int) -> None:
     text = f"{past};WHILE(TIME < {limit});BEEP(1, 440);END_WHILE"
-    found = [it for it in check_text(text, KIT).diagnostics if it.code is codes.KNOWN_ANSWER]
-    assert bool(found) is (limit <= 9), text
-    assert [it.values["later"] for it in found] == [f"WHILE(TIME < {9 + limit})"] * (limit <= 9)
+    diagnostics = [it for it in check_text(text, KIT).diagnostics if it.code is codes.KNOWN_ANSWER]
+    assert bool(diagnostics) is (limit <= 9), text
+    assert [it.values["later"] for it in diagnostics] == [f"WHILE(TIME < {9 + limit})"] * (
+        limit <= 9
+    )
     for other in (
         f"WHEN(DISTANCE < 9);S;END_WHEN;{text}",
         text.replace("W(9)", "W(9) UNTIL(KEY_A)"),

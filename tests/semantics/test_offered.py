@@ -16,7 +16,7 @@ from tiniscript.diagnostics.rendering import message
 
 WARNED = re.compile(r"[0-9]+ TS8")
 PROGRAMS = [text for text, _ in ADVISED_PROGRAMS]
-PROGRAMS += [entry.program for entry in entries() if any(map(WARNED.match, entry.said))]
+PROGRAMS += [entry.program for entry in entries() if any(map(WARNED.match, entry.messages))]
 PROGRAMS += [
     program.format(move=move, q=question, d=question.replace("DISTANCE", "D"))
     for program in (

@@ -40,9 +40,9 @@ REPEATED = [
 
 
 def of(code: codes.Code, text: str) -> list[Diagnostic]:
-    found = check_text(text, KIT)
-    assert found.is_right, text
-    return [diagnostic for diagnostic in found.diagnostics if diagnostic.code is code]
+    compilation = check_text(text, KIT)
+    assert compilation.is_right, text
+    return [diagnostic for diagnostic in compilation.diagnostics if diagnostic.code is code]
 
 
 @pytest.mark.sampled("around", keep=3)

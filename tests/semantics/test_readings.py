@@ -16,9 +16,9 @@ LIGHT_R, LIGHT_L, DISTANCE = range(3)  # their numbers in this kit
 
 def meaning(text: str) -> list[str]:
     """Return the checked program, not optimised, a line for each statement, without SI."""
-    found = check_text(text, KIT)
-    assert found.is_right and found.program is not None, found.diagnostics
-    return [line.strip() for line in program_text(found.program).splitlines()[1:]]
+    compilation = check_text(text, KIT)
+    assert compilation.is_right and compilation.program is not None, compilation.diagnostics
+    return [line.strip() for line in program_text(compilation.program).splitlines()[1:]]
 
 
 def reads_before_show(text: str) -> bool:

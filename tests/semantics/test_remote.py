@@ -60,12 +60,12 @@ def test_a_program_that_asks_none_of_them_has_the_image_that_it_had(
     assert len(texts) > 300
 
     def images() -> list[tuple[bytes, bytes]]:
-        found = []
+        image_pairs = []
         for old in texts:
-            made = compile_text(old.text, robots.load(old.robot).kit)
-            plain = b"" if made.program is None else plain_code(made.program).code
-            found.append((made.image, plain if made.is_right else b""))
-        return found
+            compilation = compile_text(old.text, robots.load(old.robot).kit)
+            plain = b"" if compilation.program is None else plain_code(compilation.program).code
+            image_pairs.append((compilation.image, plain if compilation.is_right else b""))
+        return image_pairs
 
     now = images()
     assert sum(map(bool, now)) > 300
@@ -80,12 +80,12 @@ def test_a_program_that_asks_none_of_them_has_the_image_that_it_had(
 @pytest.mark.parametrize("name", robots.names())
 def test_they_come_after_the_sensors_of_each_robot(name: str) -> None:
     kit = robots.load(name).kit
-    made = compile_text("; ".join(f"SHOW({each})" for each in NAMES), kit)
-    assert made.is_right and made.verdict is not None
+    compilation = compile_text("; ".join(f"SHOW({name})" for name in NAMES), kit)
+    assert compilation.is_right and compilation.verdict is not None
     first = len(kit.sensors)
-    uses = dict.fromkeys(made.verdict.uses)
+    uses = dict.fromkeys(compilation.verdict.uses)
     assert [*uses] == [("sensor", first + k) for k in range(8)]
-    rows = [row.partition(" ; ")[2] for row in disassemble(made.code, kit=kit).splitlines()]
+    rows = [row.partition(" ; ")[2] for row in disassemble(compilation.code, kit=kit).splitlines()]
     assert [*dict.fromkeys(row for row in rows if row)] == NAMES
 
 
@@ -94,14 +94,14 @@ def test_a_kit_with_room_has_them_on_both_machines(count: int) -> None:
     from tiniscript.vm.wasm import WasmImage
 
     kit = kit_of(count)
-    made = compile_text("LAMP(KEY_B);SHOW(PAD_Y)", kit)
-    assert made.is_right, codes_of(made)
+    compilation = compile_text("LAMP(KEY_B);SHOW(PAD_Y)", kit)
+    assert compilation.is_right, codes_of(compilation)
     senses = {count + 5: [1], count + 7: [-3 * ONE]}
     want = [
         "0 READ KEY_B TRUE", "0 SET LAMP TRUE", "0 READ PAD_Y -3", "0 SHOW -3", "0 DONE",
     ]  # fmt: skip
-    code = unpack(made.image).code
-    for machine in (machine_of, WasmImage(made.image, kit).machine):
+    code = unpack(compilation.image).code
+    for machine in (machine_of, WasmImage(compilation.image, kit).machine):
         *events, _ = run_code(code, kit, Senses(kit, senses), machine_of=machine)
         assert [str(event) for event in events] == want
 
@@ -112,8 +112,8 @@ def test_a_kit_without_room_has_none_of_them(count: int) -> None:
     assert kit.readings == kit.sensors and kit.hashes == kit_of(count).hashes
     for name in NAMES:
         assert codes_of(compile_text(f"SHOW({name})", kit)) == [codes.UNKNOWN_NAME.number]
-        made = compile_text(f"{name} = 1;SHOW({name})", kit)
-        assert made.is_right and not made.diagnostics
+        compilation = compile_text(f"{name} = 1;SHOW({name})", kit)
+        assert compilation.is_right and not compilation.diagnostics
 
 
 @pytest.mark.parametrize(("more", "is_told"), [(5, False), (6, True)])
@@ -126,8 +126,8 @@ def test_the_check_of_a_profile_says_that_it_has_no_room(
     path = tmp_path / "my.toml"
     profile = text.replace("[[kit.sensors]]", f"{own}[[kit.sensors]]", 1)
     path.write_text("\n".join([profile, *wired]), encoding="utf-8")
-    done = tsc("firmware", "--board", path, "-o", tmp_path / "own.h")
-    assert done.code == 0 and ("more than 8 sensors" in done.err) == is_told, done
+    result = tsc("firmware", "--board", path, "-o", tmp_path / "own.h")
+    assert result.code == 0 and ("more than 8 sensors" in result.err) == is_told, result
     header = (tmp_path / "own.h").read_text(encoding="utf-8")
     (hashes,) = re.findall(r"(?s)kDeviceHashes\[\].*?\};", header)
     count = hashes.count("0x")
@@ -139,9 +139,9 @@ def test_a_word_of_the_profile_stays_what_it_is_there(is_actuator: bool) -> None
     """A robot of before may have a sensor or a lamp that is called so."""
     device = Device("KEY_A", YES_NO, "", 0, 1)
     kit = Kit((), (device,)) if is_actuator else Kit((device,))
-    made = compile_text("KEY_A(TRUE)" if is_actuator else "SHOW(KEY_A)", kit)
-    assert made.is_right and made.verdict is not None
-    assert made.verdict.uses == (("actuator" if is_actuator else "sensor", 0),)
+    compilation = compile_text("KEY_A(TRUE)" if is_actuator else "SHOW(KEY_A)", kit)
+    assert compilation.is_right and compilation.verdict is not None
+    assert compilation.verdict.uses == (("actuator" if is_actuator else "sensor", 0),)
     wanted = codes.ACTUATOR_SET if is_actuator else codes.SENSOR_SET
     assert codes_of(compile_text("KEY_A = TRUE", kit)) == [wanted.number]
     other = compile_text("SHOW(KEY_B)", kit)
@@ -196,23 +196,25 @@ def written(text: str, name: str) -> str:
 def test_what_compiled_before_compiles_still(role: str, name: str) -> None:
     """With a warning where the name first stands, and with the code of any other name."""
     text = written(GIVES_WAY[role], name)
-    made = compile_text(text, TINIBOT)
-    assert made.is_right, codes_of(made)
-    warned = [diagnostic for diagnostic in made.diagnostics if diagnostic.code is codes.GIVES_WAY]
+    compilation = compile_text(text, TINIBOT)
+    assert compilation.is_right, codes_of(compilation)
+    warned = [
+        diagnostic for diagnostic in compilation.diagnostics if diagnostic.code is codes.GIVES_WAY
+    ]
     place = re.search(rf"{name}", re.sub("//.*", lambda it: " " * len(it[0]), text))
     assert place is not None
     assert [diagnostic.span for diagnostic in warned] == [place.span()]
     assert warned[0].values["since"] == KIT_WORDS_SINCE[name] == "0.3"
-    assert made.image == compile_text(text.replace(name, MINE), TINIBOT).image
-    assert compile_text(text.lower(), TINIBOT).image == made.image
+    assert compilation.image == compile_text(text.replace(name, MINE), TINIBOT).image
+    assert compile_text(text.lower(), TINIBOT).image == compilation.image
 
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("role", STAYS)
 def test_what_was_no_name_before_is_the_remote_control(role: str, name: str) -> None:
     text, wanted = STAYS[role]
-    made = compile_text(written(text, name), TINIBOT)
-    assert codes_of(made) == [code.number for code in wanted]
+    compilation = compile_text(written(text, name), TINIBOT)
+    assert codes_of(compilation) == [code.number for code in wanted]
 
 
 @pytest.mark.parametrize("name", ["DISTANCE", "LIGHT_L"])
@@ -224,10 +226,16 @@ def test_a_word_of_0_2_0_never_gives_way(name: str) -> None:
 
 
 def test_a_name_is_the_programs_own_in_the_whole_of_it() -> None:
-    made = compile_text("DEF DO_IT(KEY_A);SHOW(KEY_A);END_DEF;DO_IT(1);IF(KEY_A);S;ENDIF", TINIBOT)
-    assert codes_of(made) == [codes.UNKNOWN_NAME.number]
-    made = compile_text("KEY_A = 1;IF(KEY_B);SHOW(KEY_A);ENDIF", TINIBOT)
-    assert made.is_right and made.verdict is not None and made.verdict.uses == (("sensor", 8),)
+    compilation = compile_text(
+        "DEF DO_IT(KEY_A);SHOW(KEY_A);END_DEF;DO_IT(1);IF(KEY_A);S;ENDIF", TINIBOT
+    )
+    assert codes_of(compilation) == [codes.UNKNOWN_NAME.number]
+    compilation = compile_text("KEY_A = 1;IF(KEY_B);SHOW(KEY_A);ENDIF", TINIBOT)
+    assert (
+        compilation.is_right
+        and compilation.verdict is not None
+        and compilation.verdict.uses == (("sensor", 8),)
+    )
 
 
 @pytest.mark.parametrize("flags", [(), NO_DEFS])
@@ -240,12 +248,12 @@ def test_a_robot_reads_them_as_tsc_does(flags: tuple[str, ...]) -> None:
     for text in (written(text, name) for text in texts for name in NAMES):
         if flags and ("DEF" in text or "TASK" in text):
             continue
-        made = compile_text(text, TINIBOT)
+        compilation = compile_text(text, TINIBOT)
         answer = reader.read(text.encode())
-        assert answer.is_program == made.is_right, (text, answer)
-        if made.is_right:
-            assert made.program is not None
-            assert answer.code == plain_code(made.program).code, text
+        assert answer.is_program == compilation.is_right, (text, answer)
+        if compilation.is_right:
+            assert compilation.program is not None
+            assert answer.code == plain_code(compilation.program).code, text
             read += 1
     assert read > (20 if flags else 50)
 
@@ -263,10 +271,10 @@ def test_a_block_of_a_name_is_that_of_a_variable(text: str, kind: str) -> None:
 
 def test_a_run_takes_their_readings(tsc: Tsc) -> None:
     text = "WHILE(NOT KEY_UP);SHOW(PAD_X);W(0.1);END_WHILE"
-    done = tsc("run", "-e", text, "--sensor", "KEY_UP=FALSE,TRUE", "--sensor", "pad_x=-12.5")
+    result = tsc("run", "-e", text, "--sensor", "KEY_UP=FALSE,TRUE", "--sensor", "pad_x=-12.5")
     want = ["READ KEY_UP FALSE", "READ PAD_X -12.5", "SHOW -12.5"]
-    assert done.out.split("\n")[:-1] == [
-        *(f"0 {each}" for each in want), "100 READ KEY_UP TRUE", "100 DONE",
+    assert result.out.split("\n")[:-1] == [
+        *(f"0 {row}" for row in want), "100 READ KEY_UP TRUE", "100 DONE",
     ]  # fmt: skip
     tsc("run", "-e", text, "--sensor", "PAD_X=101").gives(2, "-100 to 100")
     tsc("run", "-e", text, "--sensor", "KEY_UPP=TRUE").gives(2, "KEY_UP")
@@ -286,14 +294,14 @@ def test_a_robot_without_room_for_it_is_told_before_anything_is_sent(
     text = "SHOW(1)\nF(1, 50) UNTIL(KEY_A)\n"
     of = ("-e", text, "--robot", robot)
     for sends in (["compile", "--text"], ["upload", "--virtual"]) if not has else []:
-        done = tsc(*sends, *of)
-        assert done.code == 1 and "TS319" in done.err + done.out
-        assert "line 2:" in done.err + done.out
+        result = tsc(*sends, *of)
+        assert result.code == 1 and "TS319" in result.err + result.out
+        assert "line 2:" in result.err + result.out
     for verb in (["check"], ["show"], ["run", "--max-time", "0.1"]):
         assert tsc(*verb, *of).code == 0
     profile = robots.load(robot)
-    made = fit_to_robot(compile_text(text, profile.kit), profile)
-    assert made.is_right == has and bool(made.image) == has
+    compilation = fit_to_robot(compile_text(text, profile.kit), profile)
+    assert compilation.is_right == has and bool(compilation.image) == has
     mine = fit_to_robot(compile_text("KEY_A = 1;SHOW(KEY_A)", profile.kit), profile)
     assert mine.is_right and mine.image
 

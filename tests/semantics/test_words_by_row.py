@@ -38,7 +38,7 @@ def _new_words(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setitem(WORDS, word.text, word)
 
 
-def found(text: str) -> list[str]:
+def codes_in(text: str) -> list[str]:
     return [
         repr(diagnostic).replace(TOOT.text, "BEEP") for diagnostic in analyze(text, KIT).diagnostics
     ]
@@ -64,8 +64,8 @@ def test_another_word_with_the_row_of_beep_is_looked_at_like_it() -> None:
     texts += ["SI|X = DISTANCE;" + place.format(call) for place, call in product(PLACES, calls)]
     codes = set()
     for text in texts:
-        theirs = found(text)
-        assert found(re.sub(r"\bBEEP\b", TOOT.text, text)) == theirs, text
+        theirs = codes_in(text)
+        assert codes_in(re.sub(r"\bBEEP\b", TOOT.text, text)) == theirs, text
         codes |= codes_of(text)
     assert len(codes) > 15, codes
 

@@ -28,7 +28,7 @@ from tests.support.waiting import HANGS_S
 from tiniscript.studio.serving import MOST_CONNECTIONS
 
 pytestmark = pytest.mark.skipif(
-    sys.platform != "linux", reason="only Linux tells of a process what it has"
+    sys.platform != "linux", reason="only Linux says what a process has"
 )
 
 TESTED = 400  # connections of a test
@@ -98,9 +98,9 @@ def visitors(port: int, kind: str, count: int) -> Iterator[None]:
 def settled(pid: int, files: int) -> Had:
     """Wait until a process has no more files than this; return what it has, more where it hangs."""
     end_s = time.monotonic() + HANGS_S
-    while (found := had(pid)).files > files and time.monotonic() < end_s:
+    while (child := had(pid)).files > files and time.monotonic() < end_s:
         time.sleep(0.1)
-    return found
+    return child
 
 
 def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
@@ -114,7 +114,7 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
             ("shared port", command.pid, registration_of(port).number),
         ]
         say_all(port, 15, 100)
-        found = []
+        children = []
         for name, pid, number in places:
             before = had(pid)
             with visitors(number, kind, count):
@@ -123,7 +123,7 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
                     "state"
                 ]
                 assert state == "RUNNING"
-            found.append((name, before, meanwhile, settled(pid, before.files + 3)))
+            children.append((name, before, meanwhile, settled(pid, before.files + 3)))
         with visitors(places[0][2], kind, count), visitors(places[1][2], kind, count):
             assert process("stop", "--port", port).code == 0
         out, err = command.communicate(timeout=HANGS_S)
@@ -132,11 +132,11 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
         # Nobody holds it: a caller is let in after those who came before, 256 a second at most.
         # Half a greeting is text to it, and whoever types holds the robot.
         with visitors(places[0][2], kind, min(count, TESTED)):
-            done = process("stop", "--port", port)
-            assert kind == "half a greeting" or (done.code, done.err) == (0, "")
+            result = process("stop", "--port", port)
+            assert kind == "half a greeting" or (result.code, result.err) == (0, "")
         robot.send_signal(signal.SIGINT)
         assert b"FAULT" not in robot.communicate(timeout=HANGS_S)[0]
-    return found
+    return children
 
 
 @pytest.mark.sampled("kind")
@@ -177,7 +177,7 @@ def page(port: int) -> bytes:
 
 def attack_studio(count: int) -> list[tuple[str, Had, Had, Had]]:
     """Come to one studio in each way. Return the kind, and what the studio had."""
-    found = []
+    children = []
     with studio() as (pid, port):
         assert page(port) == b"<!doctype html>"
         for kind in KINDS:
@@ -185,9 +185,9 @@ def attack_studio(count: int) -> list[tuple[str, Had, Had, Had]]:
             with visitors(port, kind, count):
                 assert page(port) == b"<!doctype html>"
                 meanwhile = settled(pid, before.files + MOST_CONNECTIONS + 3)
-            found.append((kind, before, meanwhile, settled(pid, before.files + 3)))
+            children.append((kind, before, meanwhile, settled(pid, before.files + 3)))
             assert page(port) == b"<!doctype html>"
-    return found
+    return children
 
 
 def test_the_studio_gives_its_page_among_many_who_come() -> None:

@@ -34,7 +34,7 @@ from tiniscript.link.sharing.server import Server
 
 STEP_MS = 20
 MARK, MARKED = "BEEP(0.001, 31);", "BEEP 31 1"
-# What tells of the robot, its runs and the clock, not of the client.
+# What is about the robot, its runs and the clock, not about the client.
 STRIPPED = re.compile(r'"(run|ms|boot|nonce|epoch|heard|noise|reset|fault\w*|state|program|length'
                       r'|slot|saved|answer|cause)": ?("[^"]*"|\d+)')  # fmt: skip
 Json = dict[str, Any]
@@ -109,7 +109,7 @@ class Client:
             self.heard += cast(list[Json], self.reader.read_messages(self.socket.recv(1 << 20)))
 
     def answered(self) -> int:
-        return sum("status" in each for each in self.heard)
+        return sum("status" in message for message in self.heard)
 
 
 class Desk:
@@ -147,24 +147,24 @@ def desk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
         patched.setattr(Thread, "start", lambda self: None)
         patched.setattr(server_of, "PAUSE_S", 0)
         patched.setattr(server_of, "REST_S", 0)
-        found = Desk()
-        robot = found.line.robot_itself
+        made_desk = Desk()
+        robot = made_desk.line.robot_itself
         patched.setattr(server_of, "monotonic", lambda: robot.now_ms / 1000)
         try:
-            yield found
+            yield made_desk
         finally:
-            for client in found.clients:
+            for client in made_desk.clients:
                 client.socket.close()
-            for name in found.server._registrations:
+            for name in made_desk.server._registrations:
                 registry.remove(name)
-            found.server._close_all()
+            made_desk.server._close_all()
 
 
 def upload(text: str, is_detached: bool = False) -> Json:
     image = image_of(text)
     given = image._asdict() | {"isa": bytes(image.isa)}
-    made = {k: value.hex() if isinstance(value, bytes) else value for k, value in given.items()}
-    return {**made, "runs": True, "saves": False, "is_detached": is_detached, "kit": 0}
+    answer = {k: value.hex() if isinstance(value, bytes) else value for k, value in given.items()}
+    return {**answer, "runs": True, "saves": False, "is_detached": is_detached, "kit": 0}
 
 
 def drawn(rng: random.Random) -> str:
@@ -260,13 +260,14 @@ def second(rng: random.Random, at: Desk) -> tuple[list[str], list[str]]:
         at.steps(rng.choice((400, 1500)))
     client.says({"do": "stop"})
     at.steps(400)
-    heard = [each for each in client.heard if "beat" not in each]
-    begins = next((k for k, each in enumerate(heard) if "status" in each), 0)
-    said = [
-        STRIPPED.sub(r'"\1"', protocol.encode_message(each).decode()) for each in heard[begins:]
+    heard = [message for message in client.heard if "beat" not in message]
+    begins = next((k for k, message in enumerate(heard) if "status" in message), 0)
+    messages = [
+        STRIPPED.sub(r'"\1"', protocol.encode_message(message).decode())
+        for message in heard[begins:]
     ]
     did = [line.split(" ", 1)[1] for line in robot.did if not line.endswith(" 200")]  # its sign
-    return said, did[did.index(MARKED) :] if MARKED in did else did
+    return messages, did[did.index(MARKED) :] if MARKED in did else did
 
 
 def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:
@@ -275,16 +276,16 @@ def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:
         heard, did = second(random.Random(-seed), at)
     with desk(monkeypatch) as at:
         want, its = second(random.Random(-seed), at)
-    said = f"seed {seed} {ends}\n{heard}\n{did}\nnot\n{want}\n{its}"
-    assert did == its and heard == want, said
+    explanation = f"seed {seed} {ends}\n{heard}\n{did}\nnot\n{want}\n{its}"
+    assert did == its and heard == want, explanation
     return ends if len(its) > 1 else "little"
 
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
 def test_the_next_client_is_as_the_first_one(part: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = Counter(check(seed, monkeypatch) for seed in range(part * 12, (part + 1) * 12))
-    assert found["little"] < 6, found
+    counts = Counter(check(seed, monkeypatch) for seed in range(part * 12, (part + 1) * 12))
+    assert counts["little"] < 6, counts
 
 
 if __name__ == "__main__":

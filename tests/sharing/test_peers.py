@@ -49,8 +49,8 @@ peer.close()
 def test_the_end_of_a_connection_has_its_user() -> None:
     own_end, other_end = connected_pair()
     with own_end, other_end:
-        found = peers._socket_owner(own_end.getpeername(), own_end.getsockname())
-        assert found == (os.geteuid(), os.fstat(other_end.fileno()).st_ino)
+        owner = peers._socket_owner(own_end.getpeername(), own_end.getsockname())
+        assert owner == (os.geteuid(), os.fstat(other_end.fileno()).st_ino)
         assert peers.is_of_this_user(own_end)
         other_end.shutdown(socket.SHUT_WR)  # it listens on
         assert peers.is_of_this_user(own_end)
@@ -115,21 +115,21 @@ def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) ->
 @pytest.mark.root
 @pytest.mark.parametrize("how", ["stays", "leaves", "reset"])
 def test_another_user_moves_nothing(how: str) -> None:
-    with robot("--listen", "0") as found:
-        number = found.port.rpartition(":")[2]
+    with robot("--listen", "0") as running_robot:
+        number = running_robot.port.rpartition(":")[2]
         words = [sys.executable, "-I", "-c", STRANGER, number, how, LINE.hex()]
         for _ in range(3):
             completed = subprocess.run(words, capture_output=True, text=True, timeout=HANGS_S)
             assert completed.returncode == 0, completed.stderr
             assert completed.stdout.strip() == ("0" if how == "stays" else "")
         time.sleep(1)
-        with visitor(found.port) as own:
+        with visitor(running_robot.port) as own:
             own.settimeout(HANGS_S)
             own.sendall(LINE)
             heard = b""
             while not heard.endswith(b"// DONE\r\n"):
                 heard += own.recv(1000)
-        assert found.until("DONE")[1:] == ["0 MOTORS 50 50", "100 MOTORS 0 0", "100 DONE"]
+        assert running_robot.until("DONE")[1:] == ["0 MOTORS 50 50", "100 MOTORS 0 0", "100 DONE"]
 
 
 # -- who listens where a robot was ----------------------------------------------------------------
@@ -164,14 +164,14 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
         number = server.getsockname()[1]
         address = f"socket://127.0.0.1:{number}"
         note = directory.announce(directory.RunningRobot(address, "tinibot", "room", "", ""))
-        assert [each.address for each in directory.running_robots()] == [address]
+        assert [entry.address for entry in directory.running_robots()] == [address]
         monkeypatch.setattr(peers, "is_of_another_user", lambda port: port == number)
         for _ in range(2):
             assert directory.running_robots() == []
             for words in (["show"], ["upload", "-e", "SI|S"], ["stop"], ["live", "S"]):
                 for port in (address, address.replace("127.0.0.1", "localhost")):
-                    done = inside(*words, "--port", port)
-                    done.gives(3, "another user of this computer is listening")
+                    result = inside(*words, "--port", port)
+                    result.gives(3, "another user of this computer is listening")
         server.settimeout(HANGS_S)
         peer, _ = server.accept()
         with peer:
@@ -187,11 +187,11 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
 @linux
 @pytest.mark.root
 def test_the_port_of_a_robot_that_was_killed_is_asked_whose_it_is() -> None:
-    found = Robot("--listen", "0")
-    found.kill()
-    listener = Command(found.port.rpartition(":")[2], code=LISTENER)
+    running_robot = Robot("--listen", "0")
+    running_robot.kill()
+    listener = Command(running_robot.port.rpartition(":")[2], code=LISTENER)
     listener.until("listens")
-    process("upload", "-e", "SI|S", "--port", found.port).gives(3, "another user")
+    process("upload", "-e", "SI|S", "--port", running_robot.port).gives(3, "another user")
     process("start", "--virtual").gives(3)
     listener.process.kill()
     assert listener.process.stdout
@@ -202,11 +202,11 @@ def test_the_port_of_a_robot_that_was_killed_is_asked_whose_it_is() -> None:
 def test_a_pseudo_terminal_is_for_its_user_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     import pty
 
-    made = pty.openpty
+    open_pty = pty.openpty
 
     def open_to_a_group() -> tuple[int, int]:
         """As most systems make it."""
-        ours, theirs = made()
+        ours, theirs = open_pty()
         os.fchmod(theirs, 0o620)
         return ours, theirs
 
@@ -223,21 +223,21 @@ def test_the_token_is_in_one_private_file() -> None:
     """In no command line, no environment, no output and no other file."""
     with driven() as (virtual, port, command, receipt):
         registration = registration_of(port)
-        secrets = [each.encode() for each in (registration.token, registration.answer)]
+        secrets = [secret.encode() for secret in (registration.token, registration.answer)]
         assert process("doctor", "--port", port).code == 0
-        seen = [receipt]
+        places = [receipt]
         for pid in (virtual.pid, command.pid):
-            seen += [Path(f"/proc/{pid}/{name}").read_bytes() for name in ("cmdline", "environ")]
+            places += [Path(f"/proc/{pid}/{name}").read_bytes() for name in ("cmdline", "environ")]
         having = []
         for path in files.cache_folder().rglob("*"):
             if path.is_file():
                 content = path.read_bytes()
                 having += [path] if any(secret in content for secret in secrets) else []
-                seen.append(str(path).encode())
+                places.append(str(path).encode())
         assert process("stop", "--port", port).code == 0
-        seen += command.communicate(timeout=HANGS_S)
-    assert len(having) == 1 and len(seen) > 7
-    assert not [each for each in seen for secret in secrets if secret in each]
+        places += command.communicate(timeout=HANGS_S)
+    assert len(having) == 1 and len(places) > 7
+    assert not [data for data in places for secret in secrets if secret in data]
 
 
 def test_files_of_dead_commands_go_and_those_of_servers_stay() -> None:
@@ -275,8 +275,8 @@ def test_a_file_that_is_replaced_while_it_is_removed_stays(tmp_path: Path, has_t
     path.write_text("of the next server")
     looks: list[object] = []
 
-    def is_meant(found: object) -> bool:
-        looks.append(found)
+    def is_meant(removed: object) -> bool:
+        looks.append(removed)
         if has_third and len(looks) == 2:
             path.write_text("of a third one")
         return len(looks) == 1

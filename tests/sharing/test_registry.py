@@ -109,13 +109,13 @@ def lock() -> IO[bytes] | None:
 
 def check_one_owner(owners: list[IO[bytes] | None]) -> None:
     """No two have the lock; once they let go, the next one gets it, and nothing is left."""
-    holders = [each for each in owners if each is not None and not each.closed]
+    holders = [file for file in owners if file is not None and not file.closed]
     assert len(holders) <= 1, "two have the same lock"
     next_one = lock()
     assert (next_one is None) == bool(holders), "another one gets it, too"
-    for each in (*holders, next_one):
-        if each is not None:
-            each.close()
+    for file in (*holders, next_one):
+        if file is not None:
+            file.close()
     last = lock()
     assert last is not None
     last.close()

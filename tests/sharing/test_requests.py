@@ -125,9 +125,9 @@ NOD = Message(
 
 
 def nod(
-    self: Requester, times: int, turn: int, which: int, said: bytes
+    self: Requester, times: int, turn: int, which: int, data: bytes
 ) -> PendingRequest[EmptyReply]:
-    return self._ask("nod", EmptyReply, times=times, turn=turn, which=which, said=said)
+    return self._ask("nod", EmptyReply, times=times, turn=turn, which=which, said=data)
 
 
 @pytest.fixture

@@ -83,8 +83,8 @@ def line() -> FakeLine:
 
 @pytest.fixture
 def server(line: FakeLine) -> Iterator[Server]:
-    with closing(Server(cast(PortConnection, line), PORT, 9600, "monitor")) as found:
-        yield found
+    with closing(Server(cast(PortConnection, line), PORT, 9600, "monitor")) as shared_server:
+        yield shared_server
 
 
 @pytest.fixture
@@ -96,8 +96,8 @@ def command(server: Server) -> Iterator[SharedConnection]:
         yield shared_connection
 
 
-def heard(command: SharedConnection, name: str) -> None:
-    until(lambda: (found := command.event(0.1)) is not None and found[1].name == name, name)
+def wait_for_event(command: SharedConnection, name: str) -> None:
+    until(lambda: (event := command.event(0.1)) is not None and event[1].name == name, name)
 
 
 def asks(command: SharedConnection, line: FakeLine, is_detached: bool = False) -> None:
@@ -160,9 +160,9 @@ def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
         until(lambda: len(line.asked) == 3, "its request arrives")
         line.begin_run()  # of a robot that was reset, and counts its runs anew
         line.post_event(event("SHOW"))
-        heard(other, "SHOW")
+        wait_for_event(other, "SHOW")
         line.post_event(event("SHOW"))
-        heard(other, "SHOW")
+        wait_for_event(other, "SHOW")
         assert line.halted == [7], "the next run is not its"
 
 
@@ -172,7 +172,7 @@ def test_a_run_whose_client_leaves_ends_without_a_stop_for_all(
     asks(command, line)
     line.begin_run()
     line.post_event(event("SHOW"))
-    heard(command, "SHOW")
+    wait_for_event(command, "SHOW")
     command.close()
     until(lambda: line.halted == [7], "its run is ended")
     assert line.stops == 0
@@ -186,11 +186,11 @@ def test_an_end_that_is_told_late_takes_no_owner_from_the_next_run(
     asks(command, line)
     line.begin_run()
     line.post_event(DoneEvent(6) if end == "DONE" else event(end))
-    heard(command, end)
+    wait_for_event(command, end)
     assert server.has_run
     line.is_running = False
     line.post_event(DoneEvent(7) if end == "DONE" else event(end))
-    heard(command, end)
+    wait_for_event(command, end)
     line.is_running = True  # the same number again, of somebody else
     assert not server.has_run
 

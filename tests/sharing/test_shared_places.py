@@ -15,15 +15,15 @@ from tiniscript.link.sharing.shared_connection import join
 
 def until_done(connection: LinkConnection) -> list[Event]:
     """Return the events up to the end of a run."""
-    found: list[Event] = []
+    events: list[Event] = []
     limit_s = monotonic() + HANGS_S
     while monotonic() < limit_s:
         row = connection.event(0.2)
         if row is not None:
-            found.append(row[1])
+            events.append(row[1])
             if row[1].name == "DONE":
-                return found
-    raise AssertionError(found)
+                return events
+    raise AssertionError(events)
 
 
 def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
@@ -42,7 +42,7 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
         assert len(places) == 2 and {place.program for place in places} == {image.checksum}
         assert places[0].at < places[1].at < len(image.code)
         for connection in (other, shared.line):
-            assert "PLACE" not in {each.name for each in until_done(connection)}
+            assert "PLACE" not in {event.name for event in until_done(connection)}
         client.close()
         other.close()
 

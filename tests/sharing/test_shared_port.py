@@ -33,7 +33,7 @@ PATIENT = (
 
 
 def hellos(pty_robot: PtyRobot) -> int:
-    """Return how often a session was begun: as often as the port was opened."""
+    """Return how many times a session was begun: as often as the port was opened."""
     frames = map(decode_frame, pty_robot.heard.split(b"\0"))
     return sum(frame is not None and frame.number == 1 for frame in frames)
 
@@ -43,8 +43,8 @@ def hellos(pty_robot: PtyRobot) -> int:
 
 def test_stop_works_while_another_terminal_drives(pty_robot: PtyRobot) -> None:
     command = uploading(pty_robot)
-    done = on(pty_robot, "stop")
-    assert (done.code, done.out) == (
+    result = on(pty_robot, "stop")
+    assert (result.code, result.out) == (
         0, f"Stopped: the robot on {pty_robot.port} has confirmed the stop.\n",
     )  # fmt: skip
     assert not pty_robot.moves
@@ -55,8 +55,8 @@ def test_stop_works_while_another_terminal_drives(pty_robot: PtyRobot) -> None:
 def test_commands_share_a_session_that_is_begun_once(
     pty_robot: PtyRobot, link: Command, tmp_path: Path
 ) -> None:
-    done = on(pty_robot, "upload", "-e", "SI|F(0.1, 80);SHOW(1.5)").gives(0, "")
-    assert done.out.splitlines()[1:] == ["SHOW 1.5", "Done.", "Saved. It starts with the button."]
+    result = on(pty_robot, "upload", "-e", "SI|F(0.1, 80);SHOW(1.5)").gives(0, "")
+    assert result.out.splitlines()[1:] == ["SHOW 1.5", "Done.", "Saved. It starts with the button."]
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     assert on(pty_robot, "live", "X = 1 / 0").code == 1
     assert "3 round trips" in on(pty_robot, "doctor", "--count", "3").out
@@ -86,8 +86,8 @@ def test_all_names_of_a_port_lead_to_its_server(
     assert hellos(pty_robot) == 1
     rows = json.loads(process("doctor", "--ports", "--json").out)
     assert {row["port"]: row["held_by"] for row in rows}[pty_robot.port] == "monitor --hold"
-    done = process("doctor", "--ports", "--ask", "--port", name)
-    assert "robot" in done.out and "in use by tsc monitor --hold" in done.out
+    result = process("doctor", "--ports", "--ask", "--port", name)
+    assert "robot" in result.out and "in use by tsc monitor --hold" in result.out
     process("show", "--port", name, "--baud", "115200").gives(
         3, "in use by tsc monitor --hold, at 9600 baud"
     )
@@ -147,8 +147,8 @@ def test_monitor_shows_what_live_does_and_not_its_bookkeeping(
     live = Command("live", "--port", pty_robot.port)
     assert live.process.stdin and live.process.stdout
     live.process.stdin.write(b"X = 3; SHOW(X)\nX = X + 1\nSHOW(X)\n")
-    done = live.ended()
-    assert [line for line in done.out.splitlines() if line != "Done."] == ["X 3", "X 4"]
+    result = live.ended()
+    assert [line for line in result.out.splitlines() if line != "Done."] == ["X 3", "X 4"]
     assert monitor.process.stdout
     rows = [json.loads(monitor.process.stdout.readline()) for _ in range(5)]
     assert [(row["event"], row.get("value")) for row in rows] == [
@@ -179,12 +179,12 @@ def test_a_command_imports_no_more_than_it_needs(
     pty_robot: PtyRobot, arguments: tuple[str, ...], unwanted: set[str]
 ) -> None:
     def imported_by(port: str) -> set[str]:
-        done = Command(*arguments, "--port", port, code=IMPORTS).ended()
-        return set(done.out.splitlines()[-1].split())
+        result = Command(*arguments, "--port", port, code=IMPORTS).ended()
+        return set(result.out.splitlines()[-1].split())
 
-    found = imported_by(pty_robot.port)
-    assert sorted((NEVER | unwanted) & found) == []
-    assert found >= OF_A_PORT
+    modules = imported_by(pty_robot.port)
+    assert sorted((NEVER | unwanted) & modules) == []
+    assert modules >= OF_A_PORT
     with Shared() as (shared, _):
         assert sorted((NEVER | OF_A_PORT | unwanted) & imported_by(shared.port)) == []
 
@@ -248,10 +248,12 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
     first = uploading(pty_robot)
     second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
     second.ended().gives(0, out="Done.")
-    done = first.ended().gives(
+    result = first.ended().gives(
         3, "another command started a program", "holds the port until the other command has ended."
     )
-    assert done.err.index("holds the port") < done.err.index("another command started a program")
+    assert result.err.index("holds the port") < result.err.index(
+        "another command started a program"
+    )
     assert hellos(pty_robot) == 1
     assert registry.find_registration(pty_robot.port) is None
 
@@ -337,8 +339,8 @@ def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
 def test_a_cable_that_is_pulled_is_said_to_all(pty_robot: PtyRobot, link: Command) -> None:
     command = uploading(pty_robot)
     pty_robot.pull()
-    for each in (command, link):
-        each.ended().gives(3, "is gone")
+    for running in (command, link):
+        running.ended().gives(3, "is gone")
 
 
 def test_a_robot_that_was_lost_is_found_again(pty_robot: PtyRobot, link: Command) -> None:
@@ -364,8 +366,8 @@ def test_of_three_who_want_a_place_one_gets_it(
     assert all("already shared" in loser.err for loser in losers)
     assert process("stop", "--port", wanted).code == 0
     holder.signal(signal.SIGINT)
-    done = holder.ended()
-    assert (done.code, done.err) == (0, "\n")
+    result = holder.ended()
+    assert (result.code, result.err) == (0, "\n")
 
 
 def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
@@ -377,11 +379,11 @@ def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
     asked = [["doctor", "--identify"]] * 3 + [["upload", "-e", "SB|S"]]
     commands = [begun(*words) for words in asked]
     for words, command in zip(asked, commands, strict=True):
-        done = command.ended()
+        result = command.ended()
         for _ in range(TRIES):
-            if "has ended; without --detach" in done.err:
-                done = begun(*words).ended()
-        assert (done.code, done.err) == (0, "")
+            if "has ended; without --detach" in result.err:
+                result = begun(*words).ended()
+        assert (result.code, result.err) == (0, "")
 
 
 def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:

@@ -79,11 +79,11 @@ def test_wrong_messages_of_a_client_end_its_visit_alone() -> None:
             with visitor(registration) as peer:
                 request = protocol.encode_message({"id": 1, "limit_ms": 100, **wrong})
                 peer.sendall(greeting(registration) + request)
-                said = b""
+                reply = b""
                 while part := _rest(peer):
-                    said += part
+                    reply += part
             answer = {"tsc": __version__, "answer": registration.answer}
-            assert said == protocol.encode_message(answer), wrong
+            assert reply == protocol.encode_message(answer), wrong
         assert "SHOW 1" in on(pty_robot, "live", "SHOW(1)").out
 
 
@@ -99,21 +99,23 @@ def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
     with shared as (pty_robot, registration), visitor(registration) as peer:
         peer.sendall(greeting(registration))
         reader = protocol.MessageReader(protocol.LINE_BYTES)
-        found = reader.read_messages(peer.recv(65536))
+        messages = reader.read_messages(peer.recv(65536))
         count = 50 * FULL_BYTES // 60
         for k in range(count):
             shared.server._on_events([(k, ShownEvent(k, 0))])
         shared.server._on_events([(count, DoneEvent(9))])
         assert "SHOW 1" in on(pty_robot, "live", "SHOW(1)").out
-        while not any(message.get("event") == "DONE" for message in found):
+        while not any(message.get("event") == "DONE" for message in messages):
             data = peer.recv(65536)
             assert data, "it was let go"
-            found += reader.read_messages(data)
-        found = found[: [message.get("event") for message in found].index("DONE")]
-        missed = [message for message in found if message.get("event") == "MISSED"]
-        shown = sum(message.get("event") == "SHOW" for message in found)
+            messages += reader.read_messages(data)
+        messages = messages[: [message.get("event") for message in messages].index("DONE")]
+        missed = [message for message in messages if message.get("event") == "MISSED"]
+        shown = sum(message.get("event") == "SHOW" for message in messages)
         assert missed
-        assert sum(int(protocol.read_values(each)["count"]) for each in missed) + shown == count
+        assert (
+            sum(int(protocol.read_values(message)["count"]) for message in missed) + shown == count
+        )
 
 
 def test_nothing_is_shared_where_nothing_can_be_written(
@@ -146,8 +148,8 @@ def test_somebody_else_at_the_number_of_a_crashed_server_is_no_server(pty_robot:
         with peer:
             peer.recv(1000)
             peer.sendall(protocol.encode_message({"tsc": __version__, "answer": "c"}))
-            done = command.ended()
-    assert (done.code, done.err) == (0, "")
+            result = command.ended()
+    assert (result.code, result.err) == (0, "")
     assert registry.find_registration(pty_robot.port) is None
 
 

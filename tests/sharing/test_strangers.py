@@ -20,9 +20,9 @@ def test_no_bytes_of_a_stranger_end_a_run_or_its_server(pty_robot: PtyRobot, lin
     assert on(pty_robot, "stop").code == 0
     assert command.ended().code == 3
     link.signal(signal.SIGINT)
-    done = link.ended()
-    assert (done.code, done.err) == (0, "\n")
-    assert done.out.count(": connected.") == 3  # strangers are not told of
+    result = link.ended()
+    assert (result.code, result.err) == (0, "\n")
+    assert result.out.count(": connected.") == 3  # strangers are not told of
 
 
 # -- of `test_many_strangers.py`, too --------------------------------------------------------------

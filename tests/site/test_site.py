@@ -79,19 +79,21 @@ def visitor(browser: Browser, address: str) -> Iterator[Page]:
     yield opened
     context.close()
     assert asked
-    assert [each for each in asked if not each.startswith((address, "data:"))] == []
+    assert [
+        address_asked for address_asked in asked if not address_asked.startswith((address, "data:"))
+    ] == []
     assert wrong == []
 
 
 def test_every_document_is_on_the_site_and_in_a_part_of_it(built: Path) -> None:
-    found = documents(ROOT, built_texts())
-    sources = {source for document in found for source in document.sources.values()}
+    listed = documents(ROOT, built_texts())
+    sources = {source for document in listed for source in document.sources.values()}
     paths = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"),
              *ROOT.glob("compiler/tiniscript/lessons/*/*.md")]  # fmt: skip
     kept = {path.relative_to(ROOT).as_posix() for path in paths}
     assert kept | {name for name in built_texts() if name.endswith(".md")} == sources
-    assert {document.part for document in found} == set(PARTS)
-    for document in found:
+    assert {document.part for document in listed} == set(PARTS)
+    for document in listed:
         for language in document.sources:
             assert (built / language / f"{document.name}.html").is_file()
 
@@ -135,7 +137,7 @@ def test_a_dead_link_ends_the_build(
 ) -> None:
     """Of what no half sees: links between them, and what a template has."""
 
-    def render(half: Path, folder: Path, found: object, has_studio: bool) -> None:
+    def render(half: Path, folder: Path, link: object, has_studio: bool) -> None:
         folder.mkdir(parents=True)
         (folder / "store.html").write_text('<a href="../es/monday.html#nowhere">no</a>')
         (folder / "monday.html").touch()
@@ -171,8 +173,8 @@ def test_code_is_left_as_it_is(clone: Path) -> None:
 
 def test_programs_have_colours() -> None:
     tokens = TiniScriptLexer().get_tokens("si|F(2.5, 80) // go")
-    found = [str(kind).removeprefix("Token.") for kind, text in tokens if text.strip()]
-    assert found == ["Keyword.Namespace", "Operator", "Name.Builtin", "Punctuation",
+    kinds = [str(kind).removeprefix("Token.") for kind, text in tokens if text.strip()]
+    assert kinds == ["Keyword.Namespace", "Operator", "Name.Builtin", "Punctuation",
                      "Literal.Number", "Punctuation", "Literal.Number", "Punctuation",
                      "Comment.Single"]  # fmt: skip
 
@@ -229,7 +231,7 @@ def test_each_half_leads_to_the_other(visitor: Page, address: str) -> None:
 
 @each_row("name", ["class", "index", "search", "lessons/01_first_line_pupil"])
 def test_what_is_around_a_spanish_page_is_spanish(built: Path, name: str) -> None:
-    english, spanish = (_around(built / each / f"{name}.html") for each in ("en", "es"))
+    english, spanish = (_around(built / language / f"{name}.html") for language in ("en", "es"))
     assert len(english) > 15
     assert english & spanish <= {"TiniScript", "Furo", "tsc", "Português"}
 
@@ -238,7 +240,7 @@ def _around(path: Path) -> set[str]:
     """Return the texts and labels of a page that are not in its article."""
     text = re.sub(r"(?s)<(script|style|article).*?</\1>", "", path.read_text(encoding="utf-8"))
     labels = re.findall(r'(?:aria-label|title|placeholder)="([^"]+)"', text)
-    return {" ".join(each.split()) for each in (*re.findall(r">([^<>]+)<", text), *labels)} - {""}
+    return {" ".join(text.split()) for text in (*re.findall(r">([^<>]+)<", text), *labels)} - {""}
 
 
 def test_the_studio_is_on_the_site(visitor: Page, address: str, built: Path) -> None:

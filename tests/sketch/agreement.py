@@ -116,27 +116,27 @@ class Wanted(NamedTuple):
 
 
 def wanted(trace: str) -> Wanted:
-    found = Wanted([(0.0, (0, 0))], [(0.0, (0,))], {}, [], 0.0, False)
+    expected = Wanted([(0.0, (0, 0))], [(0.0, (0,))], {}, [], 0.0, False)
     for line in trace.splitlines():
         ms, what, *words = line.split()
         at = float(ms)
         if what == "MOTORS":
-            found.motors.append((at, (int(words[0]), int(words[1]))))
+            expected.motors.append((at, (int(words[0]), int(words[1]))))
         elif what == "BEEP" and int(words[1]):
-            found.tones.append((at, (int(words[0]),)))
-            found.tones.append((at + int(words[1]), (0,)))
+            expected.tones.append((at, (int(words[0]),)))
+            expected.tones.append((at + int(words[1]), (0,)))
         elif what == "SET":
             value = {"TRUE": 1, "FALSE": 0}.get(words[1]) if words[1].isalpha() else int(words[1])
             assert value is not None
-            found.settings.setdefault(words[0], [(0.0, (0,))]).append((at, (value,)))
+            expected.settings.setdefault(words[0], [(0.0, (0,))]).append((at, (value,)))
         elif what == "SHOW":
-            found.lines.append((at, words[0]))
+            expected.lines.append((at, words[0]))
         elif what == "FAULT":
-            found.lines.append((at, line.split(" ", 1)[1]))
-        found = found._replace(end_ms=at, is_cut=what == "LIMIT")
-    if not found.is_cut:
-        found.motors.append((found.end_ms, (0, 0)))
-    return found
+            expected.lines.append((at, line.split(" ", 1)[1]))
+        expected = expected._replace(end_ms=at, is_cut=what == "LIMIT")
+    if not expected.is_cut:
+        expected.motors.append((expected.end_ms, (0, 0)))
+    return expected
 
 
 def spans(signal: Signal, end: float) -> list[tuple[float, float, tuple[int, ...]]]:
@@ -148,14 +148,14 @@ def spans(signal: Signal, end: float) -> list[tuple[float, float, tuple[int, ...
     ]
 
 
-def same(want: Signal, got: Signal, end: float, near: float, apart: float = 0) -> list[str]:
+def same(want: Signal, actual: Signal, end: float, near: float, apart: float = 0) -> list[str]:
     """Return how two signals differ; what lasts less than twice `near` may be missing."""
 
     def agree(a: tuple[int, ...], b: tuple[int, ...]) -> bool:
         return all(abs(x - y) <= apart * max(abs(x), abs(y)) for x, y in zip(a, b, strict=True))
 
     wrong = []
-    ours, theirs = spans(want, end), spans(got, end)
+    ours, theirs = spans(want, end), spans(actual, end)
     for at, until, value in ours:
         inner = [v for a, u, v in theirs if a < until - near and u > at + near]
         if until - at > 2 * near and not all(agree(value, v) for v in inner):
@@ -211,39 +211,41 @@ def pulses(
     """Return which pulses of a servo are not those of its settings."""
     wrong, first, last = [], settings["low_us"], settings["high_us"]
     for k, (at, until, value) in enumerate(spans(asked, end)):
-        seen = [
+        lengths_us = [
             1000 * (gone - came)
             for came, gone, level in spans(signal, end)
             if level[0] and came > at + 30 and gone < until - 2
         ]
         if k == 0 and (len(asked) == 1 or asked[1][0] > 0):
-            if seen:
-                wrong.append(f"pulses before a SET: {seen[:3]}")
+            if lengths_us:
+                wrong.append(f"pulses before a SET: {lengths_us[:3]}")
             continue
         us = first + (value[0] - low / ONE) * (last - first) / ((high - low) / ONE)
-        if until - at > 60 and (not seen or any(abs(each - us) > 20 for each in seen)):
-            wrong.append(f"{value} is {us} us, but {seen[:4]}")
+        if until - at > 60 and (
+            not lengths_us or any(abs(length_us - us) > 20 for length_us in lengths_us)
+        ):
+            wrong.append(f"{value} is {us} us, but {lengths_us[:4]}")
     return wrong
 
 
 def shown(want: Wanted, ran: Ran, apart: float, near: float) -> list[str]:
     """Return what SHOW has said that it should not, or not said."""
-    said = ran.text.split("\r\n")[:-1]
+    lines = ran.text.split("\r\n")[:-1]
     asked = [line for _, line in want.lines]
-    common = min(len(said), len(asked))
+    common = min(len(lines), len(asked))
     least = len(asked)
     if want.is_cut:
         least = sum(at < want.end_ms - near for at, _ in want.lines)
-    is_same = all(map(_is_line, said[:common], asked[:common], [apart] * common))
-    if is_same and len(said) >= least and (want.is_cut or len(said) == least):
+    is_same = all(map(_is_line, lines[:common], asked[:common], [apart] * common))
+    if is_same and len(lines) >= least and (want.is_cut or len(lines) == least):
         return []
-    return [f"shown {said[:20]}, not {asked[:20]}"]
+    return [f"shown {lines[:20]}, not {asked[:20]}"]
 
 
-def _is_line(said: str, asked: str, apart: float) -> bool:
-    if said == asked or not apart:
-        return said == asked
-    return not asked[-1:].isalpha() and abs(float(said) - float(asked)) <= apart
+def _is_line(line: str, asked: str, apart: float) -> bool:
+    if line == asked or not apart:
+        return line == asked
+    return not asked[-1:].isalpha() and abs(float(line) - float(asked)) <= apart
 
 
 def sketch(text: str, robot: Robot, language: str = "en") -> str:
@@ -293,9 +295,9 @@ def example(seed: int, robot: Robot) -> Example | None:
 
 def check(example: Example, robot: Robot, language: str = "en") -> None:
     """The sketch of a random program does what the oracle says."""
-    found = compile_text(example.text, robot.kit, "prog.ts")
-    assert found.program is not None and found.is_right
-    board = SketchBoard(robot, sketch_of(found.source, found.program, robot, language))
+    compilation = compile_text(example.text, robot.kit, "prog.ts")
+    assert compilation.program is not None and compilation.is_right
+    board = SketchBoard(robot, sketch_of(compilation.source, compilation.program, robot, language))
     pins = {
         device.name: wiring.pins
         for device, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True)
@@ -305,7 +307,7 @@ def check(example: Example, robot: Robot, language: str = "en") -> None:
     board.level(0, pins["TOUCH"]["pin"], not example.counts["TOUCH"])
     board.echoes(pins["DISTANCE"]["trigger"], pins["DISTANCE"]["echo"], [0])
     start = 0.5
-    if found.program.start == "SB":
+    if compilation.program.start == "SB":
         start = UP_MS
         board.level(PRESS_MS, robot.board.start_button, False)
         board.level(RELEASE_MS, robot.board.start_button, True)

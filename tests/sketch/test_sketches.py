@@ -90,9 +90,9 @@ def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float)
         board.level(RELEASE_MS, robot.board.start_button, True)
     trace = MACHINES["python"](compiled.image, robot.kit, Senses(readings, round(seconds * 1000)))
     want = wanted(trace)
-    done = board.ran(start + want.end_ms + (0 if want.is_cut else 400))
+    run = board.ran(start + want.end_ms + (0 if want.is_cut else 400))
     near = nearness(trace, echo_us)
-    wrong = differences(trace, done, robot, start, near, 0.2 if echo_us else 0)
+    wrong = differences(trace, run, robot, start, near, 0.2 if echo_us else 0)
     assert not wrong, f"{wrong[:3]}\n{text}\n{trace[:2000]}"
 
 
@@ -132,8 +132,8 @@ POWERS = [(80, 80), (-40, -40), (50, -100), (0, 0)]
 
 @pytest.mark.parametrize("name", sorted(DRIVERS))
 def test_drivers_of_motors(name: str) -> None:
-    found = shifted(ran(MOVES, 400, driven(name)).motors, START_MS, (0, 0))
-    lasting = [value for at, until, value in spans(found, 399) if until - at > 5]
+    motors = shifted(ran(MOVES, 400, driven(name)).motors, START_MS, (0, 0))
+    lasting = [value for at, until, value in spans(motors, 399) if until - at > 5]
     assert lasting == POWERS
 
 
@@ -141,8 +141,8 @@ def test_a_tb6612_is_awake_while_it_drives() -> None:
     robot = robots.load("liner")
     board = SketchBoard(robot, sketch("SI|F(0.1, 80)", robot))
     standby = robot.board.motors.pins["standby"]
-    found = shifted(board.ran(150).pins[standby], START_MS, (0,))
-    assert [value for at, until, value in spans(found, 149) if until - at > 2] == [(255,), (0,)]
+    levels = shifted(board.ran(150).pins[standby], START_MS, (0,))
+    assert [value for at, until, value in spans(levels, 149) if until - at > 2] == [(255,), (0,)]
     assert BRIDGE_STATES  # the states of the other pins are those of the drivers above
 
 
@@ -150,14 +150,16 @@ def test_servos_that_turn_get_their_pulses() -> None:
     """Still for a second after a stop, then none; the right one turns the other way."""
     robot = robot_with(SERVOS)
     board = SketchBoard(robot, sketch("SI|F(0.2, 100);W(2)", robot))
-    done = board.ran(1900)
+    run = board.ran(1900)
     for side, driving, still in (("left", 2010, 1500), ("right", 970, 1480)):
-        signal = done.pins[robot.board.motors.pins[f"{side}_pin"]]
-        seen = [(at, 1000 * (gone - at)) for at, gone, level in spans(signal, 1899) if level[0]]
-        assert all(abs(us - driving) < 25 for at, us in seen if 25 < at < 190)
-        assert all(abs(us - still) < 25 for at, us in seen if at > 230)
-        assert 48 <= sum(at > 210 for at, _ in seen) <= 51
-        assert sum(at < 200 for at, _ in seen) >= 8
+        signal = run.pins[robot.board.motors.pins[f"{side}_pin"]]
+        pulse_list = [
+            (at, 1000 * (gone - at)) for at, gone, level in spans(signal, 1899) if level[0]
+        ]
+        assert all(abs(us - driving) < 25 for at, us in pulse_list if 25 < at < 190)
+        assert all(abs(us - still) < 25 for at, us in pulse_list if at > 230)
+        assert 48 <= sum(at > 210 for at, _ in pulse_list) <= 51
+        assert sum(at < 200 for at, _ in pulse_list) >= 8
 
 
 def test_a_gripper_and_a_lamp_of_a_mega() -> None:
@@ -173,8 +175,8 @@ def test_a_pwm_actuator() -> None:
     for line in ("at_stop = ", "low_us = ", "high_us = "):
         text = "\n".join(row for row in text.splitlines() if not row.startswith(line))
     robot = read(text, "test")
-    found = ran("SI|GRIPPER(90);W(0.1);X = 180;GRIPPER(X);W(1)", 190, robot)
-    signal = shifted(found.pins[11], START_MS, (0,))
+    run = ran("SI|GRIPPER(90);W(0.1);X = 180;GRIPPER(X);W(1)", 190, robot)
+    signal = shifted(run.pins[11], START_MS, (0,))
     assert [value for at, until, value in spans(signal, 189) if until - at > 5] == [(128,), (255,)]
 
 
@@ -224,16 +226,16 @@ def test_a_button_starts_and_stops() -> None:
     )
     for ms, is_high in ((100, False), (200, True), (500, False), (600, True)):
         board.level(ms, button, is_high)
-    done = board.ran(900)
-    assert [value for at, until, value in spans(done.motors, 899) if until - at > 5] == [
+    run = board.ran(900)
+    assert [value for at, until, value in spans(run.motors, 899) if until - at > 5] == [
         (0, 0), (50, 50), (0, 0),
     ]  # fmt: skip
-    on, off = (at for at, value in done.motors if value in ((50, 50), (0, 0)) and at > 100)
+    on, off = (at for at, value in run.motors if value in ((50, 50), (0, 0)) and at > 100)
     assert 228 < on < 235 and 499 < off < 502
-    lamp = done.pins[pins[2]]
+    lamp = run.pins[pins[2]]
     assert lamp[-1][1] == (0,) and 499 < lamp[-1][0] < 502  # a stop turns it off
-    assert not any(level[0] and at > 505 for at, _, level in spans(done.pins[pins[0]], 899))
-    assert done.text == ""
+    assert not any(level[0] and at > 505 for at, _, level in spans(run.pins[pins[0]], 899))
+    assert run.text == ""
 
 
 def test_a_spike_starts_nothing() -> None:
@@ -251,28 +253,28 @@ def test_a_program_that_has_ended_plays_its_tune() -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("text", "said"), [
+@pytest.mark.parametrize(("text", "name"), [
     ("SI|M(50, 50);X = 2000000;X = X * X;S", "FAULT OVERFLOW"),
     ("SI|M(50, 50);X = 0;SHOW(1 / X)", "FAULT DIVIDE_BY_ZERO"),
     ("SI|M(50, 50);X = 0;SHOW(1 % X)", "FAULT DIVIDE_BY_ZERO"),
 ])  # fmt: skip
-def test_a_fault_stops_the_motors_and_says_its_name(text: str, said: str) -> None:
-    done = ran(text, 60)
-    assert done.text == said + "\r\n"
-    assert done.motors[-1][1] == (0, 0) and (50, 50) in [value for _, value in done.motors]
+def test_a_fault_stops_the_motors_and_says_its_name(text: str, name: str) -> None:
+    run = ran(text, 60)
+    assert run.text == name + "\r\n"
+    assert run.motors[-1][1] == (0, 0) and (50, 50) in [value for _, value in run.motors]
 
 
 @pytest.mark.parametrize("text", ["PING|check_connection", "", "SI|"])
 def test_a_program_that_does_nothing(text: str) -> None:
-    done = ran(text, 50)
-    assert {value for _, value in done.motors} == {(0, 0)} and done.text == ""
+    run = ran(text, 50)
+    assert {value for _, value in run.motors} == {(0, 0)} and run.text == ""
 
 
 def check_seed(seed: int) -> str:
-    made = example(seed, ROBOT_WIDE)
-    if made is None:
+    drawn_example = example(seed, ROBOT_WIDE)
+    if drawn_example is None:
         return "no example"
-    check(made, ROBOT_WIDE, "es" if seed % 2 else "en")
+    check(drawn_example, ROBOT_WIDE, "es" if seed % 2 else "en")
     return "agrees"
 
 

@@ -11,7 +11,7 @@ from tests.machines.sketch_board import built
 from tests.sketch.agreement import sketch as sketch_for
 from tests.support.casefile import ROOT, example_robot, sketch_examples
 from tests.support.texts import LANGUAGES
-from tests.support.texts import said as all_said
+from tests.support.texts import catalogue_texts as all_said
 from tiniscript import compile_text, robots
 from tiniscript.cli.paths import is_foreign
 from tiniscript.codegen.sketch.names import (
@@ -138,7 +138,7 @@ def test_a_long_comment_is_broken_where_the_line_ends(block: str) -> None:
 def test_names_are_like_those_of_cpp() -> None:
     names = Names("en")
     asked = ("MY_SPEED", "X", "OLD__D_", "OLD_D", "DELAY", "FORWARD", "I", "I2", "FIRST1", "NUMBER")
-    made = [
+    names_in_cpp = [
         "mySpeed",
         "x",
         "oldD",
@@ -150,7 +150,7 @@ def test_names_are_like_those_of_cpp() -> None:
         "myFirst1",
         "number",
     ]
-    assert [names.name_of(each) for each in asked] == made
+    assert [names.name_of(word) for word in asked] == names_in_cpp
     assert (
         Names("en").name_of("COUNTED") == "myCounted" and Names("es").name_of("VALOR") == "miValor"
     )
@@ -162,7 +162,7 @@ def test_names_are_like_those_of_cpp() -> None:
 
 def test_no_helper_has_a_reserved_name() -> None:
     for language in LANGUAGES:
-        names = {translated_name(each, language) for each in IDENTIFIERS}
+        names = {translated_name(identifier, language) for identifier in IDENTIFIERS}
         assert not RESERVED & names - {"read", "leer", "time", "value"}
 
 
@@ -173,9 +173,9 @@ def test_names_of_cpp_and_of_the_core_can_be_variables(first: int) -> None:
     words = sorted(word.upper() for word in RESERVED if word.isalpha())[first::6]
     kit = robots.load("tinibot").kit
     odd = ("A0", "B1", "PI", "HIGH", "LOW", "PORTB", "ADC", "NULL", "SPEED", "FIRST1", "INPUT")
-    usable = [each for each in (*odd, *words) if compile_text(f"{each} = 1", kit).is_right]
+    usable = [word for word in (*odd, *words) if compile_text(f"{word} = 1", kit).is_right]
     for start in range(0, len(usable), 30):
-        program = ";".join(f"{each} = 1" for each in usable[start : start + 30])
+        program = ";".join(f"{word} = 1" for word in usable[start : start + 30])
         built(sketch(f"{program};W({usable[start]})"), "uno")
 
 
@@ -185,14 +185,14 @@ def test_no_name_of_a_helper_is_in_the_other_language() -> None:
         "SI|X = RANDOM(1, 6) / 2 % 3;SHOW(ROUND(ABS(MIN(X, -X)), 1));SHOW(MAX(X, 1) > 2);M(X, X);"
         "BEEP(X, 440);GRIPPER(X);W(TIME) UNTIL(X > 3);F(FOREVER, 50) UNTIL(DISTANCE < 9)"
     )
-    said = sketch(program, "es", "grabber")
-    code = re.sub(r"//.*|\"[^\"]*\"", "", said)
+    sketch_text = sketch(program, "es", "grabber")
+    code = re.sub(r"//.*|\"[^\"]*\"", "", sketch_text)
     assert not set(re.findall(r"\w+", code)) & set(LOCALS)
     assert "segundos.milesimas == PARA_SIEMPRE.milesimas" in code
-    notes = " ".join(re.findall(r"// (.*)", said))
+    notes = " ".join(re.findall(r"// (.*)", sketch_text))
     assert not set(re.findall(r"\w+", notes)) & {"low", "high", "first", "last"}
-    local = {all_said("es", "sketch")[f"local/{each}"] for each in LOCALS}
-    names = {translated_name(each, "es") for each in IDENTIFIERS}
+    local = {all_said("es", "sketch")[f"local/{key}"] for key in LOCALS}
+    names = {translated_name(identifier, "es") for identifier in IDENTIFIERS}
     assert len(local) == len(LOCALS) and not (local | names) & RESERVED - {"leer"}
     assert local & names == {"valor"}
 
@@ -208,8 +208,8 @@ def test_its_first_lines_name_the_limits_that_it_has(language: str) -> None:
         )
         return {
             key.removeprefix("said/")
-            for key, said in all_said(language, "sketch").items()
-            if key.startswith("said/limit_") and said.split("{")[0].strip() in first
+            for key, text in all_said(language, "sketch").items()
+            if key.startswith("said/limit_") and text.split("{")[0].strip() in first
         }
 
     always = {"limit_link", "limit_watch", "limit_time"}
@@ -223,11 +223,11 @@ def test_its_first_lines_name_the_limits_that_it_has(language: str) -> None:
 def test_texts_are_there_in_both_languages() -> None:
     for language in LANGUAGES:
         texts = all_said(language, "sketch")
-        names = [said for key, said in texts.items() if key.startswith("name/")]
+        names = [text for key, text in texts.items() if key.startswith("name/")]
         assert len(set(names)) == len(names) == len(IDENTIFIERS)
-        for key, said in texts.items():
+        for key, text in texts.items():
             is_name = key.partition("/")[0] in ("name", "local", "prefix")
-            assert not is_name or re.fullmatch(r"[A-Za-z_]\w*", said, re.ASCII), key
+            assert not is_name or re.fullmatch(r"[A-Za-z_]\w*", text, re.ASCII), key
 
 
 @pytest.mark.parametrize("path", sketch_examples(), ids=lambda path: path.stem)
@@ -238,9 +238,9 @@ def test_no_line_is_too_long_and_no_gap_stays_open(
     text = sketch(path.read_text(encoding="utf-8"), language, example_robot(path))
     assert "$" not in text
     assert max(map(len, text.splitlines())) <= 110
-    made = tmp_path / "a.ino"
-    made.write_text(text, encoding="utf-8")
-    assert not is_foreign(made)
+    sketch_file = tmp_path / "a.ino"
+    sketch_file.write_text(text, encoding="utf-8")
+    assert not is_foreign(sketch_file)
 
 
 @pytest.mark.parametrize("language", ["en", "es"])

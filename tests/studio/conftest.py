@@ -34,8 +34,8 @@ def unhurried(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="package")
 def playwright() -> Iterator[Playwright]:
-    with studio.driver() as found:
-        yield found
+    with studio.driver() as started_playwright:
+        yield started_playwright
 
 
 @pytest.fixture(scope="package")
@@ -47,17 +47,17 @@ def browser(playwright: Playwright) -> Iterator[Browser]:
 @pytest.fixture(scope="module")
 def server(browser: Browser) -> Iterator[serving.Server]:
     """A `tsc studio` that holds the robots of its pages."""
-    with studio.hosted() as made:
-        yield made
+    with studio.hosted() as server:
+        yield server
 
 
 @pytest.fixture
 def hosted_pages(browser: Browser, server: serving.Server) -> Iterator[studio.Pages]:
     """Pages of that server, on which nothing goes wrong."""
-    made = studio.Pages(browser, server.address, entrance=server.entrance)
-    yield made
-    made.close()
-    assert not made.wrong
+    opened_pages = studio.Pages(browser, server.address, entrance=server.entrance)
+    yield opened_pages
+    opened_pages.close()
+    assert not opened_pages.wrong
 
 
 @pytest.fixture(scope="package")
@@ -68,25 +68,25 @@ def address(browser: Browser) -> Iterator[str]:
 
 @pytest.fixture
 def pages(browser: Browser, address: str) -> Iterator[studio.Pages]:
-    found = studio.Pages(browser, address)
-    yield found
-    found.close()
-    assert not found.wrong
+    opened_pages = studio.Pages(browser, address)
+    yield opened_pages
+    opened_pages.close()
+    assert not opened_pages.wrong
 
 
 @pytest.fixture(scope="module")
 def only_page(browser: Browser, address: str) -> Iterator[tuple[studio.Pages, Page]]:
     """One page for many tests: Python takes a while to start in it."""
-    found = studio.Pages(browser, address)
-    yield found, found.open()
-    found.close()
+    opened_pages = studio.Pages(browser, address)
+    yield opened_pages, opened_pages.open()
+    opened_pages.close()
 
 
 @pytest.fixture
 def page(only_page: tuple[studio.Pages, Page]) -> Iterator[Page]:
     """The page as `begin_anew` has it. What it says of errors is looked at after each test."""
-    pages, found = only_page
-    studio.begin_anew(found)
-    yield found
+    pages, current_page = only_page
+    studio.begin_anew(current_page)
+    yield current_page
     wrong, pages.wrong[:] = pages.wrong[:], []
     assert not wrong

@@ -1,6 +1,6 @@
 // node flash_esp32_in_node.mjs SOURCES SIMULATOR: writes a firmware as the page does, onto the simulated ROM of
 // an ESP32. Its input is JSON: {board, chip, firmware, cancelAt, ...}, the firmware in base64. Prints JSON: how it
-// ended, whether the flash has the firmware, what was refused, and how often the chip has started.
+// ended, whether the flash has the firmware, what was refused, and how many times the chip has started.
 
 import crypto from 'node:crypto';
 import fs from 'node:fs';

@@ -11,7 +11,7 @@ playsNavigator({});
 const page = freshPage();
 await learns(page);
 const ways = {
-  // Through `tsc studio`, which answers at once; how often it is asked is counted.
+  // Through `tsc studio`, which answers at once; how many times it is asked is counted.
   async host() {
     let beats = 0;
     playsFetch(async (_, { body }) => {

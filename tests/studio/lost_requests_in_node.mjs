@@ -1,6 +1,6 @@
 // node lost_requests_in_node.mjs SOURCES SEEDS: the page's own way through `tsc studio` asks a server that
 // this script plays, on its clock. Any of its requests and answers are lost, late or come twice. Prints a
-// JSON row for each seed: how often each ask has ended, what was done, and what came after the end.
+// JSON row for each seed: how many times each ask has ended, what was done, and what came after the end.
 
 import { pathToFileURL } from 'node:url';
 
@@ -134,7 +134,7 @@ async function story(random, bad, isWild = false, dies = false) {
   await until(now_ms + 3000);
   const asks = 1 + Math.floor(random() * 12);
   let presses = 0;
-  const words = []; // how often each has ended
+  const words = []; // how many times each has ended
   for (let k = 0; k < asks; k += 1) {
     ends.push(0);
     const counts = () => (ends[k] += 1);

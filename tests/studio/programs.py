@@ -20,16 +20,18 @@ class Program(NamedTuple):
 
 
 def programs() -> list[Program]:
-    found = []
+    program_list = []
     for case in all_cases():
         if "tiniscript" in case.parts:
             named = _ROBOT.search(case.parts.get("senses", ""))
             own = shipped_name_in(case.parts["tiniscript"].encode()) or "tinibot"
             robot = named[1] if named and named[1] in robots.names() else own
-            found.append(Program(case.id, case.parts["tiniscript"], robot))
+            program_list.append(Program(case.id, case.parts["tiniscript"], robot))
     for path in sorted((ROOT / "examples").glob("*.ts")):
-        found.append(Program(path.name, path.read_text(encoding="utf-8"), example_robot(path)))
-    return found
+        program_list.append(
+            Program(path.name, path.read_text(encoding="utf-8"), example_robot(path))
+        )
+    return program_list
 
 
 def image(program: Program) -> str:
@@ -43,7 +45,7 @@ def image(program: Program) -> str:
 LACKING = ("TS313", "TS315")  # said of a right program that a robot cannot run, when it is sent
 
 
-def said(text: str, language: str) -> list[Message]:
+def messages_of(text: str, language: str) -> list[Message]:
     """Return what `tsc compile` says of a program."""
     try:
         return list(compile(text, language=language).diagnostics)

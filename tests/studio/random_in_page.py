@@ -50,7 +50,7 @@ def images(page: Page, texts: list[str]) -> list[str]:
 
 def without_places(form: Any) -> Any:
     if isinstance(form, list):
-        return [without_places(each) for each in form]
+        return [without_places(node) for node in form]
     if isinstance(form, dict):
         return {key: without_places(value) for key, value in form.items() if key != "place"}
     return form
@@ -59,8 +59,8 @@ def without_places(form: Any) -> Any:
 def round_trip(page: Page, forms: list[Any]) -> list[Any]:
     """Return forms as the page's blocks have them, made of these."""
     (name,) = [name for name in files() if name.startswith("blocks-")]
-    found: list[Any] = page.evaluate(ROUND, {"name": name, "forms": forms})
-    return found
+    forms_back: list[Any] = page.evaluate(ROUND, {"name": name, "forms": forms})
+    return forms_back
 
 
 def through_blocks(page: Page, texts: list[str]) -> list[str]:
@@ -69,8 +69,8 @@ def through_blocks(page: Page, texts: list[str]) -> list[str]:
     forms = studio.asked(page, requests)
     for form in forms:
         del form["size"]
-    seen = round_trip(page, without_places(forms))
-    answers = studio.asked(page, [{"do": "text", "form": form} for form in seen])
+    forms_seen = round_trip(page, without_places(forms))
+    answers = studio.asked(page, [{"do": "text", "form": form} for form in forms_seen])
     return [answer["text"] for answer in answers]
 
 

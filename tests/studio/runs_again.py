@@ -29,16 +29,16 @@ def recorded(number: int) -> tuple[bytes, list[Row]]:
     while True:
         profile = robots.load(rng.choice(ROBOTS))
         text = rng.choice(("", "SB|")) + TaskAuthor(rng, ways=rng.random() < 0.7).program()
-        found = compile_source(text.encode(), profile, "", is_strict=True, is_chosen=True)
-        found = fit_to_robot(found, profile)
-        if found.image:
+        compilation = compile_source(text.encode(), profile, "", is_strict=True, is_chosen=True)
+        compilation = fit_to_robot(compilation, profile)
+        if compilation.image:
             break
     world = rng.choice(worlds.names())
     given_readings = {0: [rng.randrange(2, 100) * 1000, 1000]} if rng.random() < 0.3 else {}
     if profile.kit.sensors[0].is_yes_no:
         given_readings = {}
     settings = Settings(seed=number + 1, given_readings=given_readings)
-    run = Simulation(profile.name, worlds.load(world), found.image, settings=settings)
+    run = Simulation(profile.name, worlds.load(world), compilation.image, settings=settings)
     for _ in range(rng.randint(1, 25)):
         _act(rng, run)
     if rng.random() < 0.3:
@@ -47,8 +47,8 @@ def recorded(number: int) -> tuple[bytes, list[Row]]:
             run.go(rng.randint(0, 30))
     rows, end_ms = run.rows(), run.robot.now_ms
     run.close()
-    first = header_line(VIRTUAL, text, profile, checksum(found.image), world=world, seed=number + 1,
-                 given_readings=given_readings)  # fmt: skip
+    first = header_line(VIRTUAL, text, profile, checksum(compilation.image), world=world,
+                        seed=number + 1, given_readings=given_readings)  # fmt: skip
     happened = [row for row in rows if not row.is_input]
     return encode(first, rows, end_ms).encode(), happened
 
@@ -76,9 +76,9 @@ def differs(number: int) -> str | None:
 if __name__ == "__main__":
     count = int(sys.argv[1])
     events = 0
-    for each in range(count):
-        wrong = differs(each)
+    for round_number in range(count):
+        wrong = differs(round_number)
         if wrong is not None:
-            sys.exit(f"run {each}: {wrong}")
-        if each % 100 == 99:
-            print(f"{each + 1} runs", flush=True)
+            sys.exit(f"run {round_number}: {wrong}")
+        if round_number % 100 == 99:
+            print(f"{round_number + 1} runs", flush=True)

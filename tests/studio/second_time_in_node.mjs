@@ -614,7 +614,7 @@ const PARTS = {
         run.add({ now_ms, bumps, parting, events, at: 0, places: [0], is_running: true });
       }
       const { marks, moments, seconds, size } = run;
-      return { ends: [parting ? 'parted' : 'whole'], seen: structuredClone([marks, run.parting, moments.length, moments.events, moments.parts, moments.shownUntil(moments.length), moments.last_ms, seconds, size]) };
+      return { ends: [parting ? 'parted' : 'whole'], seen: structuredClone([marks, run.parting, moments.length, moments.events, moments.parts, moments.at(moments.length - 1).shown, moments.last_ms, seconds, size]) };
     };
   },
 

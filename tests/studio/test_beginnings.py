@@ -20,7 +20,7 @@ def test_no_picture_of_the_start_shows_a_robot_that_bumps(tmp_path: Path) -> Non
         program = tmp_path / "program.ts"
         program.write_text(beginning["text"], "utf-8")
         where = ("--robot", beginning["robot"], "--world", beginning["world"])
-        done = inside(
+        result = inside(
             "upload", program, "--virtual", *where, "--for", str(SECONDS), "--hurry", "max"
         )
-        assert "touched nothing" in done.out, (name, done.out)
+        assert "touched nothing" in result.out, (name, result.out)

@@ -45,8 +45,10 @@ def kinds(text: str, kit: Kit = TINIBOT) -> list[str]:
 
 def words(text: str) -> list[str]:
     """Return the words and numbers of a text, comments included, in any order."""
-    kept = "".join(letter if letter.isalnum() or letter == "_" else " " for letter in text.upper())
-    return sorted(ALIASES.get(word, word) for word in kept.split())
+    letters = "".join(
+        letter if letter.isalnum() or letter == "_" else " " for letter in text.upper()
+    )
+    return sorted(ALIASES.get(word, word) for word in letters.split())
 
 
 @each_row("program", programs())
@@ -278,13 +280,13 @@ def test_the_beginning_of_a_program_is_of_its_first_blocks(program: Program) -> 
     form = read_blocks(program.text, robots.load(program.robot).kit)
     whole = in_order(form.body)
     for most in (1, 2, 7, 40, size_of(form)):
-        found = first_blocks(form, most)
-        assert size_of(found) <= most
-        first = in_order(found.body)
+        beginning = first_blocks(form, most)
+        assert size_of(beginning) <= most
+        first = in_order(beginning.body)
         if size_of(form) <= most:
-            assert found == form
+            assert beginning == form
             continue
-        assert first.pop() == LEFT_OUT and found.loose == ()
+        assert first.pop() == LEFT_OUT and beginning.loose == ()
         assert [(block.kind, block.word) for block in first] == [
             (block.kind, block.word) for block in whole[: len(first)]
         ]
@@ -297,5 +299,5 @@ def test_the_page_asks_for_the_beginning() -> None:
     text = ";".join(["SHOW(1)"] * (2 * MOST_BLOCKS))
     asked = {"do": "blocks", "robot": "tinibot"}
     assert set(json.loads(answer(json.dumps(asked), text.encode()))) == {"size"}
-    found = json.loads(answer(json.dumps({**asked, "first": 150}), text.encode()))
-    assert found["size"] == 149 and found["body"][-1]["word"] == "…"
+    form = json.loads(answer(json.dumps({**asked, "first": 150}), text.encode()))
+    assert form["size"] == 149 and form["body"][-1]["word"] == "…"

@@ -43,8 +43,8 @@ def page() -> Path:
 
 def test_the_packages_are_pinned_and_come_from_nowhere_in_particular() -> None:
     wanted = json.loads((SOURCES / "package.json").read_text(encoding="utf-8"))
-    for found in (*wanted["dependencies"].values(), *wanted["devDependencies"].values()):
-        assert re.fullmatch(r"\d+\.\d+\.\d+", found)
+    for version in (*wanted["dependencies"].values(), *wanted["devDependencies"].values()):
+        assert re.fullmatch(r"\d+\.\d+\.\d+", version)
     lock = json.loads((SOURCES / "package-lock.json").read_text(encoding="utf-8"))
     for name, package in lock["packages"].items():
         assert "resolved" not in package, name
@@ -52,13 +52,13 @@ def test_the_packages_are_pinned_and_come_from_nowhere_in_particular() -> None:
 
 
 def test_no_part_is_packed_of_what_no_browser_has(page: Path) -> None:
-    found = []
+    modules = []
     for archive in page.glob("*.zip"):
         with zipfile.ZipFile(archive) as packed:
-            found += [name.replace("/", ".") for name in packed.namelist()]
-    assert len(found) > 200
+            modules += [name.replace("/", ".") for name in packed.namelist()]
+    assert len(modules) > 200
     assert not [
-        each for each in found if each.startswith(tuple(f"{name}." for name in MODULES_NOT_HERE))
+        name for name in modules if name.startswith(tuple(f"{name}." for name in MODULES_NOT_HERE))
     ]
 
 
@@ -77,7 +77,7 @@ def test_a_text_has_the_places_of_the_english_one(language: str) -> None:
     for entry in merged_catalogue("studio", language).entries.values():
         places = sorted(re.findall(r"%[\d%]", entry.english))
         assert all(
-            sorted(re.findall(r"%[\d%]", each)) == places for each in entry.translation.values()
+            sorted(re.findall(r"%[\d%]", text)) == places for text in entry.translation.values()
         )
 
 
@@ -99,14 +99,14 @@ def test_every_sentence_is_said_somewhere() -> None:
 
 
 def test_every_block_says_something_and_nothing_else_does() -> None:
-    said = set(page_texts(SOURCE_LANGUAGE))
+    keys = set(page_texts(SOURCE_LANGUAGE))
     words = [*KINDS, *(word for kind in KINDS.values() for word in kind.words)]
     words += [unit for kind in KINDS.values() for unit in kind.units.values()]
     words += ["seconds", "SI", "SB", "PING", "elseif", "else"]
     blocks = {f"block/{word}" for word in words if not SAYS.get(word)}
-    blocks_with_text = {key for key in said if key.startswith("block/")}
+    blocks_with_text = {key for key in keys if key.startswith("block/")}
     assert blocks_with_text - {f"block/{word}" for word in PLAIN} == blocks
-    tips = {key.partition("/")[2] for key in said if key.startswith("tip/")}
+    tips = {key.partition("/")[2] for key in keys if key.startswith("tip/")}
     buttons = {"more", "less", "more_values", "less_values"}
     assert tips <= {*KINDS, "program", *buttons} and len(tips) > 25
 
@@ -138,8 +138,8 @@ def test_the_page_is_small_enough(page: Path) -> None:
     ]
     weights = weights_of(page)
     assert {*weights} == {path.name for path in files}
-    said = [sum(weights[name] for name in studio.language_files(code)) for code in languages()]
-    assert sum(weights.values()) - sum(said) + max(said) <= LARGEST
+    sizes = [sum(weights[name] for name in studio.language_files(code)) for code in languages()]
+    assert sum(weights.values()) - sum(sizes) + max(sizes) <= LARGEST
 
 
 def weights_of(page: Path) -> dict[str, int]:
@@ -163,7 +163,7 @@ def test_the_page_has_its_policy_and_no_code_of_its_own(page: Path) -> None:
 
 
 def test_the_page_brings_the_licences_of_what_is_in_it(page: Path) -> None:
-    found = (page / studio.LICENCES_FILE).read_text(encoding="utf-8")
+    licences = (page / studio.LICENCES_FILE).read_text(encoding="utf-8")
     for name in (
         "@codemirror/view 6.",
         "@lezer/common 1.",
@@ -171,9 +171,9 @@ def test_the_page_brings_the_licences_of_what_is_in_it(page: Path) -> None:
         "pyodide 314.",
         "cobs 1.",
     ):
-        assert f"\n{name}" in found
-    assert "Mozilla Public License 2.0" in found and "Permission is hereby granted" in found
-    assert "typescript" not in found and str(ROOT) not in found
+        assert f"\n{name}" in licences
+    assert "Mozilla Public License 2.0" in licences and "Permission is hereby granted" in licences
+    assert "typescript" not in licences and str(ROOT) not in licences
 
 
 def test_no_address_of_the_building_computer_is_in_it(page: Path) -> None:
@@ -190,14 +190,16 @@ def test_the_same_sources_give_the_same_page(
     """One of them is made again, the other one is taken as it is."""
 
     def packs(call: list[str], *words: str) -> str:
-        return brings("*.zip", Path(words[-1])) if words[0] == "pack.mjs" else made(call, *words)
+        return (
+            brings("*.zip", Path(words[-1])) if words[0] == "pack.mjs" else run_before(call, *words)
+        )
 
     def brings(pattern: str, target: Path) -> str:
         for path in set(page.glob(pattern)) - {page / "service_worker.js"}:
             shutil.copy(path, target)
         return ""
 
-    made = studio.run
+    run_before = studio.run
     if part == "modules":
         monkeypatch.setattr(studio, "run", packs)
     else:

@@ -1,4 +1,4 @@
-"""What the page is told of a program: the same as the command says."""
+"""What the page is told about a program: the same as the command says."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.pupils import corpus
-from tests.studio.programs import LACKING, said
+from tests.studio.programs import LACKING, messages_of
 from tests.support.texts import LANGUAGES
 from tiniscript import check, compile, compile_text, robots
 from tiniscript.diagnostics.fixing import MOST_OFFERS, repair_program
@@ -19,10 +19,10 @@ from tiniscript.studio.description import description
 
 
 def test_a_right_program_has_the_image_of_the_command() -> None:
-    found = checking.check(b"SI|F(2, 80)", "tinibot", "en")
-    assert found.image == compile("SI|F(2, 80)").image
-    assert (found.code_bytes, found.findings) == (3, ())
-    assert found.places[0] == (0, 1, 4, 1, 12)
+    result = checking.check(b"SI|F(2, 80)", "tinibot", "en")
+    assert result.image == compile("SI|F(2, 80)").image
+    assert (result.code_bytes, result.findings) == (3, ())
+    assert result.places[0] == (0, 1, 4, 1, 12)
 
 
 @pytest.mark.sampled("first", "part")
@@ -33,16 +33,16 @@ def test_messages_are_those_of_the_command_and_repairs_help(first: int, part: in
     offered = 0
     for k, entry in enumerate(corpus.entries()[part::12]):
         language = LANGUAGES[(first + k) % len(LANGUAGES)]
-        found = checking.check(entry.program.encode(), "tinibot", language)
+        result = checking.check(entry.program.encode(), "tinibot", language)
         messages = [
-            finding.message for finding in found.findings if finding.message.code not in LACKING
+            finding.message for finding in result.findings if finding.message.code not in LACKING
         ]
-        assert messages == said(entry.program, language)
+        assert messages == messages_of(entry.program, language)
         for repair in buttons(entry.program):
             if repair:
                 offered += 1
                 changed = changed_by(entry.program, repair)
-                assert mistakes(check(changed)) <= mistakes([f.message for f in found.findings])
+                assert mistakes(check(changed)) <= mistakes([f.message for f in result.findings])
                 assert changed != entry.program
     assert offered > 100
 
@@ -58,8 +58,8 @@ def test_what_hangs_on_nothing_is_counted(text: str, loose: int) -> None:
 
 
 def test_a_program_that_is_too_large_for_the_robot_is_wrong() -> None:
-    found = checking.check(b"SI|" + b"F(1, 80);" * 500, "tinibot", "en")
-    assert not found.image and found.findings[-1].message.severity == "mistake"
+    result = checking.check(b"SI|" + b"F(1, 80);" * 500, "tinibot", "en")
+    assert not result.image and result.findings[-1].message.severity == "mistake"
 
 
 def test_the_first_value_of_a_variable_is_offered_in_place_of_its_declaration() -> None:
@@ -120,10 +120,10 @@ def test_each_of_many_mistakes_has_its_own_button() -> None:
 
 def test_some_mistakes_are_not_repaired() -> None:
     """Of a line with a checksum none is, and of very many only the first."""
-    found = buttons("SI|F(2, 80~1A2B")
-    assert found and not any(found)
-    found = buttons("SI|" + "F(2, 80\n" * 90)
-    assert 0 < sum(map(bool, found)) <= MOST_OFFERS < len(found)
+    repairs = buttons("SI|F(2, 80~1A2B")
+    assert repairs and not any(repairs)
+    repairs = buttons("SI|" + "F(2, 80\n" * 90)
+    assert 0 < sum(map(bool, repairs)) <= MOST_OFFERS < len(repairs)
 
 
 def test_a_file_is_read_as_the_command_reads_it_or_gets_a_sentence() -> None:
@@ -141,8 +141,8 @@ def test_a_robot_is_a_shipped_one() -> None:
 
 def test_answers_are_json() -> None:
     request = {"do": "check", "robot": "tinibot", "language": "es"}
-    found = json.loads(worker.answer(json.dumps(request), "SI|F(-1, 80) // ñ 🤖".encode()))
-    (finding,) = found["findings"]
+    answer = json.loads(worker.answer(json.dumps(request), "SI|F(-1, 80) // ñ 🤖".encode()))
+    (finding,) = answer["findings"]
     assert finding["severity"] == "mistake" and finding["code"] == "TS206"
     assert finding["may_repair"]
     asked = json.dumps({"do": "repair", "robot": "tinibot", "which": 0})
@@ -157,13 +157,13 @@ ASKED = {"do": "check", "robot": "tinibot", "language": "en"}
 
 
 def test_a_program_names_its_robot_in_the_page_too() -> None:
-    found = json.loads(worker.answer(json.dumps(ASKED), LINER.encode()))
-    assert (found["robot"], found["names_robot"], found["findings"]) == ("liner", True, [])
-    assert bytes.fromhex(found["image"]) == compile(LINER).image
-    found = json.loads(worker.answer(json.dumps(ASKED), b"// robot: linar\nS"))
-    assert (found["robot"], found["names_robot"], found["image"]) == ("tinibot", False, "")
-    found = json.loads(worker.answer(json.dumps({**ASKED, "robot": "grabber"}), b"S"))
-    assert (found["robot"], found["names_robot"]) == ("grabber", False)
+    checked = json.loads(worker.answer(json.dumps(ASKED), LINER.encode()))
+    assert (checked["robot"], checked["names_robot"], checked["findings"]) == ("liner", True, [])
+    assert bytes.fromhex(checked["image"]) == compile(LINER).image
+    checked = json.loads(worker.answer(json.dumps(ASKED), b"// robot: linar\nS"))
+    assert (checked["robot"], checked["names_robot"], checked["image"]) == ("tinibot", False, "")
+    checked = json.loads(worker.answer(json.dumps({**ASKED, "robot": "grabber"}), b"S"))
+    assert (checked["robot"], checked["names_robot"]) == ("grabber", False)
     answer = worker.answer(
         json.dumps({**ASKED, "do": "rename", "robot": "grabber"}), LINER.encode()
     )
@@ -188,16 +188,16 @@ def test_blocks_keep_the_robot() -> None:
 
 
 def test_the_page_knows_every_robot_and_its_words() -> None:
-    found = description()
-    assert [each["name"] for each in found["robots"]] == robots.names()
-    for each in found["robots"]:
-        kit = robots.load(each["name"]).kit
-        names = [device["text"] for device in each["devices"]]
+    known = description()
+    assert [robot["name"] for robot in known["robots"]] == robots.names()
+    for robot_row in known["robots"]:
+        kit = robots.load(robot_row["name"]).kit
+        names = [device["text"] for device in robot_row["devices"]]
         assert names == list(kit.names)
-        assert set(each["labels"]) == set(LANGUAGES)
-    words = {each["text"] for each in found["words"]}
+        assert set(robot_row["labels"]) == set(LANGUAGES)
+    words = {word["text"] for word in known["words"]}
     assert {"F", "IF", "END_LOOP", "UNTIL"} <= words and not words & {"SEND", "ENDLOOP"}
-    assert found["worlds"][0]["name"] == "obstacles"
+    assert known["worlds"][0]["name"] == "obstacles"
 
 
 def mistakes(messages: list[Message]) -> int:

@@ -1,6 +1,6 @@
 """A class is as the law says it is, whatever has happened in it before.
 
-Pupils come, tell of their work, want robots, fall silent, come back and are removed; robots are
+Pupils come, report their work, want robots, fall silent, come back and are removed; robots are
 given and taken, meet nobody, or end; the teacher gives work and begins anew. After each step: all
 that was told is there, a crash loses none of what is kept, and who is next is whose turn it is. A
 class that was begun anew is as one that was just made.
@@ -150,7 +150,7 @@ class History:
         page.robot.was_left = self.chance.random() < 0.5
         page.robot.name = self.chance.choice(("", "TINI"))
         if not page.robot.name and not page.robot.was_left:
-            ports = [each["port"] for each in self.raw_robots() if each["pupil"] == page.name]
+            ports = [robot["port"] for robot in self.raw_robots() if robot["pupil"] == page.name]
             self.failed_s |= dict.fromkeys(ports, self.room.now_s)
 
     def rows(self) -> list[Json]:
@@ -188,7 +188,7 @@ class History:
     def takes_robot(self) -> None:
         port = f"port{self.chance.randrange(ROBOTS)}"
         gives = self.chance.random() < 0.6
-        holder = next((each["pupil"] for each in self.raw_robots() if each["port"] == port), "")
+        holder = next((robot["pupil"] for robot in self.raw_robots() if robot["port"] == port), "")
         self.room.teaches("class_robot", port=port, gives=gives)
         if not gives:
             self.failed_s.pop(port, None)
@@ -218,9 +218,9 @@ class History:
     def all_is_there(self) -> None:
         """Each page's newest program, and that of who has gone, as often as it was made."""
         texts = {page.text for page in (*self.pages.values(), *self.gone.values()) if page.text}
-        found = {each["text"] for each in self.room.teaches("class_work")["pupils"]}
+        texts_there = {pupil["text"] for pupil in self.room.teaches("class_work")["pupils"]}
         present_names = {row["name"] for row in self.rows()}
-        assert texts | self.brought <= found, (texts | self.brought) - found
+        assert texts | self.brought <= texts_there, (texts | self.brought) - texts_there
         for page in self.pages.values():
             if page.name in present_names and page.text:
                 number = self.room.number(page.name)
@@ -259,18 +259,18 @@ class History:
         for name in ("code", "turn_s", "places"):
             assert resumed[name] == state[name], name
         both = [
-            [(row["name"], *row["lessons"]) for row in each["pupils"]] for each in (resumed, state)
+            [(row["name"], *row["lessons"]) for row in work["pupils"]] for work in (resumed, state)
         ]
         assert both[0] == both[1]
         assert [row["port"] for row in resumed["robots"]] == [
             row["port"] for row in state["robots"]
         ]
         works = [
-            sorted(map(str, each.teaches("class_work")["pupils"])) for each in (after, self.room)
+            sorted(map(str, room.teaches("class_work")["pupils"])) for room in (after, self.room)
         ]
         assert works[0] == works[1]
-        whom = [sorted((row["name"], numbers(each).get(row["given"], "")) for row in each["kept"])
-                for each in (resumed, state)]  # fmt: skip
+        whom = [sorted((row["name"], numbers(work).get(row["given"], "")) for row in work["kept"])
+                for work in (resumed, state)]  # fmt: skip
         assert whom[0] == whom[1], "what was given is given to nobody"
 
 
@@ -301,10 +301,10 @@ def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
         assert anew["code"] != code and all(robot.has_ended for robot in driven if robot)
         fresh = Room(0).teaches("class")
         settings = {"code": anew["code"], "turn_s": before["turn_s"], "places": before["places"]}
-        ports = [{**each, "pupil": "", "left_s": 0} for each in before["robots"]]
-        named = {each["port"]: each["name"] for each in anew["robots"]}
+        ports = [{**robot, "pupil": "", "left_s": 0} for robot in before["robots"]]
+        named = {robot["port"]: robot["name"] for robot in anew["robots"]}
         assert anew == fresh | settings | {
-            "robots": [{**each, "name": named[each["port"]]} for each in ports]
+            "robots": [{**port, "name": named[port["port"]]} for port in ports]
         }
         assert room.teaches("class_work")["pupils"] == []
         for page in old:

@@ -33,7 +33,7 @@ def test_a_turn_ends_after_its_time_only_if_somebody_waits() -> None:
         "hand": False,
     }  # fmt: skip
     room.checks_in(luz, True)
-    assert robot.left == "turn_over"
+    assert robot.leave_reason == "turn_over"
     assert room.checks_in(luz)["place"] == 0
     assert room.made.answer(ana, HERE, {"do": "connect"}) == {"failure": "turn_none"}
 
@@ -172,8 +172,8 @@ def test_another_turn_is_reached_by_no_name() -> None:
     }
     for do in ("beat", "leave", "stop", "stop_all"):
         room.made.answer(eve, HERE, {"do": do, "page": own, "asked": [{"do": "upload", "id": 1}]})
-    assert own not in [each["page"] for each in room.hosting.asked[1:]]
-    assert {each["do"] for each in room.hosting.asked[1:]} == {"beat", "leave", "stop"}
+    assert own not in [request["page"] for request in room.hosting.asked[1:]]
+    assert {request["do"] for request in room.hosting.asked[1:]} == {"beat", "leave", "stop"}
     assert room.hosting.asked[-1]["asked"] == []
 
 
@@ -203,7 +203,7 @@ def test_a_robot_stays_the_teachers(asked: object) -> None:
     room.connects(eve)
     with pytest.raises(BadRequest):
         room.made.answer(eve, HERE, {"do": "beat", "asked": [{"do": "hello", "id": 1}, asked]})
-    assert [each["do"] for each in room.hosting.asked] == ["connect"]
+    assert [request["do"] for request in room.hosting.asked] == ["connect"]
 
 
 def test_codes_are_not_guessed() -> None:
@@ -251,7 +251,7 @@ def test_who_comes_back_to_a_computer_is_not_a_second_one() -> None:
     second = room.joins("Ana", "198.51.100.1")
 
     def names() -> list[str]:
-        return [each["name"] for each in room.teaches("class")["pupils"]]
+        return [pupil["name"] for pupil in room.teaches("class")["pupils"]]
 
     room.now_s += 4
     room.joins("Ana")  # the first one may be there
@@ -333,8 +333,12 @@ def test_what_a_page_tells_of_its_work_is_small_and_plain() -> None:
             room.checks_in(eve, **wrong)
     own = {"name": "Pip\u202e" * 20, "colour": 3}
     room.checks_in(eve, own_robot=own)
-    found = room.teaches("class")["pupils"][0]["own_robot"]
-    assert found["colour"] == 3 and found["name"].isprintable() and len(found["name"]) <= 17
+    own_robot = room.teaches("class")["pupils"][0]["own_robot"]
+    assert (
+        own_robot["colour"] == 3
+        and own_robot["name"].isprintable()
+        and len(own_robot["name"]) <= 17
+    )
     wrong_robots: tuple[object, ...] = (
         5, [], {}, {"name": 5, "colour": 1}, {"name": "x", "colour": -1},
         {"name": "x", "colour": 10**9}, {"name": "x", "colour": "red"}, {"name": "x"},
@@ -342,7 +346,7 @@ def test_what_a_page_tells_of_its_work_is_small_and_plain() -> None:
     for wrong_robot in wrong_robots:
         with pytest.raises(BadRequest):
             room.checks_in(eve, own_robot=wrong_robot)
-    assert room.teaches("class")["pupils"][0]["own_robot"] == found
+    assert room.teaches("class")["pupils"][0]["own_robot"] == own_robot
     assert room.checks_in(eve, is_right="x", hand="x")["hand"]
     assert not room.checks_in(eve, hand=False)["hand"]
     room.checks_in(eve, hand=True)
@@ -358,11 +362,11 @@ GIVEN = {**WORK, "lessons": ("01_first_line",)}
 
 
 def names_of(room: Room) -> list[str]:
-    return [each["name"] for each in room.teaches("class_work")["pupils"]]
+    return [pupil["name"] for pupil in room.teaches("class_work")["pupils"]]
 
 
 def texts_of(room: Room) -> list[str]:
-    return [each["text"] for each in room.teaches("class_work")["pupils"]]
+    return [pupil["text"] for pupil in room.teaches("class_work")["pupils"]]
 
 
 def key_of(room: Room, index: int = 0) -> str:
@@ -423,11 +427,11 @@ def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
     wrong: list[object] = [True, None, 5, [], {}, {"key": key}]
     wrong += [{**right, "text": text} for text in ("F(1, 51)", None)]
     wrong += [{**right, "key": other} for other in ("0" * 32, [key])]
-    for said in wrong:
-        assert room.checks_in(ana, took=said)["given"]["key"] == key
+    for text in wrong:
+        assert room.checks_in(ana, took=text)["given"]["key"] == key
     assert "given" not in room.checks_in(eve, took=right)  # it is not hers to say so
     assert texts_of(room) == ["F(1, 50)"]
-    # The page has it: so it is her work from then on, even before she tells of it.
+    # The page has it: so it is her work from then on, even before she reports it.
     assert "given" not in room.checks_in(ana, took=right)
     assert room.teaches("class")["kept"] == [] and texts_of(room) == ["F(1, 50)"]
     assert room.teaches("class")["pupils"][0]["lessons"] == ("01_first_line",)
@@ -588,8 +592,8 @@ def kept_at(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def keeper(kept_at: Path) -> Iterator[Keeper]:
-    with closing(Keeper()) as made:
-        yield made
+    with closing(Keeper()) as started_keeper:
+        yield started_keeper
 
 
 def goes_on(room: Room, keeper: Keeper) -> int:
@@ -612,7 +616,7 @@ def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
     assert goes_on(after, keeper) == 1
     state = after.teaches("class")
     assert (state["code"], state["goes_on"]) == (room.made.code, True)
-    assert [each["port"] for each in state["robots"]] == ["port0"]
+    assert [robot["port"] for robot in state["robots"]] == ["port0"]
     assert after.checks_in(ana)["name"] == "Ana"
     assert sorted(texts_of(after)) == sorted(texts_of(room)) == ["F(1, 50)", "S"]
     with pytest.raises(BadRequest):
@@ -745,7 +749,7 @@ def test_the_teacher_sees_stops_and_takes_back() -> None:
     room.checks_in(luz, True)
     robot = room.connects(ana)
     state = room.teaches("class")
-    assert [(each["name"], each["place"], each["robot"]) for each in state["pupils"]] == [
+    assert [(pupil["name"], pupil["place"], pupil["robot"]) for pupil in state["pupils"]] == [
         ("Ana", 0, "port0"), ("Luz", 1, ""),
     ]  # fmt: skip
     assert state["robots"] == [{"port": "port0", "name": "", "pupil": "Ana", "left_s": 60}]
@@ -754,7 +758,7 @@ def test_the_teacher_sees_stops_and_takes_back() -> None:
     room.teaches("class_stop", pupil=number)
     assert robot.stopped == 1 and not robot.has_ended
     room.teaches("class_next", pupil=number)
-    assert robot.left == "turn_over"
+    assert robot.leave_reason == "turn_over"
     assert room.checks_in(luz)["place"] == 0
     room.teaches("class_remove", pupil=number)
     assert room.made.most_bytes(ana) == 0
@@ -773,7 +777,7 @@ def test_robots_come_and_go() -> None:
     assert room.checks_in(ana)["place"] == 0
     robot = room.connects(ana)
     assert room.teaches("class_robot", port="port7", gives=False)["robots"] == []
-    assert robot.left == "turn_over"
+    assert robot.leave_reason == "turn_over"
     for port in ("", " ", "a\nb", 5, "x" * 301):
         with pytest.raises(BadRequest):
             room.teaches("class_robot", port=port, gives=True)
@@ -800,14 +804,14 @@ def test_the_end_reaches_every_page(erases: bool, over: str) -> None:
     robot = room.connects(ana)
     room.checks_in(luz, True)
     room.teaches("class_over", erases=erases)
-    assert robot.left == "turn_over"
+    assert robot.leave_reason == "turn_over"
     room.made.tend()
     assert not room.made.has_ended
     assert room.checks_in(ana) == {"over": over}
     assert not room.made.has_ended
     assert room.checks_in(luz, True) == {"over": over}
     assert room.made.has_ended
-    assert [each["pupil"] for each in room.teaches("class")["robots"]] == [""]
+    assert [robot["pupil"] for robot in room.teaches("class")["robots"]] == [""]
     late = {"do": "join", "code": room.made.code, "name": "Teo"}
     assert room.made.answer("", HERE, late) == {"failure": "class_over"}
 
@@ -843,7 +847,7 @@ def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.Mo
     monkeypatch.setattr(classroom, "list_ports", slow)
     state = room.teaches("class_robot", port="port9", gives=True)
     assert answered == ["stop", "beat", "here", "listed"]
-    assert [each["name"] for each in state["robots"]] == ["", "NINE"]
+    assert [robot["name"] for robot in state["robots"]] == ["", "NINE"]
 
 
 def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() -> None:

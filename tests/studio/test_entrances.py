@@ -152,8 +152,8 @@ def test_the_server_answers_no_other_user(tmp_path: Path) -> None:
         asked.append(request)
         return {}
 
-    made = serving.Server(serving.files(tmp_path), 0, answer)
-    with serves(made) as server:
+    new_server = serving.Server(serving.files(tmp_path), 0, answer)
+    with serves(new_server) as server:
         own = f"{serving.HOST}:{server.server_port}"
         code = server.entrance(is_for_this_computer=True).rpartition("=")[2]
         assert enter(own, code) == (200, {"failure": "host_used"})

@@ -47,23 +47,23 @@ def flashed(board: str, firmware: bytes, **how: Any) -> dict[str, Any]:
     need("" if (MODULES / "esptool-js").is_dir() else "esptool-js is not fetched")
     case = {"board": board, "firmware": base64.b64encode(firmware).decode(), **how}
     lines = in_node(HERE / "flash_esp32_in_node.mjs", str(ROM), given=json.dumps(case))
-    found: dict[str, Any] = json.loads(lines[-1])
-    assert found["sums"]
-    assert not found["is_open"]  # the next one can have the port
-    return found
+    outcome: dict[str, Any] = json.loads(lines[-1])
+    assert outcome["sums"]
+    assert not outcome["is_open"]  # the next one can have the port
+    return outcome
 
 
 @pytest.mark.parametrize("board", ["esp32dev", "esp32c3"])
 def test_a_new_board_gets_the_whole_firmware_and_starts_it(board: str) -> None:
     chip = {"esp32dev": "esp32", "esp32c3": "esp32c3"}[board]
-    found = flashed(board, image(board), chip=chip)
-    assert (found["ended"], found["is_there"], found["starts"], found["seen"]) == (
+    outcome = flashed(board, image(board), chip=chip)
+    assert (outcome["ended"], outcome["is_there"], outcome["starts"], outcome["seen"]) == (
         "done",
         True,
         1,
         1,
     )
-    assert {op for op, _ in found["refused"]} <= {0}  # but what an ESP32 does not know
+    assert {op for op, _ in outcome["refused"]} <= {0}  # but what an ESP32 does not know
 
 
 @pytest.mark.parametrize(
@@ -78,8 +78,8 @@ def test_a_new_board_gets_the_whole_firmware_and_starts_it(board: str) -> None:
     ],
 )
 def test_a_board_that_is_not_the_one_stays_as_it_is(how: dict[str, Any], ended: str) -> None:
-    found = flashed("esp32dev", image("esp32dev", 20_000), **how)
-    assert (found["ended"], found["is_untouched"]) == (ended, True)
+    outcome = flashed("esp32dev", image("esp32dev", 20_000), **how)
+    assert (outcome["ended"], outcome["is_untouched"]) == (ended, True)
 
 
 @pytest.mark.sampled("how", "ended")
@@ -104,8 +104,8 @@ def test_what_is_no_firmware_of_the_board_is_not_written() -> None:
         ("esp32c3", whole),
         ("esp32c3", b"\xe9" + bytes(11) + b"\0" + bytes(99)),  # of another chip
     ):
-        found = flashed(board, data)
-        assert (found["ended"], found["is_untouched"]) == ("flash_bad_image", True)
+        outcome = flashed(board, data)
+        assert (outcome["ended"], outcome["is_untouched"]) == ("flash_bad_image", True)
 
 
 # A browser's ports, behind one of which is the ROM; Python packs out and adds up for it.
@@ -134,11 +134,11 @@ def at_the_teachers(browser: Browser, folder: Path) -> Iterator[Page]:
     context.add_init_script(ROM.read_text(encoding="utf-8") + PORT)
     try:
         with studio.served(page) as server:
-            found = context.new_page()
-            enter(found, server.address)
-            found.click("#side_real")
-            found.click("#link_teacher summary")
-            yield found
+            opened_page = context.new_page()
+            enter(opened_page, server.address)
+            opened_page.click("#side_real")
+            opened_page.click("#link_teacher summary")
+            yield opened_page
     finally:
         context.close()
 

@@ -41,7 +41,7 @@ class Mate:
         self.token = joined["token"]
         text = FOREVER + "\n"
         assert "group" in self.ask("group_join", name="Red", text=text)
-        self.presses = self.ids = self.connection = self.seen = self.saw_stops = 0
+        self.presses = self.ids = self.connection = self.newest_number = self.saw_stops = 0
         self.asked: list[Json] = []
         self.is_there = False
         self.thread = Thread(target=self._beats, daemon=True)
@@ -51,7 +51,7 @@ class Mate:
         return self.group.room.answer(self.token, self.name, {"do": do, **more})
 
     def drive(self, do: str, **more: Any) -> Json:
-        return self.ask(do, page=self.name, connection=self.connection, seen=self.seen,
+        return self.ask(do, page=self.name, connection=self.connection, seen=self.newest_number,
                         stops=self.presses, **more)  # fmt: skip
 
     def _beats(self) -> None:
@@ -62,23 +62,23 @@ class Mate:
                 continue
             asked, self.asked = self.asked, []
             for news in self.drive("beat", asked=asked)["news"]:
-                self.seen = max(self.seen, news["number"])
+                self.newest_number = max(self.newest_number, news["number"])
                 if news.get("over"):
                     self.is_there = False
 
     def connects(self, saw_stops: int) -> None:
         self.connection += 1
-        self.seen = 0
+        self.newest_number = 0
         port = self.group.robot.port
         answer = self.drive("connect", port=port, robot="tinibot", language="en",
                             saw_stops=saw_stops)  # fmt: skip
         self.is_there = "failure" not in answer
 
-    def runs(self, stops: int, seen: int) -> None:
+    def runs(self, stops: int, number: int) -> None:
         """Ask for a run, which was pressed after so many presses of STOP, and so much news."""
         self.ids += 1
         self.asked.append({"do": "upload", "id": self.ids, "image": PROGRAM, "robot": "tinibot",
-                           "runs": True, "stops": stops, "seen": seen})  # fmt: skip
+                           "runs": True, "stops": stops, "seen": number})  # fmt: skip
 
     def stops(self) -> None:
         if self.is_there:
@@ -120,7 +120,7 @@ class Group:
             if not mate.is_there:
                 mate.connects(mate.saw_stops)
             time.sleep(0.3)
-            mate.runs(mate.presses, mate.seen)
+            mate.runs(mate.presses, mate.newest_number)
             time.sleep(0.7)
 
     def races(self) -> None:
@@ -131,7 +131,7 @@ class Group:
             pressed = partial(self._takes, mate, mate.presses, mate.saw_stops)
             self.later(pressed)
         if self.chance.random() < 0.5:
-            self.later(partial(driver.runs, driver.presses, driver.seen))
+            self.later(partial(driver.runs, driver.presses, driver.newest_number))
         time.sleep(self.chance.random() * LATE_S)
         stopper = self.chance.choice(self.mates)
         stopper.presses += 1
@@ -148,9 +148,9 @@ class Group:
     def _takes(self, mate: Mate, stops: int, saw_stops: int) -> None:
         """Who has pressed Run takes the robot over, and then sends the program."""
         mate.connects(saw_stops)
-        seen = mate.seen
+        number = mate.newest_number
         time.sleep(self.chance.random() * 0.3)
-        mate.runs(stops, seen)
+        mate.runs(stops, number)
 
     def meet(self) -> None:
         for thread in self.late:

@@ -85,15 +85,15 @@ class Page:
 
     def looks(self) -> list[Json]:
         known = self.ran[1] if self.ran[0] == self.runs.key else 0
-        number, found = self.runs.news_after(self.ran, self.name)
-        found = [each for each in json.loads(json.dumps(found)) if each["number"] > known]
+        number, items = self.runs.news_after(self.ran, self.name)
+        items = [item for item in json.loads(json.dumps(items)) if item["number"] > known]
         self.ran = [self.runs.key, max(known, number)]
-        self.heard += found
-        return list(found)
+        self.heard += items
+        return list(items)
 
     @property
     def values(self) -> list[str]:
-        return [str(each.get("value", each.get("text"))) for each in self.heard if "nth" in each]
+        return [str(item.get("value", item.get("text"))) for item in self.heard if "nth" in item]
 
 
 @pytest.mark.parametrize("seed", range(50))
@@ -113,20 +113,20 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
             values_by_driver[robot.driver] += robot.meant[before:]
             runs.add_news(robot.driver, [news])
             assert len(runs._rows) == 1 or waiting(runs) <= group_runs.MOST_BYTES
-        found = page.looks()
-        places = [each["at"] for each in found if each["event"] == "PLACE"]
+        items = page.looks()
+        places = [item["at"] for item in items if item["event"] == "PLACE"]
         assert len(places) <= 1
         if robot.place is not None:
             assert last_place(page) == robot.place
-        for each in drivers:
-            each.looks()
-    numbers = [each["number"] for each in page.heard]
+        for driver in drivers:
+            driver.looks()
+    numbers = [item["number"] for item in page.heard]
     assert numbers == sorted(set(numbers))
     assert begin_and_end_by_turns(page)
     assert is_part(page.values, robot.meant)
     assert missed(page) + len(page.values) == counted(page)
-    for each in drivers:
-        assert not set(each.values) & set(values_by_driver[each.name])
+    for driver in drivers:
+        assert not set(driver.values) & set(values_by_driver[driver.name])
     for row in page.heard:
         value = str(row.get("value", row.get("text")))
         assert "nth" not in row or row["nth"] == robot.nth[value]
@@ -139,16 +139,16 @@ def waiting(runs: GroupRuns) -> int:
 
 
 def last_place(page: Page) -> int:
-    return next(int(each["at"]) for each in reversed(page.heard) if each["event"] == "PLACE")
+    return next(int(item["at"]) for item in reversed(page.heard) if item["event"] == "PLACE")
 
 
 def begin_and_end_by_turns(page: Page) -> bool:
     """No value and no place is outside a run."""
     is_running = False
-    for each in page.heard:
-        if each["event"] == "STARTED":
+    for item in page.heard:
+        if item["event"] == "STARTED":
             is_running = True
-        elif each["event"] in ("SHOW", "TEXT", "PLACE"):
+        elif item["event"] in ("SHOW", "TEXT", "PLACE"):
             if not is_running:
                 return False
         else:
@@ -159,30 +159,30 @@ def begin_and_end_by_turns(page: Page) -> bool:
 def is_part(some: list[str], all_of_them: list[str]) -> bool:
     """Whether they are these, in this order, some left out."""
     rest = iter(all_of_them)
-    return all(each in rest for each in some)
+    return all(text in rest for text in some)
 
 
 def missed(page: Page) -> int:
     """Return what a page says of values that it has not got, as `panel.js` counts them."""
-    count = seen = 0
-    for each in page.heard:
-        if each["event"] == "STARTED":
-            seen = 0
-        if "nth" in each:
-            count += each["nth"] - seen - 1
-            seen = each["nth"]
+    count = number = 0
+    for item in page.heard:
+        if item["event"] == "STARTED":
+            number = 0
+        if "nth" in item:
+            count += item["nth"] - number - 1
+            number = item["nth"]
     return count
 
 
 def counted(page: Page) -> int:
     """Return how many values its runs had until the newest of them that it has heard."""
-    found: list[int] = []
-    for each in page.heard:
-        if each["event"] == "STARTED":
-            found.append(0)
-        if "nth" in each:
-            found[-1] = each["nth"]
-    return sum(found)
+    numbers: list[int] = []
+    for item in page.heard:
+        if item["event"] == "STARTED":
+            numbers.append(0)
+        if "nth" in item:
+            numbers[-1] = item["nth"]
+    return sum(numbers)
 
 
 def test_who_comes_hears_of_what_runs_and_of_nothing_before() -> None:
@@ -192,21 +192,21 @@ def test_who_comes_hears_of_what_runs_and_of_nothing_before() -> None:
     runs.add_news("ana", [begin, value, {"event": "DONE"}])
     assert Page(runs, "teo").looks() == []
     runs.add_news("ana", [begin, value, {"event": "PLACE", "at": 4, "program": "a"}])
-    heard = [each["event"] for each in Page(runs, "eva").looks()]
+    heard = [item["event"] for item in Page(runs, "eva").looks()]
     assert heard == ["STARTED", "SHOW", "PLACE"]
     other = GroupRuns(lambda: 0.0)
     other.add_news("ana", [begin])
     page = Page(runs, "luz")
     page.looks()
     page.runs = other  # after a crash of the class
-    assert [each["event"] for each in page.looks()] == ["STARTED"]
+    assert [item["event"] for item in page.looks()] == ["STARTED"]
 
 
 @pytest.mark.parametrize("known", [None, 5, [], ["x", 1], ["x"], {"a": 1}, [[], {}]])
 def test_what_a_page_claims_to_know_breaks_nothing(known: object) -> None:
     runs = GroupRuns(lambda: 0.0)
     runs.add_news("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
-    assert [each["event"] for each in runs.news_after(known, "teo")[1]] == ["STARTED"]
+    assert [item["event"] for item in runs.news_after(known, "teo")[1]] == ["STARTED"]
 
 
 def test_news_have_the_time_of_their_run() -> None:
@@ -215,4 +215,4 @@ def test_news_have_the_time_of_their_run() -> None:
     runs.add_news("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
     now[0] += 0.25
     runs.add_news("ana", [{"event": "SHOW", "value": "5"}])
-    assert [each["ms"] for each in Page(runs, "teo").looks()] == [0, 250]
+    assert [item["ms"] for item in Page(runs, "teo").looks()] == [0, 250]

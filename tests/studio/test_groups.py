@@ -73,7 +73,7 @@ class Member:
     def sends(self, **more: Any) -> Json:
         """Send what is pending, and hear what is new."""
         changes = [
-            data_of_change(each) for each in self.page.pending_changes[: groups.MOST_CHANGES]
+            data_of_change(change) for change in self.page.pending_changes[: groups.MOST_CHANGES]
         ]
         answer: Json = json.loads(
             json.dumps(self.asks("group", **self.request(changes=changes, **more)))
@@ -129,10 +129,10 @@ def test_pupils_of_a_group_have_one_program(school: School) -> None:
 def test_others_see_where_a_pupil_is_and_writes(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     ana.sends(at="i.3", writes=True)
-    [seen] = luz.sends()["others"]
-    assert seen == {"name": "Ana", "mark": 0, "at": "i.3", "writes": True}
+    [pupil] = luz.sends()["others"]
+    assert pupil == {"name": "Ana", "mark": 0, "at": "i.3", "writes": True}
     assert luz.sends()["others"][0]["mark"] != luz.asks("group", **ana.request())
-    assert {each["mark"] for each in ana.sends()["others"]} == {1}
+    assert {other["mark"] for other in ana.sends()["others"]} == {1}
     for at in ("x" * 30, "a b", 5, None):
         with pytest.raises(BadRequest):
             ana.sends(at=at)
@@ -247,7 +247,7 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
         telling.join(HANGS_S)
         assert not telling.is_alive()
     waiting.join(HANGS_S)
-    assert [each["event"] for each in heard[0]["runs"]] == ["STARTED"]
+    assert [run["event"] for run in heard[0]["runs"]] == ["STARTED"]
     assert "runs" not in ana.asks("group", **ana.request())  # her page has it from the robot
 
 
@@ -258,8 +258,8 @@ def test_only_the_group_of_who_drives_sees_what_the_robot_tells(school: School) 
     robot = school.connects(ana.token)
 
     def hears(member: Member, value: str) -> bool:
-        found = json.dumps(member.sends(ran=["", 0]))
-        return f'"{value}"' in found
+        text = json.dumps(member.sends(ran=["", 0]))
+        return f'"{value}"' in text
 
     def tells(value: str) -> None:
         begins = {"event": "STARTED", "program": "a", "is_program": True}
@@ -330,7 +330,7 @@ def test_a_pupil_sends_so_much_and_no_more(school: School) -> None:
 def test_nobody_sends_as_another_page(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     luz.types("80", "95")
-    forged = [data_of_change(each) for each in luz.page.pending_changes]
+    forged = [data_of_change(change) for change in luz.page.pending_changes]
     wrong: list[Any] = [forged, [5], [{"uid": "x"}], "no", [{}] * 51]
     for changes in wrong:
         with pytest.raises(BadRequest):
@@ -378,7 +378,7 @@ def test_a_hostile_pupil_spoils_the_own_group_alone(school: School) -> None:
             assert ana.text == luz.text and new in luz.text
         school.now_s += 0.1
     assert school.checks_in(luz.token)["group"] == "Red"
-    assert {each["name"] for each in school.teaches("class")["groups"]} >= {"Red"}
+    assert {group["name"] for group in school.teaches("class")["groups"]} >= {"Red"}
 
 
 def test_after_a_crash_groups_go_on_and_nothing_is_lost(school: School) -> None:
@@ -386,8 +386,11 @@ def test_after_a_crash_groups_go_on_and_nothing_is_lost(school: School) -> None:
     ana.types("80", "95")
     ana.sends()
     luz.types("B(1", "B(7")  # not sent yet
+    [seen] = school.teaches("class")["groups"]
+    before = school.teaches("class_text", group=seen["key"])
     for _ in range(2):
         school.crashes()
+        assert school.teaches("class_text", group=seen["key"]) == before
     luz.sends()
     ana.sends()
     assert ana.text == luz.text == "F(1, 95); LOOP(3); B(7, 40); END_LOOP; S;"
@@ -405,7 +408,7 @@ def test_after_another_lesson_a_group_is_there_without_its_pupils(school: School
     kept = json.loads(json.dumps(school.made.state_to_keep()))
     school.made = school.anew()
     school.made.resume(kept, is_same_lesson=False)
-    assert [each["pupils"] for each in school.teaches("class")["groups"]] == [[]]
+    assert [group["pupils"] for group in school.teaches("class")["groups"]] == [[]]
     assert "F(1, 95)" in Member(school, "Luz", text="S\n").text
 
 
@@ -425,35 +428,35 @@ def test_with_the_class_its_groups_are_over(school: School, end: str) -> None:
 
 def test_the_teacher_sees_a_group_as_one_and_reads_its_program(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
-    [seen] = school.teaches("class")["groups"]
-    assert seen["pupils"] == [school.number("Ana"), school.number("Luz")]
+    [group_seen] = school.teaches("class")["groups"]
+    assert group_seen["pupils"] == [school.number("Ana"), school.number("Luz")]
     ana.types("80", "95")
     ana.sends()
-    assert "F(1, 95);" in school.teaches("class_text", group=seen["key"])["text"]
+    assert "F(1, 95);" in school.teaches("class_text", group=group_seen["key"])["text"]
     [group] = school.made._groups.all()
     assert school.made._groups.history(group)[-1]["who"] == "Ana"
     school.teaches("class_remove", pupil=school.number("Ana"))
-    [seen] = school.teaches("class")["groups"]
-    assert seen["pupils"] == [school.number("Luz")]
+    [group_seen] = school.teaches("class")["groups"]
+    assert group_seen["pupils"] == [school.number("Luz")]
     assert luz.sends()["others"] == []
 
 
 def test_the_teacher_takes_part_and_leaves(school: School) -> None:
     members = [Member(school, f"P{k}") for k in range(groups.MOST_MEMBERS)]
-    [seen] = school.teaches("class")["groups"]
-    teacher = Teacher(school, seen["key"])
+    [group] = school.teaches("class")["groups"]
+    teacher = Teacher(school, group["key"])
     assert teacher.page.lines == members[0].page.lines
-    [said] = [each for each in members[0].sends()["others"] if each["name"] == "Teacher"]
-    marks = {each["mark"] for each in teacher.sends()["others"]}
-    assert marks == set(range(groups.MARK_COUNT)) and said["mark"] not in marks
+    [other] = [other for other in members[0].sends()["others"] if other["name"] == "Teacher"]
+    marks = {other["mark"] for other in teacher.sends()["others"]}
+    assert marks == set(range(groups.MARK_COUNT)) and other["mark"] not in marks
     teacher.types("80", "95")
     teacher.sends(at="i.3", writes=True)
     members[1].sends()
     assert "F(1, 95)" in members[1].text
-    assert school.teaches("class_text", group=seen["key"])["history"] == ["Teacher: → F(1, 95)"]
-    assert school.teaches("class")["groups"][0]["pupils"] == seen["pupils"]
+    assert school.teaches("class_text", group=group["key"])["history"] == ["Teacher: → F(1, 95)"]
+    assert school.teaches("class")["groups"][0]["pupils"] == group["pupils"]
     [shown] = school.checks_in(school.joins("Late"))["groups"]
-    assert shown["members"] == [each.name for each in members]
+    assert shown["members"] == [member.name for member in members]
     teacher.asks("group_leave")
     assert len(members[0].sends()["others"]) == groups.MOST_MEMBERS - 1
     assert teacher.asks("group", **teacher.request()) == {"left": True}
@@ -499,10 +502,10 @@ def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed:
             teacher.sends(at="i.1", writes=True)
             if chance.random() < 0.3:
                 teacher.asks("group_leave")
-        seen = [[school.checks_in(member.token) for member in members]
+        checks = [[school.checks_in(member.token) for member in members]
                 for school, members in zip(schools, both, strict=True)]  # fmt: skip
-        assert seen[0] == seen[1]
-        asked = [[each["do"] for each in school.hosting.asked] for school in schools]
+        assert checks[0] == checks[1]
+        asked = [[request["do"] for request in school.hosting.asked] for school in schools]
         assert asked[0] == asked[1]
         assert schools[0].teaches("class")["robots"] == schools[1].teaches("class")["robots"]
 
@@ -511,13 +514,13 @@ def test_a_teacher_whose_page_is_silent_is_not_there(school: School) -> None:
     ana = Member(school, "Ana")
     [group] = school.teaches("class")["groups"]
     teacher = Teacher(school, group["key"])
-    assert [each["name"] for each in ana.sends()["others"]] == ["Teacher"]
+    assert [other["name"] for other in ana.sends()["others"]] == ["Teacher"]
     school.now_s += groups.GONE_S + 1
     assert ana.sends()["others"] == []
     assert teacher.asks("group", **teacher.request()) == {"left": True}
     second_teacher = Teacher(school, group["key"], teacher.page.name)
     assert second_teacher.page.name == teacher.page.name
-    assert [each["name"] for each in ana.sends()["others"]] == ["Teacher"]
+    assert [other["name"] for other in ana.sends()["others"]] == ["Teacher"]
 
 
 def test_who_looks_is_not_seen_and_no_pupil_visits_as_the_teacher(school: School) -> None:
@@ -597,10 +600,10 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
         elif does == "next":
             school.now_s += chance.choice((1, 70))
             school.teaches("class_next", pupil=school.number(member.name))
-        made = school.made
-        for pupil in made._pupil_by_token.values():
-            mates = made._mates(pupil)
-            turns = [turn for turn in map(made._turn, mates) if turn is not None]
+        classroom = school.made
+        for pupil in classroom._pupil_by_token.values():
+            mates = classroom._mates(pupil)
+            turns = [turn for turn in map(classroom._turn, mates) if turn is not None]
             waiting = [mate for mate in mates if mate.queue_number is not None]
             assert len(turns) + len(waiting) <= 1, f"step {step}: {does} {member.name}"
 
@@ -623,7 +626,7 @@ def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:
     assert robot.stopped == 3
     assert school.made.answer(eve, HERE, {"do": "connect"}) == {"failure": "turn_none"}
     other = school.connects(luz.token)
-    assert (robot.left, other.has_ended) == ("group_other", False)
+    assert (robot.leave_reason, other.has_ended) == ("group_other", False)
     assert school.checks_in(ana.token)["driver"] == "Luz"
     ana.asks("stop")
     assert (other.stopped, robot.stopped) == (1, 3)
@@ -658,7 +661,7 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
                 assert school.made.answer(member.token, HERE, early) == refused
                 assert turn.pupil.token != member.token
                 school.connects(member.token)
-                assert robot.left == "group_other"  # that stops what it does
+                assert robot.leave_reason == "group_other"  # that stops what it does
         elif deed == "beat":
             member.asks("beat", page="x", asked=[{"do": "start", "id": 1}])
         elif deed == "reload":
@@ -732,6 +735,6 @@ def test_the_teacher_sees_what_was_done_and_by_whom_whoever_has_gone(school: Sch
     luz.sends()
     luz.asks("group_leave")
     [group] = school.teaches("class")["groups"]
-    found = school.teaches("class_text", group=group["key"])
-    assert found["history"] == ["Luz: − 5", "Luz: + BEEP(1, 440)", "Ana: → F(1, 95)"]
+    lines = school.teaches("class_text", group=group["key"])
+    assert lines["history"] == ["Luz: − 5", "Luz: + BEEP(1, 440)", "Ana: → F(1, 95)"]
     assert [school.made._pupil_number(ana.token)] == group["pupils"]

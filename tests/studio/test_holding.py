@@ -55,11 +55,11 @@ def test_steps_go_through_every_part_and_into_words_of_ones_own() -> None:
 
 def test_variables_are_told_where_it_is_held() -> None:
     simulation = started_simulation(COUNT, is_held=True)
-    found = []
+    values = []
     while simulation.held_at is not None:
-        found.append(simulation.state()["variables"])
+        values.append(simulation.state()["variables"])
         simulation.step(5000)
-    assert found[:4] == [[0, 0], [3, 0], [3, 0], [4, 0]] and found[-1] == [5, 0.001]
+    assert values[:4] == [[0, 0], [3, 0], [3, 0], [4, 0]] and values[-1] == [5, 0.001]
     simulation.go(500)
     assert simulation.state()["variables"] == [5, 0.001]  # that it has left
 
@@ -68,13 +68,13 @@ def test_variables_are_told_where_it_is_held() -> None:
 @pytest.mark.parametrize(("name", "robot", "world"), EXAMPLES)
 def test_a_program_that_was_held_does_the_same(name: str, robot: str, world: str, how: str) -> None:
     """The same at the same times, to the last event: with steps, and at 1,000 breakpoints."""
-    found = check((ROOT / "examples" / f"{name}.ts").read_bytes(), robot, "en")
-    plain = Simulation(robot, worlds.load(world), found.image)
+    result = check((ROOT / "examples" / f"{name}.ts").read_bytes(), robot, "en")
+    plain = Simulation(robot, worlds.load(world), result.image)
     plain.go(2500)
     wanted = plain.robot.take_events()
-    parts = tuple(place.offset for place in found.places)
+    parts = tuple(place.offset for place in result.places)
     marks = Marks(parts, (*parts, *range(1000)) if how == "breakpoints" else (), 0, how == "steps")
-    held = Simulation(robot, worlds.load(world), found.image, marks)
+    held = Simulation(robot, worlds.load(world), result.image, marks)
     pauses = 0
     while held.robot.now_ms < plain.robot.now_ms:
         if how == "steps":
@@ -91,14 +91,14 @@ def test_a_program_that_was_held_does_the_same(name: str, robot: str, world: str
 def test_a_program_that_was_held_takes_as_long_as_it_calculates() -> None:
     """It goes on in the tick in which it was held, with the instructions that were left of it."""
     text = "X = 0;\nLOOP(300);\n  X = X + 1;\nEND_LOOP;\nBEEP(0.1, 440)"
-    found = []
+    runs = []
     for at in ((), (2,)):
         simulation = started_simulation(text, at)
         while simulation.robot.is_running:
             simulation.go_on()
             simulation.go(50)
-        found.append(trace_of(simulation))
-    assert found[0] == found[1] == ["2 BEEP 440 100", "100 DONE"]
+        runs.append(trace_of(simulation))
+    assert runs[0] == runs[1] == ["2 BEEP 440 100", "100 DONE"]
 
 
 def test_a_breakpoint_is_arrived_at_once_however_long_it_looks() -> None:

@@ -32,24 +32,24 @@ class Hand(AskingPage):
 
     def says(self, **request: object) -> int:
         self.number += 1
-        seen = max((each["number"] for each in self.news), default=0)
-        made = {"id": self.number, "seen": seen, **request}
-        self.asks("beat", made)
+        number = max((item["number"] for item in self.news), default=0)
+        full_request = {"id": self.number, "seen": number, **request}
+        self.asks("beat", full_request)
         return self.number
 
     def holds(self, y: int) -> int:
         return self.says(do="keys", keys=0, x=0, y=y)
 
     def answer_to(self, number: int) -> Json:
-        found: list[Json] = []
+        items: list[Json] = []
 
         def looks() -> bool:
             self.asks("beat")
-            found[:] = [each for each in self.news if each.get("id") == number]
-            return bool(found)
+            items[:] = [item for item in self.news if item.get("id") == number]
+            return bool(items)
 
         until(looks, f"an answer to {number}")
-        return found[0]
+        return items[0]
 
     def uploads(self, text: str) -> Json:
         image = compile(text).image.hex()
@@ -90,16 +90,16 @@ class Class:
 
 @pytest.fixture
 def lesson(two: list[PtyRobot]) -> Iterator[Class]:
-    made = Class([robot.port for robot in two])
-    yield made
-    made.hosting.close()
+    classroom = Class([robot.port for robot in two])
+    yield classroom
+    classroom.hosting.close()
 
 
 def test_a_pupil_drives_the_own_robot_and_no_other(lesson: Class, two: list[PtyRobot]) -> None:
     ana, beto = lesson.pupil("Ana"), lesson.pupil("Beto")
     for hand in (ana, beto):
         assert hand.asks("connect") == {}
-        hand.beats_until(lambda each: "connected" in each, "it is met")
+        hand.beats_until(lambda item: "connected" in item, "it is met")
         assert hand.uploads(STICK)["ok"]
     ana.drives(two[0], 60)
     assert power_of(two[1]) == 0
@@ -114,12 +114,12 @@ def test_who_has_no_turn_drives_nothing(lesson: Class, two: list[PtyRobot]) -> N
     """Neither one who waits, nor one whose turn is over: both are told."""
     ana, beto, carla = (lesson.pupil(name) for name in ("Ana", "Beto", "Carla"))
     assert ana.asks("connect") == {}
-    ana.beats_until(lambda each: "connected" in each, "it is met")
+    ana.beats_until(lambda item: "connected" in item, "it is met")
     assert ana.uploads(STICK)["ok"]
     ana.drives(two[0], 60)
     assert carla.asks("connect") == {"failure": "turn_none"}
     word = {"do": "keys", "id": 1, "seen": 0, "keys": 0, "x": 0, "y": -80}
-    assert [each["over"] for each in carla.asks("beat", word)["news"]] == ["left"]
+    assert [item["over"] for item in carla.asks("beat", word)["news"]] == ["left"]
     pupils = lesson.room.teach({"do": "class"})["pupils"]
     number = next(pupil["number"] for pupil in pupils if pupil["name"] == "Ana")
     lesson.room.teach({"do": "class_next", "pupil": number})
@@ -127,10 +127,10 @@ def test_who_has_no_turn_drives_nothing(lesson: Class, two: list[PtyRobot]) -> N
     moves = len(two[0].did)
     for _ in range(5):
         ana.holds(60)
-    ana.beats_until(lambda each: each.get("over") == "turn_over", "it is told")
+    ana.beats_until(lambda item: item.get("over") == "turn_over", "it is told")
     assert power_of(two[0]) == 0 and len(two[0].did) == moves
     assert beto.asks("connect") == {}
-    beto.beats_until(lambda each: "connected" in each, "it is met")
+    beto.beats_until(lambda item: "connected" in item, "it is met")
     assert beto.uploads(STICK)["ok"]
     beto.drives(two[1], 40)
     assert power_of(two[0]) == 0
@@ -140,7 +140,7 @@ def test_a_teachers_stop_is_no_key_of_a_pupils(lesson: Class, two: list[PtyRobot
     """What was said before is void, and what is held on starts nothing."""
     ana = lesson.pupil("Ana")
     assert ana.asks("connect") == {}
-    ana.beats_until(lambda each: "connected" in each, "it is met")
+    ana.beats_until(lambda item: "connected" in item, "it is met")
     assert ana.uploads(STICK)["ok"]
     ana.drives(two[0], 60)
     lesson.room.teach({"do": "stop_all"})
@@ -156,11 +156,11 @@ def test_a_teachers_stop_is_no_key_of_a_pupils(lesson: Class, two: list[PtyRobot
 def hand(two: list[PtyRobot]) -> Iterator[Hand]:
     """A page that is connected to the first of the two."""
     hosting = Hosting()
-    made = Hand(hosting.answer, two[0].port)
+    new_hand = Hand(hosting.answer, two[0].port)
     try:
-        assert made.asks("connect") == {}
-        made.beats_until(lambda event: "connected" in event, "it is met")
-        yield made
+        assert new_hand.asks("connect") == {}
+        new_hand.beats_until(lambda event: "connected" in event, "it is met")
+        yield new_hand
     finally:
         hosting.close()
 

@@ -41,9 +41,9 @@ class Page:
 
     def beat(self, *asked: dict[str, Any], do: str = "beat") -> None:
         request = {"do": do, "page": self.name, "seen": self._seen, "asked": list(asked)}
-        for each in self.hosting.answer(request)["news"]:
-            self._seen = max(self._seen, each["number"])
-            self.news.append(each)
+        for item in self.hosting.answer(request)["news"]:
+            self._seen = max(self._seen, item["number"])
+            self.news.append(item)
 
     def until(
         self, is_so: Callable[[dict[str, Any]], bool], limit_s: float = HANGS_S
@@ -51,10 +51,10 @@ class Page:
         """Wait for news, beating."""
         end_s = time.monotonic() + limit_s
         while True:
-            for each in self.news:
-                if is_so(each):
-                    self.news.remove(each)
-                    return each
+            for item in self.news:
+                if is_so(item):
+                    self.news.remove(item)
+                    return item
             assert time.monotonic() < end_s, self.news
             time.sleep(BEAT_S)
             self.beat()
@@ -63,7 +63,7 @@ class Page:
         self.count += 1
         number = self.count
         self.beat({"do": do, "id": number, **fields})
-        return self.until(lambda each: each.get("id") == number)
+        return self.until(lambda item: item.get("id") == number)
 
     def upload(self, text: str, robot: str = "tinibot", **fields: object) -> dict[str, Any]:
         image = compile(text, robot=robot).image.hex()
@@ -72,9 +72,9 @@ class Page:
 
 @pytest.fixture
 def hosting() -> Iterator[Hosting]:
-    made = Hosting()
-    yield made
-    made.close()
+    new_hosting = Hosting()
+    yield new_hosting
+    new_hosting.close()
 
 
 @pytest.fixture
@@ -86,11 +86,11 @@ def robot() -> Iterator[PtyRobot]:
 @pytest.fixture
 def page(hosting: Hosting, robot: PtyRobot) -> Page:
     """A page that has met its robot."""
-    found = Page(hosting)
-    assert found.connect(robot.port) == {}
-    about = found.until(lambda each: "connected" in each)["connected"]
+    made_page = Page(hosting)
+    assert made_page.connect(robot.port) == {}
+    about = made_page.until(lambda item: "connected" in item)["connected"]
     assert (about["robot"], about["owner"], about["is_running"]) == ("tinibot", "free", False)
-    return found
+    return made_page
 
 
 def drives(page: Page, robot: PtyRobot) -> None:
@@ -102,9 +102,9 @@ def test_a_program_runs_and_what_it_shows_arrives(page: Page, robot: PtyRobot) -
     text = "SHOW(2.5);\nSHOW(1 < 2);\nF(0.1, 80)"
     receipt = page.upload(text)
     assert receipt["ok"] and receipt["program"] == f"{compile(text).checksum:08x}"
-    shown = [page.until(lambda each: each.get("event") == "SHOW")["value"] for _ in range(2)]
+    shown = [page.until(lambda item: item.get("event") == "SHOW")["value"] for _ in range(2)]
     assert shown == ["2.5", "TRUE"]
-    page.until(lambda each: each.get("event") == "DONE")
+    page.until(lambda item: item.get("event") == "DONE")
     assert "MOTORS 80 80" in robot.did
 
 
@@ -113,9 +113,9 @@ def test_an_answer_comes_before_what_follows_from_it(page: Page) -> None:
     for number in range(5):
         page.news.clear()
         page.beat({"do": "live", "id": number + 1, "image": image, "robot": "tinibot"})
-        while not any(each.get("event") == "DONE" for each in page.news):
+        while not any(item.get("event") == "DONE" for item in page.news):
             page.beat()
-        order = [each["id"] if "id" in each else each["event"] for each in page.news]
+        order = [item["id"] if "id" in item else item["event"] for item in page.news]
         assert order == [number + 1, "STARTED", "SHOW", "DONE"]
 
 
@@ -126,14 +126,14 @@ def test_a_start_says_whether_it_is_a_program_of_the_page(page: Page) -> None:
         fields = {} if do == "start" else {"image": image, "robot": "tinibot"}
         page.news.clear()
         page.ask(do, **fields, **({"runs": True} if do == "upload" else {}))
-        started = page.until(lambda each: each.get("event") == "STARTED")
+        started = page.until(lambda item: item.get("event") == "STARTED")
         assert started["is_program"] is is_program, do
-        page.until(lambda each: each.get("event") == "DONE")
+        page.until(lambda item: item.get("event") == "DONE")
 
 
 def test_a_fault_says_where(page: Page) -> None:
     page.upload("X = 0;\nSHOW(1 / X)")
-    fault = page.until(lambda each: each.get("event") == "FAULT")
+    fault = page.until(lambda item: item.get("event") == "FAULT")
     assert fault["fault"] == "DIVIDE_BY_ZERO" and fault["at"] > 0
 
 
@@ -162,7 +162,7 @@ def test_a_page_that_falls_silent_stops_its_robot(page: Page, robot: PtyRobot) -
 def test_a_silent_page_is_noticed_after_a_reset(page: Page, robot: PtyRobot) -> None:
     """The robot counts its runs anew: the next one has the number of one that is over."""
     page.upload("SHOW(1)")
-    page.until(lambda each: each.get("event") == "DONE")
+    page.until(lambda item: item.get("event") == "DONE")
     robot.switch_off()
     robot.switch_on()
     ran = page.upload(FOREVER)
@@ -193,13 +193,13 @@ def test_stop_stops_and_says_so(hosting: Hosting, page: Page, robot: PtyRobot) -
     """Also one that counts wrongly, before it is refused."""
     drives(page, robot)
     page.beat(do="stop")
-    assert page.until(lambda each: each.get("event") == "STOPPED")["cause"] == "SEQUENCE"
+    assert page.until(lambda item: item.get("event") == "STOPPED")["cause"] == "SEQUENCE"
     assert not robot.moves
     for stops in (-1, 0.5, "1", 2**40):
         drives(page, robot)
         with pytest.raises(BadRequest):
             hosting.answer({"do": "stop", "page": "page", "stops": stops})
-        page.until(lambda each: each.get("event") == "STOPPED")
+        page.until(lambda item: item.get("event") == "STOPPED")
         assert not robot.moves, stops
 
 
@@ -209,7 +209,7 @@ def test_another_command_stops_it_meanwhile(page: Page, robot: PtyRobot) -> None
 
     thread = Thread(target=lambda: process("stop", "--port", robot.port))
     thread.start()
-    page.until(lambda each: each.get("event") == "STOPPED")
+    page.until(lambda item: item.get("event") == "STOPPED")
     thread.join()
     assert not robot.moves
 
@@ -242,7 +242,7 @@ def test_what_a_command_has_started_through_it_goes_on_when_its_page_leaves(
     assert hosting.is_free(robot.port)
     second_page = Page(hosting, "another")
     assert second_page.connect(robot.port) == {}
-    second_page.until(lambda each: "connected" in each)
+    second_page.until(lambda item: "connected" in item)
     second_page.beat(do="leave")
     began_ms = robot.robot_ms
     robot.until(lambda: robot.robot_ms > began_ms + 1000, "it goes on")
@@ -257,8 +257,8 @@ def test_a_port_has_one_page(
 ) -> None:
     monkeypatch.setattr(attending, "LATCH_S", 3600.0)
     monkeypatch.setattr(attending, "LEFT_S", 3600.0)  # the page is silent while the command begins
-    found = hosting.answer({"do": "ports"})["ports"]
-    assert all(set(each) == {"port", "name", "description", "virtual"} for each in found)
+    ports = hosting.answer({"do": "ports"})["ports"]
+    assert all(set(port) == {"port", "name", "description", "virtual"} for port in ports)
     other = Page(hosting, "other")
     assert other.connect(robot.port) == {"failure": "other_tab"}
     assert page.connect(robot.port) == {}  # which it has
@@ -266,17 +266,17 @@ def test_a_port_has_one_page(
     # STOP of a page without a robot
     stop_report = {"name": robot.port, "stop": "asked"}
     assert hosting.answer({"do": "stop_all"}) == {"robots": [stop_report]}
-    page.until(lambda each: each.get("event") == "STOPPED")
+    page.until(lambda item: item.get("event") == "STOPPED")
     stop_report["stop"] = "confirmed"
     assert hosting.answer({"do": "stops"}) == {"robots": [stop_report]}
     image = compile(FOREVER).image.hex()
     refused = page.ask("upload", image=image, robot="tinibot", runs=True)  # it was on its way
     assert refused["failure"] == "stopped_elsewhere" and not robot.moves
-    done = process("upload", "--port", robot.port, "-e", FOREVER)  # by another command
-    assert done.code != 0 and not robot.moves, done.out
+    result = process("upload", "--port", robot.port, "-e", FOREVER)  # by another command
+    assert result.code != 0 and not robot.moves, result.out
     page.beat(do="leave")
     until(lambda: other.connect(robot.port) == {}, "the port is free")
-    other.until(lambda each: "connected" in each)
+    other.until(lambda item: "connected" in item)
 
 
 def test_a_page_hears_why_it_is_over_when_another_one_has_its_robot(
@@ -288,7 +288,7 @@ def test_a_page_hears_why_it_is_over_when_another_one_has_its_robot(
     hosted.leave("turn_over")
     other = Page(hosting, "other")
     until(lambda: other.connect(robot.port) == {}, "the port is free")
-    assert page.until(lambda each: "over" in each)["over"] == "turn_over"
+    assert page.until(lambda item: "over" in item)["over"] == "turn_over"
 
 
 @pytest.mark.parametrize("is_silent", [False, True])
@@ -305,8 +305,8 @@ def test_a_stop_at_the_end_of_a_turn_is_confirmed_or_not_before_it_is_over(
     assert hosted
     page.news.clear()
     hosted.leave("turn_over")
-    page.until(lambda each: each.get("over") == "turn_over")
-    events = [each["event"] for each in page.news if each.get("event") in ("STOPPING", "STOPPED")]
+    page.until(lambda item: item.get("over") == "turn_over")
+    events = [item["event"] for item in page.news if item.get("event") in ("STOPPING", "STOPPED")]
     assert events == (["STOPPING"] if is_silent else ["STOPPING", "STOPPED"])
     assert hosting.close() == ([robot.port] if is_silent else [])
 
@@ -315,7 +315,7 @@ def test_it_shares_a_port_that_a_command_holds(hosting: Hosting) -> None:
     with Shared() as (robot, _):
         page = Page(hosting)
         page.connect(robot.port)
-        assert page.until(lambda each: "connected" in each)["held_by"] == "link"
+        assert page.until(lambda item: "connected" in item)["held_by"] == "link"
         drives(page, robot)
         page.beat()
         assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS
@@ -340,11 +340,11 @@ def test_a_port_that_does_not_open_or_is_pulled_out_is_a_sentence(
     for port in ("/dev/nothing", "socket://127.0.0.1:1", "no such port"):
         other = Page(hosting, port)
         other.connect(port)
-        over = other.until(lambda each: "over" in each)
+        over = other.until(lambda item: "over" in item)
         assert over["over"].startswith("port_") and port in over["said"]
     page.upload(FOREVER)
     robot.pull()
-    over = page.until(lambda each: "over" in each)
+    over = page.until(lambda item: "over" in item)
     assert over["over"] == "port_gone" and "cable" in over["said"]
 
 
@@ -386,8 +386,8 @@ def test_a_wrong_request_harms_nothing(page: Page, asked: dict[str, Any]) -> Non
     wrong = page.count + 1
     page.count += 2
     page.beat({"id": wrong, **asked}, {"id": page.count, "do": "identify"})
-    assert page.until(lambda each: each.get("id") == wrong)["failure"] == "bad_request"
-    assert page.until(lambda each: each.get("id") == page.count)["ok"]
+    assert page.until(lambda item: item.get("id") == wrong)["failure"] == "bad_request"
+    assert page.until(lambda item: item.get("id") == page.count)["ok"]
 
 
 def test_what_was_asked_before_a_stop_and_comes_after_it_is_void(
@@ -397,10 +397,10 @@ def test_what_was_asked_before_a_stop_and_comes_after_it_is_void(
     image = compile(FOREVER).image.hex()
     upload = {"do": "upload", "image": image, "robot": "tinibot", "runs": True}
     page.beat({"id": 50, "stops": 0, **upload})
-    assert page.until(lambda each: each.get("id") == 50)["failure"] == "stopped_elsewhere"
+    assert page.until(lambda item: item.get("id") == 50)["failure"] == "stopped_elsewhere"
     assert not robot.moves
     page.beat({"id": 51, "stops": 1, **upload})
-    answer = page.until(lambda each: each.get("id") == 51)
+    answer = page.until(lambda item: item.get("id") == 51)
     assert answer.get("ok"), answer
 
 
@@ -409,11 +409,11 @@ def test_a_request_that_comes_twice_is_done_once(page: Page, robot: PtyRobot) ->
     live = {"do": "live", "id": 9, "image": image, "robot": "tinibot"}
     page.beat(live)
     page.beat(live)
-    page.until(lambda each: each.get("event") == "DONE")
+    page.until(lambda item: item.get("event") == "DONE")
     for _ in range(5):
         page.beat()
         time.sleep(BEAT_S)
-    assert [each["event"] for each in page.news if "event" in each] == ["STARTED", "SHOW"]
+    assert [item["event"] for item in page.news if "event" in item] == ["STARTED", "SHOW"]
 
 
 def test_what_a_page_does_not_fetch_is_bounded() -> None:

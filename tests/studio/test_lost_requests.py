@@ -48,8 +48,8 @@ class CountedLink:
         self._news.append({"id": request["id"], "ok": True})
 
     def news(self, limit_s: float = 0) -> list[Json]:
-        found, self._news = self._news, []
-        return found
+        news, self._news = self._news, []
+        return news
 
 
 class SteppedRobot:
@@ -67,7 +67,7 @@ class SteppedRobot:
         self.has_ended = self.is_parting = False
 
     def _note(self, what: str, stops: int) -> None:
-        World.done.append(
+        World.actions.append(
             (what, self.attending.stop_count if what == "stop" else stops, World.now_ms)
         )
 
@@ -85,13 +85,13 @@ class World:
     """What all share: the clock, and what robots have done."""
 
     now_ms = 0
-    done: ClassVar[list[tuple[str, int, int]]] = []
+    actions: ClassVar[list[tuple[str, int, int]]] = []
 
 
 @pytest.fixture
 def stepped(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hosting]:
     monkeypatch.setattr(World, "now_ms", 0)
-    monkeypatch.setattr(World, "done", [])
+    monkeypatch.setattr(World, "actions", [])
     monkeypatch.setattr(hosting_of, "HostedRobot", SteppedRobot)
     yield Hosting()
 
@@ -122,8 +122,8 @@ class TornPage:
     def press_run(self) -> None:
         if self.is_there:
             self._number += 1
-            made = {**RUN, "id": self._number, "stops": len(self.presses), "seen": self._seen}
-            self._asked.append(made)
+            request = {**RUN, "id": self._number, "stops": len(self.presses), "seen": self._seen}
+            self._asked.append(request)
 
     def _send(self, do: str, **more: object) -> None:
         request = {"do": do, "page": "me", "connection": self._connection, "port": "p",
@@ -140,8 +140,8 @@ class TornPage:
             self._send("connect")
 
     def arrive(self) -> None:
-        due = [each for at_ms, each in self._under_way if at_ms <= World.now_ms]
-        self._under_way = [each for each in self._under_way if each[0] > World.now_ms]
+        due = [request for at_ms, request in self._under_way if at_ms <= World.now_ms]
+        self._under_way = [pair for pair in self._under_way if pair[0] > World.now_ms]
         for request in due:
             answer = self.ask(request)
             is_own = request["connection"] == self._connection
@@ -152,19 +152,19 @@ class TornPage:
                 continue  # the answer is lost
             if request["do"] == "connect":
                 self.is_there = answer == {}
-            for each in answer.get("news", ()):
-                if "over" in each:
+            for item in answer.get("news", ()):
+                if "over" in item:
                     self.is_there = False
-                elif each["number"] > self._seen:
-                    self._seen = each["number"]
-                    self._asked = [one for one in self._asked if one["id"] != each.get("id")]
+                elif item["number"] > self._seen:
+                    self._seen = item["number"]
+                    self._asked = [one for one in self._asked if one["id"] != item.get("id")]
 
 
 def check_stops_kept(page: TornPage) -> None:
     """Whatever has arrived until now."""
     newest = 0
     accepted = 0
-    for what, stops, _ in World.done:
+    for what, stops, _ in World.actions:
         if what == "stop":
             assert stops > newest, "once for each press"
             assert stops > accepted, "what was started later goes on"
@@ -173,7 +173,7 @@ def check_stops_kept(page: TornPage) -> None:
             assert stops >= newest, "it was asked for before"
             accepted = max(accepted, stops)
     for number in page.heard:
-        after = [at_ms for what, _, at_ms in World.done
+        after = [at_ms for what, _, at_ms in World.actions
                  if what == "stop" and at_ms >= page.presses[number - 1]]  # fmt: skip
         assert after or accepted >= number, f"press {number} was told, and stopped nothing"
 
@@ -202,7 +202,7 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(stepped: Hosting, seed: 
             page.press_run()
         elif does < 0.032 or (not page.is_there and does < 0.05):
             page.connect()
-    kinds = {what for what, _, _ in World.done}
+    kinds = {what for what, _, _ in World.actions}
     assert kinds == {"stop", "run"}  # so that it was about something
 
 
@@ -224,7 +224,7 @@ def test_a_stop_of_the_connection_before_stops_unless_a_run_came_after_it(
         asks("beat", 2)
     asks("stop", 1, stops=1)
     asks("stop", 1, stops=1)
-    assert [what for what, _, _ in World.done] == ["run" if runs else "stop"]
+    assert [what for what, _, _ in World.actions] == ["run" if runs else "stop"]
 
 
 PAGE_SCRIPT = Path(__file__).with_name("lost_requests_in_node.mjs")
@@ -273,32 +273,32 @@ def asker(
     monkeypatch.setattr(classroom, "REQUEST_RATE", (1e9, 1e9))
     hosting = Hosting()
     if request.param == "page":
-        made = AskingPage(hosting.answer, robot.port)
+        page = AskingPage(hosting.answer, robot.port)
     else:
         room = Classroom(hosting, [robot.port])
         join = {"do": "join", "code": room.code, "name": "Ana"}
         token = room.answer("", "192.0.2.9", join)["token"]
         room.answer(token, "192.0.2.9", {"do": "here", "wants": True})
-        made = AskingPage(lambda asked: room.answer(token, "192.0.2.9", asked), "turn")
-    assert made.asks("connect") == {}
-    made.beats_until(lambda each: "connected" in each, "it is met")
-    yield made
+        page = AskingPage(lambda asked: room.answer(token, "192.0.2.9", asked), "turn")
+    assert page.asks("connect") == {}
+    page.beats_until(lambda item: "connected" in item, "it is met")
+    yield page
     hosting.close()
 
 
 def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
     asker: AskingPage, robot: PtyRobot
 ) -> None:
-    def heard(stops: int) -> bool:
+    def has_news(stops: int) -> bool:
         return "news" in asker.asks("beat", stops=stops)
 
     def drives(stops: int) -> None:
         asker.asks("beat", asker.run(stops), stops=stops)
-        until(lambda: heard(stops) and robot.moves, "it drives")
+        until(lambda: has_news(stops) and robot.moves, "it drives")
 
     drives(0)
     asker.asks("beat", stops=1)
-    until(lambda: heard(1) and not robot.moves, "it stands")
+    until(lambda: has_news(1) and not robot.moves, "it stands")
     drives(1)
     began = len(robot.heard)
     asker.asks("stop", stops=1)  # late, and a beat that comes again
@@ -308,9 +308,9 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
     # Another tab, and whoever counts nothing, always stop.
     other_tab = {"page": "other"} if asker.port == "turn" else {"tab": "other"}
     others: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]
-    for each in others:
-        asker.asks("stop", **each)
-        until(lambda: heard(1) and not robot.moves, "it stands")
+    for other in others:
+        asker.asks("stop", **other)
+        until(lambda: has_news(1) and not robot.moves, "it stands")
         drives(1)
 
 
@@ -324,8 +324,8 @@ def test_a_connect_whose_answer_is_lost_is_offered_again(
         asker.news.clear()
         assert asker.asks("connect", connection=connection) == {}
         assert asker.asks("connect", connection=connection) == {}
-        asker.beats_until(lambda each: "connected" in each, "it is met", connection=connection)
-        [met] = [each for each in asker.news if "connected" in each]
+        asker.beats_until(lambda item: "connected" in item, "it is met", connection=connection)
+        [met] = [item for item in asker.news if "connected" in item]
         assert met["held_by"] == ""  # and not by the one before
 
     meets(2)
@@ -334,5 +334,5 @@ def test_a_connect_whose_answer_is_lost_is_offered_again(
     asker.news.clear()
     for _ in range(5):
         asker.asks("beat", connection=3)
-    assert not any("over" in each for each in asker.news)
+    assert not any("over" in item for item in asker.news)
     assert asker.asks("beat", connection=2)["news"][0]["over"] == "left"

@@ -22,8 +22,8 @@ Face = dict[str, Any]
 
 def faces(*runs: list[State]) -> list[tuple[list[Face], list[Face]]]:
     """Return how a robot looks in each state of its runs, and when one looks back at it."""
-    found = json.loads(in_node(SCRIPT, given=json.dumps(runs))[0])
-    return [(each["seen"], each["again"]) for each in found]
+    rows = json.loads(in_node(SCRIPT, given=json.dumps(runs))[0])
+    return [(face["seen"], face["again"]) for face in rows]
 
 
 def run(text: str, world: str, ms: int) -> list[State]:
@@ -62,14 +62,14 @@ def sign(number: float) -> int:
 def test_it_looks_where_it_drives_and_the_same_when_somebody_looks_back() -> None:
     runs = [made(random.Random(seed)) for seed in range(20)]
     moods = set()
-    for states, (seen, looked_back) in zip(runs, faces(*runs), strict=True):
-        assert looked_back == seen
-        for state, face in zip(states, seen, strict=True):
+    for states, (frames, looked_back) in zip(runs, faces(*runs), strict=True):
+        assert looked_back == frames
+        for state, face in zip(states, frames, strict=True):
             left, right = state["motors"]
             assert sign(face["ahead"]) == sign(left + right), state
             assert sign(face["aside"]) == sign(right - left), state
             assert abs(face["ahead"]) <= 1 and abs(face["aside"]) <= 1
-        moods |= {face["mood"] for face in seen}
+        moods |= {face["mood"] for face in frames}
     assert moods == set(MOODS)
 
 
@@ -82,20 +82,20 @@ def test_it_is_as_what_happens_to_it() -> None:
         run("W(9);F(2, 80)", "free", 10_000),
         run("F(1, 80)", "free", 800),
     )
-    found = [seen for seen, _ in faces(crash, flag, wait, pause, drive)]
-    for states, seen in zip((crash, flag), found, strict=False):
-        for state, face in zip(states, seen, strict=True):
+    looks = [frames for frames, _ in faces(crash, flag, wait, pause, drive)]
+    for states, frames in zip((crash, flag), looks, strict=False):
+        for state, face in zip(states, frames, strict=True):
             if not state["bumps"] and not state["score"]:
                 assert face["mood"] == "calm", state
             if state["touches"]:
                 assert face["mood"] == "dizzy", state
-    assert "dizzy" in {face["mood"] for face in found[0]}
-    assert {face["mood"] for face in found[2]} == {"tired"}
-    resting = [face["mood"] for face in found[3]]
+    assert "dizzy" in {face["mood"] for face in looks[0]}
+    assert {face["mood"] for face in looks[2]} == {"tired"}
+    resting = [face["mood"] for face in looks[3]]
     assert resting[0] == resting[-1] == "calm" and "tired" in resting
-    assert {face["mood"] for face in found[4]} == {"calm"}
-    assert any(face["isBlinking"] for face in found[3])
-    assert not all(face["isBlinking"] for face in found[3])
+    assert {face["mood"] for face in looks[4]} == {"calm"}
+    assert any(face["isBlinking"] for face in looks[3])
+    assert not all(face["isBlinking"] for face in looks[3])
 
 
 def test_each_mood_is_drawn_in_its_own_way_and_in_the_chosen_colour() -> None:
@@ -104,13 +104,15 @@ def test_each_mood_is_drawn_in_its_own_way_and_in_the_chosen_colour() -> None:
     looks = [*({**calm, "mood": mood} for mood in MOODS), {**calm, "isBlinking": True}]
     for name in ("tinibot", "liner", "grabber"):
         drawn = drawings_of(*((name, None, {**STANDING_STILL, "face": face}) for face in looks))
-        assert len({json.dumps(each) for each in drawn}) == len(looks), name
+        assert len({json.dumps(calls) for calls in drawn}) == len(looks), name
         ahead, left = drawings_of(
             (name, None, {**STANDING_STILL, "face": {**calm, "ahead": 1}}),
             (name, None, {**STANDING_STILL, "face": {**calm, "aside": 1}}),
         )
-        pupils = [shapes(each, "fill", "#20242a") for each in (drawn[0], ahead, left)]
-        still, to_front, to_left = ([row for row in each if len(row) == 5] for each in pupils)
+        pupils = [shapes(calls, "fill", "#20242a") for calls in (drawn[0], ahead, left)]
+        still, to_front, to_left = (
+            [row for row in drawn_shapes if len(row) == 5] for drawn_shapes in pupils
+        )
         assert [a[0] > b[0] for a, b in zip(to_front, still, strict=True)].count(True) == 2
         assert [a[1] > b[1] for a, b in zip(to_left, still, strict=True)].count(True) == 2
         (own,) = drawings_of((name, None, {**STANDING_STILL, "colours": ["#123456", "#654321"]}))

@@ -37,8 +37,8 @@ def test_others_are_others(one: str, other: str) -> None:
 def test_what_shows_nothing_is_no_name_and_hides_in_none(blank: str) -> None:
     assert plain_name(blank * 3) == plain_name(f" {blank} {blank}") == ""
     assert plain_name(f"Ana{blank}") != ""
-    seen = plain_name(f"Ana{blank}").rstrip("?")  # what a control becomes
-    assert are_alike(unicodedata.normalize("NFD", seen).rstrip("\u0301"), "Ana")
+    shown = plain_name(f"Ana{blank}").rstrip("?")  # what a control becomes
+    assert are_alike(unicodedata.normalize("NFD", shown).rstrip("\u0301"), "Ana")
 
 
 def test_a_name_that_is_taken_gets_a_number() -> None:

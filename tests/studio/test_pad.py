@@ -27,8 +27,8 @@ NOTHING = [0, 0, 0]
 
 def played(path: Path, *story: Any) -> dict[str, Any]:
     (line,) = in_node(SCRIPT, str(path), json.dumps(story))
-    found: dict[str, Any] = json.loads(line)
-    return found
+    outcome: dict[str, Any] = json.loads(line)
+    return outcome
 
 
 def sent_to_robot(path: Path, *story: Any) -> list[Any]:
@@ -37,29 +37,29 @@ def sent_to_robot(path: Path, *story: Any) -> list[Any]:
 
 
 def test_it_is_said_at_each_change_and_again_while_it_is_held(page_data: Path) -> None:
-    found = sent_to_robot(
+    packets = sent_to_robot(
         page_data, WHOLE, ["passes", 1000], ["down", "KEY_UP", 1], ["passes", 450],
         ["up", "KEY_UP", 1], ["passes", 2000],
     )  # fmt: skip
     assert REPEAT_MS == 200
-    assert found == [[1000, UP, 0, 0], [1200, UP, 0, 0], [1400, UP, 0, 0], [1450, *NOTHING]]
+    assert packets == [[1000, UP, 0, 0], [1200, UP, 0, 0], [1400, UP, 0, 0], [1450, *NOTHING]]
 
 
 def test_a_stick_goes_where_the_finger_is_and_returns_with_it(page_data: Path) -> None:
-    found = sent_to_robot(
+    packets = sent_to_robot(
         page_data, WHOLE, ["down", "stick", 1, 80, 40], ["move", "stick", 1, 500, 60],
         ["move", "stick", 1, 501, 60], ["up", "stick", 1, 500, 60], ["passes", 900],
     )  # fmt: skip
-    assert found == [[0, 0, 50, 50], [0, 0, 100, 0], [0, *NOTHING]]
+    assert packets == [[0, 0, 50, 50], [0, 0, 100, 0], [0, *NOTHING]]
 
 
 def test_two_fingers_hold_two_parts_and_a_second_one_moves_no_stick(page_data: Path) -> None:
-    found = sent_to_robot(
+    packets = sent_to_robot(
         page_data, WHOLE, ["down", "stick", 1, 60, 20], ["down", "KEY_A", 2],
         ["down", "stick", 3, 99, 60], ["move", "stick", 3, 99, 60], ["up", "stick", 3],
         ["up", "stick", 1], ["down", "KEY_A", 4], ["up", "KEY_A", 2], ["cancel", "KEY_A", 4],
     )  # fmt: skip
-    assert found == [[0, 0, 0, 100], [0, A, 0, 100], [0, A, 0, 0], [0, *NOTHING]]
+    assert packets == [[0, 0, 0, 100], [0, A, 0, 100], [0, A, 0, 0], [0, *NOTHING]]
 
 
 def test_keys_of_a_keyboard_are_keys_and_its_arrows_move_a_stick_alone(page_data: Path) -> None:
@@ -98,16 +98,16 @@ LET_GO = [["hide"], ["event", "blur"], ["event", "pagehide"], ["stop"],
 @pytest.mark.parametrize("end", LET_GO, ids=str)
 def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(page_data: Path, end: list[Any]) -> None:
     gamepad = ["gamepads", [[0, -1], [0]]]
-    found = sent_to_robot(
+    packets = sent_to_robot(
         page_data, WHOLE, gamepad, ["event", "gamepadconnected"], ["down", "stick", 1, 60, 20],
         ["keydown", "b"], ["passes", 10], end, ["passes", 500], ["see"], ["side", "side_virtual"],
         WHOLE, ["move", "stick", 1, 99, 60], ["keydown", "b", {"repeat": True}], ["passes", 500],
         ["up", "stick", 1], ["keyup", "b"], ["passes", 500],
         ["gamepads", [[0, 0], []]], ["passes", 100], ["keydown", "b"],
     )  # fmt: skip
-    let_go = found.index([10, *NOTHING])
-    assert [10, A | 32, 0, 100] in [[10, *held] for _, *held in found[:let_go]]
-    assert [held for _, *held in found[let_go + 1 :]] == [[32, 0, 0]]
+    let_go = packets.index([10, *NOTHING])
+    assert [10, A | 32, 0, 100] in [[10, *held] for _, *held in packets[:let_go]]
+    assert [held for _, *held in packets[let_go + 1 :]] == [[32, 0, 0]]
 
 
 def test_a_key_whose_end_nobody_sees_is_not_held_with_the_next_one(page_data: Path) -> None:
@@ -118,20 +118,20 @@ def test_a_key_whose_end_nobody_sees_is_not_held_with_the_next_one(page_data: Pa
 
 
 def test_a_gamepad_holds_until_it_is_unplugged(page_data: Path) -> None:
-    found = sent_to_robot(
+    packets = sent_to_robot(
         page_data, WHOLE, ["gamepads", [[0.1, -0.05], []]], ["event", "gamepadconnected"],
         ["passes", 50], ["gamepads", [[0.1, -1], [14, 1]]], ["passes", 20], ["gamepads"],
         ["passes", 500],
     )  # fmt: skip
-    assert [held for _, *held in found] == [[4 | 32, 10, 100], NOTHING]
-    assert found[1][0] - found[0][0] <= 20, "it need not be told of"
+    assert [held for _, *held in packets] == [[4 | 32, 10, 100], NOTHING]
+    assert packets[1][0] - packets[0][0] <= 20, "it need not be told of"
 
 
 def test_what_the_program_reads_is_there_and_nothing_else(page_data: Path) -> None:
     for reads in (ALL, ["KEY_A"], ["PAD_X"], ["KEY_LEFT", "PAD_Y"], []):
         driven = ["offer", "driving", {"reads": reads}]
-        parts = [each for each in reads if each.startswith("KEY")]
-        stick = ["stick"] if any(each.startswith("PAD") for each in reads) else []
+        parts = [reading for reading in reads if reading.startswith("KEY")]
+        stick = ["stick"] if any(reading.startswith("PAD") for reading in reads) else []
         assert played(page_data, driven)["shown"] == parts + stick
     assert played(page_data, WHOLE, ["offer", "driving", None])["shown"] == []
     another = ["offer", "link", {"reads": ALL}]  # than the one that is seen
@@ -140,12 +140,12 @@ def test_what_the_program_reads_is_there_and_nothing_else(page_data: Path) -> No
 
 def test_a_robot_without_a_remote_control_is_told_nothing(page_data: Path) -> None:
     deaf = ["offer", "link", {"reads": ALL, "isDeaf": True}]
-    found = played(
+    outcome = played(
         page_data, ["side", "side_real"], deaf, ["keydown", "ArrowUp"], ["passes", 500], ["stop"],
         ["gamepads", [[0, -1], [0]]], ["event", "gamepadconnected"], ["passes", 500],
     )  # fmt: skip
-    assert found["told"] == [] == found["shown"]
-    assert found["said"].startswith("This robot has no remote control.")
+    assert outcome["told"] == [] == outcome["shown"]
+    assert outcome["said"].startswith("This robot has no remote control.")
 
 
 def test_a_robot_that_comes_to_be_seen_is_told_what_is_pressed_from_then_on(
@@ -153,36 +153,36 @@ def test_a_robot_that_comes_to_be_seen_is_told_what_is_pressed_from_then_on(
 ) -> None:
     """The one before hears that all is let go."""
     real = ["offer", "link", {"reads": ALL}]
-    found = played(
+    outcome = played(
         page_data, WHOLE, real, ["down", "KEY_UP", 1], ["passes", 10], ["side", "side_real"],
         ["passes", 500], ["up", "KEY_UP", 1], ["down", "KEY_A", 1], ["side", "side_virtual"],
         ["passes", 500],
     )  # fmt: skip
-    assert found["told"] == [
+    assert outcome["told"] == [
         [0, "driving", UP, 0, 0], [10, "driving", *NOTHING],
         [510, "link", A, 0, 0], [510, "link", *NOTHING],
     ]  # fmt: skip
 
 
 def test_the_same_robot_that_is_offered_again_is_held_on(page_data: Path) -> None:
-    found = sent_to_robot(
+    packets = sent_to_robot(
         page_data, WHOLE, ["down", "KEY_UP", 1], ["passes", 10], WHOLE, ["passes", 190]
     )
-    assert found == [[0, UP, 0, 0], [200, UP, 0, 0]]
+    assert packets == [[0, UP, 0, 0], [200, UP, 0, 0]]
 
 
 @pytest.mark.parametrize("way", ["host", "direct"])
 def test_a_stick_that_moves_all_the_time_is_said_as_it_is_now(page_data: Path, way: str) -> None:
     """No more often than the link says it, no word after a newer one, and the release at once."""
-    found = json.loads(in_node(WAYS_SCRIPT, str(page_data), way)[0])
-    moved = [y for _, y in found["sent"][:-1]]
+    packets = json.loads(in_node(WAYS_SCRIPT, str(page_data), way)[0])
+    moved = [y for _, y in packets["sent"][:-1]]
     assert moved == sorted(set(moved)) and len(moved) > 100
-    assert found["sent"][-1][1] == 0
-    assert len(found["sent"]) <= found["asked"], "one word at a time: the newest"
-    assert found["sent"][-1][0] - found["released"] <= (31 if way == "host" else 150)
-    assert not found["over"]
+    assert packets["sent"][-1][1] == 0
+    assert len(packets["sent"]) <= packets["asked"], "one word at a time: the newest"
+    assert packets["sent"][-1][0] - packets["released"] <= (31 if way == "host" else 150)
+    assert not packets["over"]
     if way == "host":
         seconds = 6
-        assert found["asked"] / seconds < classroom.REQUEST_RATE[1] - 1000 / 300, (
+        assert packets["asked"] / seconds < classroom.REQUEST_RATE[1] - 1000 / 300, (
             "and it looks for its turn"
         )

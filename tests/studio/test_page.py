@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.pupils import corpus
-from tests.studio.programs import LACKING, programs, said
+from tests.studio.programs import LACKING, messages_of, programs
 from tests.studio.programs import image as image_of
 from tests.support.sampling import some_of
 from tests.support.studio import Pages, asked, checked, image, noted, speak, write
@@ -43,13 +43,13 @@ def checks(page: Page, requests: list[dict[str, str]]) -> list[dict[str, Any]]:
 @pytest.mark.parametrize("part", range(6))
 def test_every_program_gets_the_image_of_the_command(page: Page, part: int) -> None:
     """Those of the paper, of all documents and cases, and the examples."""
-    found = programs()[part::6]
-    assert len(found) > 50
+    sample = programs()[part::6]
+    assert len(sample) > 50
     requests = [
-        {"text": program.text, "robot": program.robot, "language": "en"} for program in found
+        {"text": program.text, "robot": program.robot, "language": "en"} for program in sample
     ]
     answers = checks(page, requests)
-    for program, answer in zip(found, answers, strict=True):
+    for program, answer in zip(sample, answers, strict=True):
         compiled = image_of(program)
         needs = unpack(bytes.fromhex(compiled)).needs if compiled else 0
         refused = lacks(needs, robots.load(program.robot))  # which the page says
@@ -69,10 +69,10 @@ def test_every_wrong_program_gets_the_words_of_the_command(
     ]
     for request, answer in zip(requests, checks(page, requests), strict=True):
         text = request["text"]
-        wanted = [message._asdict() for message in said(text, request["language"])]
-        got = [{key: each[key] for key in Message._fields}
-               for each in answer["findings"] if each["code"] not in LACKING]  # fmt: skip
-        assert got == wanted, text
+        wanted = [message._asdict() for message in messages_of(text, request["language"])]
+        findings = [{key: finding[key] for key in Message._fields}
+               for finding in answer["findings"] if finding["code"] not in LACKING]  # fmt: skip
+        assert findings == wanted, text
 
 
 def test_a_mistake_of_ours_is_told_with_its_name(page: Page) -> None:

@@ -73,7 +73,7 @@ BETWEEN = (
     Between("studio suspended", held_s=4.0, suspends=True),
     Between("studio suspended long", held_s=12.0, suspends=True),
 )
-LINES = tuple(each for each in FAULTS if not each.pulls and not each.suspends)
+LINES = tuple(fault for fault in FAULTS if not fault.pulls and not fault.suspends)
 SAID = "#link_said"
 ACTIONS = ("connect", "run", "stop", "identify", "leave")
 ENDS = {
@@ -122,7 +122,7 @@ class BadNetwork(Network):
         return data if is_back else data.replace(self._own, self._servers)
 
 
-class Found(NamedTuple):
+class TriedAction(NamedTuple):
     action: str
     fault: str
     silence_s: float
@@ -155,7 +155,7 @@ class Scene:
         write(self.page, FOREVER)
         self.page.click("#side_real")
 
-    def tried(self, action: str, fault: Fault | Between) -> Found:
+    def tried(self, action: str, fault: Fault | Between) -> TriedAction:
         """Do something while there is a fault, then all of it without."""
         self._prepare(action, fault)
         page, place = self._place(action)
@@ -167,16 +167,16 @@ class Scene:
         page.wait_for_timeout(500)
         self._mend(fault)
         timed_messages: list[tuple[float, str]] = page.evaluate("window.told")
-        said = [text for _, text in timed_messages]
-        wrong += [f"said twice: {each}" for each, after in pairwise(said) if each == after]
+        texts = [text for _, text in timed_messages]
+        wrong += [f"said twice: {text}" for text, after in pairwise(texts) if text == after]
         wrong += self._next_try()
         times = [begun_ms, *(at_ms for at_ms, _ in timed_messages)]
         gaps = [(after - at) / 1000 for k, (at, after) in enumerate(pairwise(times))
-                if not k or not STANDING.search(said[k - 1])]  # fmt: skip
+                if not k or not STANDING.search(texts[k - 1])]  # fmt: skip
         first = [at_ms for at_ms, text in timed_messages if re.search(ENDS[action], text)]
         took_s = ((first[0] if first else begun_ms + 1000 * ENDS_S) - begun_ms) / 1000
-        return Found(action, fault.name, gaps[0] if gaps else ENDS_S, took_s,
-                     tuple(wrong), tuple(said))  # fmt: skip
+        return TriedAction(action, fault.name, gaps[0] if gaps else ENDS_S, took_s,
+                     tuple(wrong), tuple(texts))  # fmt: skip
 
     def _prepare(self, action: str, fault: Fault | Between) -> None:
         if isinstance(fault, Fault):
@@ -301,8 +301,8 @@ class ClassScene(Scene):
         self.page = self.pages.open(is_alone=True)
         write(self.page, FOREVER)
         self.page.click("#side_real")
-        for which, said in enumerate((taught.room.code, "Ana")):
-            self.page.locator("#class_pupil input").nth(which).fill(said)
+        for which, text in enumerate((taught.room.code, "Ana")):
+            self.page.locator("#class_pupil input").nth(which).fill(text)
         self.page.click("[data-text=class_join]")
         self.page.locator(ASKS).wait_for()
 
@@ -342,7 +342,7 @@ ENDS |= {
     "stop all": "STOP: 1 of 1|Not confirmed|did not reach",
 }
 CLASS_ACTIONS = ("ask", "run", "stop", "stop all", "leave")
-CLASS_LINES = tuple(each for each in LINES if each.name in (
+CLASS_LINES = tuple(line for line in LINES if line.name in (
     "loses", "very late", "stalls long", "computer hears nothing"))  # fmt: skip
 
 
@@ -358,19 +358,22 @@ def scene(opened: Browser, chance: Random) -> Iterator[Scene]:
         yield Scene(opened, chance, stack)
 
 
-def judged(found: Found, room_s: float = ROOM_S) -> list[str]:
-    silent = found.silence_s > SILENT_S + room_s
-    return [*found.wrong, *([f"silent for {found.silence_s:.1f} s"] if silent else [])]
+def judged(tried_action: TriedAction, room_s: float = ROOM_S) -> list[str]:
+    silent = tried_action.silence_s > SILENT_S + room_s
+    return [
+        *tried_action.wrong,
+        *([f"silent for {tried_action.silence_s:.1f} s"] if silent else []),
+    ]
 
 
-def printed(found: Sequence[Found]) -> None:
-    rows: dict[str, list[Found]] = defaultdict(list)
-    for each in found:
-        rows[each.action].append(each)
+def printed(tried_actions: Sequence[TriedAction]) -> None:
+    rows: dict[str, list[TriedAction]] = defaultdict(list)
+    for tried_action in tried_actions:
+        rows[tried_action.action].append(tried_action)
     print("| page | tries | longest silence, s | to its end, s |\n|---|---:|---:|---:|")
     for action, mine in rows.items():
-        quiet = max(mine, key=lambda each: each.silence_s)
-        late = max(mine, key=lambda each: each.took_s)
+        quiet = max(mine, key=lambda tried_action: tried_action.silence_s)
+        late = max(mine, key=lambda tried_action: tried_action.took_s)
         print(f"| {action} | {len(mine)} | {quiet.silence_s:.1f} ({quiet.fault}) |"
               f" {late.took_s:.1f} ({late.fault}) |")  # fmt: skip
 
@@ -379,10 +382,10 @@ def test_a_sample_of_what_is_pressed_keeps_the_laws(
     request: pytest.FixtureRequest, browser: Browser
 ) -> None:
     chance = Random(sampling.seed(request.config))
-    with scene(browser, chance) as seen:
+    with scene(browser, chance) as opened_scene:
         faults: list[Fault | Between] = [*BETWEEN[:5], *LINES[:6]]
-        found = seen.tried(chance.choice(ACTIONS), chance.choice(faults))
-        assert not judged(found, 3.0), found
+        tried_action = opened_scene.tried(chance.choice(ACTIONS), chance.choice(faults))
+        assert not judged(tried_action, 3.0), tried_action
 
 
 @pytest.mark.long
@@ -390,9 +393,9 @@ def test_a_sample_of_what_is_pressed_in_a_class_keeps_the_laws(
     request: pytest.FixtureRequest, browser: Browser
 ) -> None:
     chance = Random(sampling.seed(request.config))
-    with class_scene(browser, chance) as seen:
-        found = seen.tried(chance.choice(CLASS_ACTIONS), chance.choice(CLASS_LINES))
-        assert not judged(found, 3.0), found
+    with class_scene(browser, chance) as scene:
+        tried_action = scene.tried(chance.choice(CLASS_ACTIONS), chance.choice(CLASS_LINES))
+        assert not judged(tried_action, 3.0), tried_action
 
 
 if __name__ == "__main__":
@@ -404,16 +407,28 @@ if __name__ == "__main__":
                 for line in CLASS_LINES:
                     for action in CLASS_ACTIONS:
                         all_found.append(taught.tried(action, line))
-                        found = all_found[-1]
-                        print(*found[:4], judged(found), found.messages, sep="; ", flush=True)
+                        tried_action = all_found[-1]
+                        print(
+                            *tried_action[:4],
+                            judged(tried_action),
+                            tried_action.messages,
+                            sep="; ",
+                            flush=True,
+                        )
         for seed in range(given.seed, given.seed + given.count * (not given.taught)):
-            with scene(opened, Random(seed)) as seen:
+            with scene(opened, Random(seed)) as opened_scene:
                 faults: list[Fault | Between] = [*BETWEEN * (not given.line),
                                                  *LINES * (not given.network)]  # fmt: skip
                 for fault in faults:
                     for action in ACTIONS:
-                        all_found.append(seen.tried(action, fault))
-                        found = all_found[-1]
-                        print(*found[:4], judged(found), found.messages, sep="; ", flush=True)
+                        all_found.append(opened_scene.tried(action, fault))
+                        tried_action = all_found[-1]
+                        print(
+                            *tried_action[:4],
+                            judged(tried_action),
+                            tried_action.messages,
+                            sep="; ",
+                            flush=True,
+                        )
     printed(all_found)
     sys.exit(any(map(judged, all_found)))

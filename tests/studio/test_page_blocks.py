@@ -87,8 +87,8 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None
         theirs, kit = KITS[seed % len(KITS)]
         forms.append(read_blocks(oracle_programs.program(random.Random(seed), theirs), kit))
     data = json.loads(json.dumps([without_places(data_of(form)) for form in forms]))
-    for k, (want, got) in enumerate(zip(data, round_trip(page, data), strict=True)):
-        assert got == want, k
+    for k, (want, actual) in enumerate(zip(data, round_trip(page, data), strict=True)):
+        assert actual == want, k
     assert compare(page, SAMPLE, seed=1000) > SAMPLE * 0.9
 
 
@@ -335,10 +335,12 @@ def test_a_message_stands_on_no_block(page: Page) -> None:
         start(page, "SI|S;\nF(-2);\nF(2, 80);\n")  # the block below it is wider
         bubble.wait_for()
         page.evaluate(SETTLED)
-        said = bubble.locator("rect").first.evaluate("e => e.getBoundingClientRect().toJSON()")
+        bubble_box = bubble.locator("rect").first.evaluate(
+            "e => e.getBoundingClientRect().toJSON()"
+        )
         paths = page.locator(f"{PROGRAM} .blocklyBlock > .blocklyPath:not(.blocklyPathSelected)")
         boxes = paths.evaluate_all("all => all.map((e) => e.getBoundingClientRect().toJSON())")
-        assert not [box for box in boxes if meet(box, said)], (width, height)
+        assert not [box for box in boxes if meet(box, bubble_box)], (width, height)
     page.set_viewport_size({"width": 1366, "height": 768})
     start(page, "SI|S;\nF(-2, 80);\n" + 9 * "F(2, 80);\n")
     bubble.wait_for()
@@ -377,10 +379,10 @@ def test_the_words_of_the_robot_are_blocks(page: Page, pytestconfig: pytest.Conf
     for name in some_of(pytestconfig, "words of robots", robots.names(), 3):
         page.select_option("#robot", name)
         shown(page)
-        said = flyout(page, "Robot")
+        text = flyout(page, "Robot")
         profile = robots.load(name)
         for device in (*profile.kit.sensors, *profile.kit.actuators):
-            assert profile.labels["en"][device.name] in said
+            assert profile.labels["en"][device.name] in text
         page.keyboard.press("Escape")
 
 
@@ -530,14 +532,14 @@ def test_a_lesson_offers_its_words_while_it_is_open(
         page.select_option("#lesson", str(number))
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
         page.locator("#lesson:enabled").wait_for()
-        found = offered(page)
-        assert before - {"set"} <= found, number  # its robot may switch nothing
-        before = set(found)
-        found |= {"call"} if "def" in found else set()  # of a word that somebody has made
+        words = offered(page)
+        assert before - {"set"} <= words, number  # its robot may switch nothing
+        before = set(words)
+        words |= {"call"} if "def" in words else set()  # of a word that somebody has made
         answers = [
             kinds_in(read_blocks(answer.program, kit)) for answer in catalogue.answers(folder)[0]
         ]
-        assert any(kinds <= found for kinds in answers), (number, answers, found)
+        assert any(kinds <= words for kinds in answers), (number, answers, words)
     page.select_option("#lesson", "1")
     page.locator("#lesson_page[data-lesson='1']").wait_for()
     assert offered(page) - {"set"} == before - {"set"}
@@ -565,8 +567,8 @@ def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> No
             start(page, "SI|S;\n", "usual")
             drag(page, group, words, block(page, "stop"))
             becomes_other(page, "SI|S;\n")
-            said = "DISTANCE > 20" if words == "while" else "DISTANCE < 20"
-            assert (said in text_of(page)) == asks, (robot, words, text_of(page))
+            question = "DISTANCE > 20" if words == "while" else "DISTANCE < 20"
+            assert (question in text_of(page)) == asks, (robot, words, text_of(page))
             assert not [
                 message for message in check(text_of(page), robot) if message.severity == "mistake"
             ]
@@ -623,8 +625,8 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     start(page, text, "usual")
     assert text_of(page) == text
     drag(page, "Move", "back", block(page, "stop"))
-    kept = text.replace("W(2);\n", "B(2, 80);\nW(2);\n")
-    becomes(page, kept)  # a hat that nobody moves stays after the block that it stood after
+    moved_text = text.replace("W(2);\n", "B(2, 80);\nW(2);\n")
+    becomes(page, moved_text)  # a hat that nobody moves stays after the block that it stood after
     upper, last = (
         page.locator(f"{PROGRAM} > .blocklyDraggable", has_text=text) for text in ("10", "20")
     )
@@ -633,12 +635,12 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     page.mouse.down()
     page.mouse.move(box["right"] + 24, above["y"] - 40, steps=8)
     page.mouse.up()
-    moved = kept.replace(first + then, then + first)
+    moved = moved_text.replace(first + then, then + first)
     becomes(page, moved)
     place = box_of(last)
     assert place["x"] > above["right"] and place["y"] < above["y"]
     page.click("#undo")
-    becomes(page, kept)
+    becomes(page, moved_text)
     page.click("#redo")
     becomes(page, moved)
     assert box_of(last)["x"] == pytest.approx(place["x"], abs=1)
@@ -680,8 +682,8 @@ NUMBERS = """all => all.map((field, k) => ({field, k, box: field.getBoundingClie
 
 def numbers_of(page: Page) -> list[int]:
     """Return the fields of numbers as a person reads them: the program's, then those of hats."""
-    found: list[int] = page.locator(f"{PROGRAM} .blocklyNumberField").evaluate_all(NUMBERS)
-    return found
+    values: list[int] = page.locator(f"{PROGRAM} .blocklyNumberField").evaluate_all(NUMBERS)
+    return values
 
 
 # What is dragged where, and which numbers are typed then: the first one is number 0.
@@ -760,8 +762,8 @@ def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
     page.keyboard.type("size")
     page.keyboard.press("Enter")
     becomes(page, begin.format(*["SIZE"] * 4))
-    said = {text.strip() for text in canvas.locator(".blocklyText").all_text_contents()}
-    assert {"SIZE", "C"} <= said
+    texts = {text.strip() for text in canvas.locator(".blocklyText").all_text_contents()}
+    assert {"SIZE", "C"} <= texts
     body = "  F(SIZE, 50);\n  SIZE = SIZE + 1;\nEND_DEF;\n"
     for head, calls in (("HOP(SIZE)", "HOP(2);\nHOP(3);\n"), ("HOP", "HOP;\nHOP;\n")):
         canvas.locator("image[*|href$='less.svg']").first.click()
@@ -810,8 +812,8 @@ def test_the_catalogue_has_what_blockly_says() -> None:
     messages = (BLOCKLY / "msg" / "en.js").read_text(encoding="utf-8")
     rows = re.findall(r'^Blockly\.Msg\["(\w+)"\] = ("(?:[^"\\]|\\.)*");$', messages, re.MULTILINE)
     wanted = {f"blockly/{name}": json.loads(text) for name, text in rows if name in named}
-    found = page_texts("en")
-    own = {key: found[key] for key in found if key.startswith("blockly/")}
+    texts = page_texts("en")
+    own = {key: texts[key] for key in texts if key.startswith("blockly/")}
     assert own == {key: wanted[key] for key in wanted if key in own or not LACKS.search(key)}
 
 

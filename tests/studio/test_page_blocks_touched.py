@@ -21,7 +21,7 @@ from tests.support.page_blocks import (
     start,
     text_of,
 )
-from tests.support.page_runs import kept
+from tests.support.page_runs import run_names
 from tests.support.studio import SETTLED, Pages, axe, hears, in_phase, noted, shown, speak, write
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ END_DEF;
 
 def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -> None:
     """With the words that it uses, too; a value is shown, and a hat runs what is below it."""
-    runs = kept(page)
+    runs = run_names(page)
     page.click("#runs_close")
     start(page, WHOLE)
     text = text_of(page)
@@ -89,15 +89,15 @@ def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -
     ):  # fmt: skip
         rest(page)
         touch(page, words)
-        done = did(page)
-        assert sum(each.startswith("BEEP") for each in done) == sounds, (words, done)
-        assert sum(each.startswith("SHOW") for each in done) == shows, (words, done)
+        events = did(page)
+        assert sum(line.startswith("BEEP") for line in events) == sounds, (words, events)
+        assert sum(line.startswith("SHOW") for line in events) == shows, (words, events)
     rest(page)
     box = box_of(page.locator(f"{PROGRAM} .blocklyBlock.sensor").first)
     page.mouse.click(box["x"] + 6, box["y"] + 4)
-    assert any(each.startswith("SHOW") for each in did(page))
+    assert any(line.startswith("SHOW") for line in did(page))
     assert text_of(page) == text
-    assert kept(page) == runs  # what was tried is no run to keep
+    assert run_names(page) == runs  # what was tried is no run to keep
     page.click("#runs_close")
 
 
@@ -144,7 +144,7 @@ def test_keys_and_the_menu_try_a_block_on_a_phone_too(pages: Pages, way: str) ->
         path_of(block(page, "beep")).click(button="right", position={"x": 6, "y": 6})
         page.locator(".blocklyMenuItem", has_text="Try this block alone").click()
     page.locator("html[data-half=robot]").wait_for(state="attached")
-    assert [each.split()[0] for each in did(page) if "BEEP" in each] == ["BEEP"]
+    assert [line.split()[0] for line in did(page) if "BEEP" in line] == ["BEEP"]
 
 
 def test_a_block_that_is_tried_goes_on_where_the_robot_is(page: Page) -> None:
@@ -164,13 +164,13 @@ def test_a_block_that_is_tried_goes_on_where_the_robot_is(page: Page) -> None:
         page.locator(f"{PROGRAM} .alone").wait_for(state="attached")
         page.locator(f"{PROGRAM} .alone").wait_for(state="detached")
 
-    found = []
+    places = []
     for _ in range(3):
         tried()
-        found.append(measured())
-    assert found[0] > found[1] + 4 > found[2] + 8
+        places.append(measured())
+    assert places[0] > places[1] + 4 > places[2] + 8
     page.click("#run")
-    hears(page, lambda: measured() == found[0], "the program begins at the start")
+    hears(page, lambda: measured() == places[0], "the program begins at the start")
     start(page, "SI|F(5, 60);\n")
     page.hover("#blocks")
     for bumps in ("1", "1"):  # it is not pushed through what it touches
@@ -199,8 +199,8 @@ def test_each_move_has_its_arrow(page: Page) -> None:
     page.locator(".blocklyMenuItem", has_text="turn left").click()
     becomes(page, "SI|L(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
     after = arrows.evaluate_all(ARROWS)
-    assert [before[said] for said, _ in after] == [drawn for _, drawn in after]
-    assert [said for said, _ in after].count("turn left") == 2
+    assert [before[text] for text, _ in after] == [drawn for _, drawn in after]
+    assert [text for text, _ in after].count("turn left") == 2
     gap = arrows.first.evaluate(
         "e => e.getBoundingClientRect().x - e.closest('.blocklyBlock').getBoundingClientRect().x"
     )
@@ -235,13 +235,15 @@ def test_a_message_is_at_its_block(page: Page) -> None:
         bubble = page.locator("#blocks .blocklyBubble")
         bubble.wait_for()
         page.evaluate(SETTLED)
-        said = bubble.locator("rect").first.evaluate("e => e.getBoundingClientRect().toJSON()")
+        bubble_box = bubble.locator("rect").first.evaluate(
+            "e => e.getBoundingClientRect().toJSON()"
+        )
         own = box_of(page.locator(f"{PROGRAM} .wrong").last)
         others = page.locator(f"{PROGRAM} .blocklyBlock > .blocklyPath:not(.blocklyPathSelected)")
         boxes = others.evaluate_all("all => all.map((e) => e.getBoundingClientRect().toJSON())")
         if isolated:
-            assert 0 < said["left"] - own["right"] < GAP
-            assert not [box for box in boxes if meet(box, said)]
+            assert 0 < bubble_box["left"] - own["right"] < GAP
+            assert not [box for box in boxes if meet(box, bubble_box)]
         tail = page.locator("#blocks .blocklyBubbleTail")
         begin = tail.evaluate("e => e.getBoundingClientRect().left")
         assert begin > own["right"] - 14 and tail.is_visible()
@@ -280,16 +282,20 @@ def test_the_keys_are_those_of_a_piano() -> None:
     (row,) = in_node(SCRIPT)
     tones = json.loads(row)
     keys = tones["keys"]
-    assert [each["back"] for each in keys] == [each["key"] for each in keys]
-    assert {each["name"]: each["hertz"] for each in keys if 69 <= each["key"] < 81}["A"] == 440
+    assert [key["back"] for key in keys] == [key["key"] for key in keys]
+    assert {key["name"]: key["hertz"] for key in keys if 69 <= key["key"] < 81}["A"] == 440
     octave = ["C", "C♯", "D", "D♯", "E", "F", "F♯", "G", "G♯", "A", "A♯", "B"]
-    for each in keys:
-        assert each["name"] == octave[each["key"] % 12]
-        assert each["hertz"] == round(440 * 2 ** ((each["key"] - 69) / 12))
-    hertz = [each["hertz"] for each in keys]
+    for key in keys:
+        assert key["name"] == octave[key["key"] % 12]
+        assert key["hertz"] == round(440 * 2 ** ((key["key"] - 69) / 12))
+    hertz = [key["hertz"] for key in keys]
     for step in tones["steps"]:
-        ahead = [each for each in hertz if (each - step["hertz"]) * step["way"] > 0]
-        nearest = min(ahead, key=lambda each: abs(each - step["hertz"])) if ahead else None
+        ahead = [
+            hertz_there for hertz_there in hertz if (hertz_there - step["hertz"]) * step["way"] > 0
+        ]
+        nearest = (
+            min(ahead, key=lambda frequency: abs(frequency - step["hertz"])) if ahead else None
+        )
         ends = (hertz[-1],) if step["way"] > 0 else (hertz[0],)
         assert step["to"] == (nearest if nearest is not None else ends[0]), step
 
@@ -333,11 +339,11 @@ def test_escape_takes_back_in_the_text_what_it_takes_back_in_the_block(page: Pag
     """Else another change would bring it back, later."""
     text = "// one\nSI|BEEP(0.5, 440);\nF(5, 80);\n"
     start(page, text)
-    for seen, typed in (("80", "12"), ("one", "two"), ("440", "330")):
-        page.locator(f"{PROGRAM} .blocklyField", has_text=seen).last.click()
+    for new_text, typed in (("80", "12"), ("one", "two"), ("440", "330")):
+        page.locator(f"{PROGRAM} .blocklyField", has_text=new_text).last.click()
         page.locator(".blocklyWidgetDiv input").wait_for()
         page.keyboard.type(typed)
-        becomes(page, text.replace(seen, typed))
+        becomes(page, text.replace(new_text, typed))
         page.keyboard.press("Escape")
         becomes(page, text)
     pitch(page).first.click()
@@ -388,9 +394,9 @@ def test_a_block_is_found_by_its_words(page: Page, language: str, words: dict[st
     people call it, and by its group."""
     speak(page, language)
     start(page, "SI|S;\n", "few")
-    for typed, said in words.items():
+    for typed, text in words.items():
         page.fill(".search input", typed)
-        page.locator(FLYOUT).filter(has_text=said).first.wait_for()
+        page.locator(FLYOUT).filter(has_text=text).first.wait_for()
     page.fill(".search input", "xyzzy")
     page.locator(".blocklyFlyout:visible .blocklyFlyoutLabel").wait_for()
     assert page.locator(FLYOUT).count() == 0

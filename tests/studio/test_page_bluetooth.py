@@ -17,7 +17,7 @@ import pytest
 from tests.machines.host_firmware import HostFirmware
 from tests.support import studio
 from tests.support.command import FOREVER
-from tests.support.page_link import said
+from tests.support.page_link import wait_for_message
 from tests.support.pty_robot import drives_now
 from tests.support.studio import enter, write
 from tiniscript import robots
@@ -94,12 +94,12 @@ class Radio:
     def _gatt(self, asked: Any) -> None:
         if asked["type"] == "discovery" and not self._made:
             self._made = True
-            made = self._ask("addService", address=ADDRESS, serviceUuid=self._service)
+            service = self._ask("addService", address=ADDRESS, serviceUuid=self._service)
             for uuid, properties in self._characteristics():
-                found = self._ask("addCharacteristic", serviceId=made["serviceId"],
+                characteristic = self._ask("addCharacteristic", serviceId=service["serviceId"],
                                   characteristicUuid=uuid, properties=properties)  # fmt: skip
                 if "notify" in properties:
-                    self._ask("addDescriptor", characteristicId=found["characteristicId"],
+                    self._ask("addDescriptor", characteristicId=characteristic["characteristicId"],
                               descriptorUuid="00002902-0000-1000-8000-00805f9b34fb")  # fmt: skip
         self._ask("simulateGATTOperationResponse", address=ADDRESS, type=asked["type"], code=0)
 
@@ -155,20 +155,20 @@ def test_a_robot_is_driven_by_bluetooth(radio_page: tuple[Browser, Page], servic
     browser, page = radio_page
     with closing(Radio(browser, page, service)) as radio:
         page.click("#link_bluetooth")
-        said(page, "Connected: ")
+        wait_for_message(page, "Connected: ")
         write(page, "SHOW(2.5);\n" + "F(0.1, 80);\n" * 20)
         page.click("#link_upload")
-        said(page, "Done.")
+        wait_for_message(page, "Done.")
         assert page.locator("#link_shown").inner_text() == "2.5"
         assert radio.did.count("MOTORS 80 80") >= 1
         assert max(radio.writes) == MOST
         write(page, FOREVER)
         page.click("#link_upload")
-        said(page, "The robot has the program")
+        wait_for_message(page, "The robot has the program")
         while not drives_now(radio.did):  # the radio is heard while the page is waited for
             page.wait_for_timeout(20)
         page.keyboard.press("Escape")
-        said(page, "Stopped: the robot has confirmed the stop.")
+        wait_for_message(page, "Stopped: the robot has confirmed the stop.")
         assert not drives_now(radio.did)
         radio.go_away()
-        said(page, "The Bluetooth connection was lost. The")
+        wait_for_message(page, "The Bluetooth connection was lost. The")

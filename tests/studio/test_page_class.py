@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support import studio
-from tests.support.class_pages import joined, said, teaches
+from tests.support.class_pages import joined, teaches, wait_for_status
 from tests.support.command import FOREVER
 from tests.support.page_screens import LOOK, SCREENS
 from tests.support.pty_robot import PtyRobot
@@ -78,23 +78,25 @@ HELD = "() => held.length === 1"
 
 @pytest.fixture(scope="module")
 def robot() -> Iterator[PtyRobot]:
-    with PtyRobot(KIT) as made:
-        yield made
+    with PtyRobot(KIT) as pty_robot:
+        yield pty_robot
 
 
 @pytest.fixture(scope="module")
 def taught(robot: PtyRobot, browser: Browser) -> Iterator[Class]:
     """A class that many tests share: Python takes a while to start in each page of it."""
-    with studio.taught([robot.port]) as made:
-        made.room.teach({"do": "class_places", "places": 9})  # left ones keep theirs for 5 s
-        yield made
+    with studio.taught([robot.port]) as taught_class:
+        taught_class.room.teach(
+            {"do": "class_places", "places": 9}
+        )  # left ones keep theirs for 5 s
+        yield taught_class
 
 
 @pytest.fixture(scope="module")
 def shared(browser: Browser, taught: Class) -> Iterator[Pages]:
-    found = Pages(browser, taught.server.address)
-    yield found
-    found.close()
+    opened_pages = Pages(browser, taught.server.address)
+    yield opened_pages
+    opened_pages.close()
 
 
 @pytest.fixture
@@ -119,8 +121,8 @@ def ana(first: Page, pages: Pages, taught: Class, robot: PtyRobot) -> Iterator[P
     """The page of a pupil, who has no robot before and after each test."""
     yield first
     robot.switch_on()
-    for each in taught.room.teach({"do": "class"})["pupils"]:
-        taught.room.teach({"do": "class_next", "pupil": each["number"]})
+    for pupil in taught.room.teach({"do": "class"})["pupils"]:
+        taught.room.teach({"do": "class_next", "pupil": pupil["number"]})
     first.locator("[data-text=class_ask]").wait_for()
     first.locator("html:not([data-robot=connected])").wait_for(state="attached")
 
@@ -152,13 +154,13 @@ def test_three_pupils_share_a_robot(
     luz, teo = (joined(pages, taught, name) for name in ("Luz", "Teo"))
     big = teacher.locator("#big_pupil")
     asks(ana)
-    said(ana, "It is your turn. Nobody is waiting.")
+    wait_for_status(ana, "It is your turn. Nobody is waiting.")
     linked(ana, "Connected: ")
     asks(luz)
-    said(luz, "Your place in the queue: 1 of 1.")
+    wait_for_status(luz, "Your place in the queue: 1 of 1.")
     asks(teo)
-    said(teo, "Your place in the queue: 2 of 2.")
-    said(ana, "It is your turn. Time left: ")
+    wait_for_status(teo, "Your place in the queue: 2 of 2.")
+    wait_for_status(ana, "It is your turn. Time left: ")
     drives(ana, robot)
     # Only the own robot is stopped by a pupil.
     luz.click("#stop")
@@ -213,7 +215,7 @@ def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(ana: Page, sha
         ana.click("#link_leave")
         ana.locator("[data-text=class_ask]").wait_for()
     wrong, shared.wrong[:] = shared.wrong[:], []
-    assert all("ERR_FAILED" in each or "500" in each for each in wrong)
+    assert all("ERR_FAILED" in error or "500" in error for error in wrong)
 
 
 def test_what_plain_http_has_not_is_not_offered(ana: Page) -> None:
@@ -240,8 +242,8 @@ def test_who_opens_the_address_of_a_class_joins_it_at_once(
     page.locator("#class_entry").wait_for()
     assert page.inner_text("#class_entry h2") == "Entra a la clase"
     page.wait_for_function("document.activeElement.matches('#class_entry input')")
-    for each in page.locator("#class_entry :is(input, [data-text=class_join]):visible").all():
-        box = each.bounding_box()
+    for locator in page.locator("#class_entry :is(input, [data-text=class_join]):visible").all():
+        box = locator.bounding_box()
         assert (
             box and box["y"] + box["height"] <= size[1] / 2 and box["x"] + box["width"] <= size[0]
         )
@@ -253,7 +255,7 @@ def test_who_opens_the_address_of_a_class_joins_it_at_once(
     page.locator("#class_entry").wait_for(state="hidden")
     page.click("#side_real" if size[0] > size[1] else "#other")
     page.click("#side_real")
-    said(page, "Estás en la clase, Eva")
+    wait_for_status(page, "Estás en la clase, Eva")
     if size[0] < size[1]:
         for _ in range(2):
             assert page.evaluate(IN_ONE_LINE) == 1  # with the hand, too
@@ -270,14 +272,14 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     page.locator("#class_pupil input").nth(0).fill("000000")
     page.locator("#class_pupil input").nth(1).fill(HOSTILE)
     page.click("[data-text=class_join]")
-    said(page, "Ese no es el código de esta clase.")
+    wait_for_status(page, "Ese no es el código de esta clase.")
     page.locator("#class_pupil input").nth(0).fill(taught.room.code)
     page.click("[data-text=class_join]")
-    said(page, "Estás en la clase, ")
+    wait_for_status(page, "Estás en la clase, ")
     page.reload()  # a tab keeps its place
     checked(page)
     page.click("#side_real")
-    said(page, f"Estás en la clase, {HOSTILE}"[:40])
+    wait_for_status(page, f"Estás en la clase, {HOSTILE}"[:40])
     row = tile(teacher, HOSTILE)
     row.wait_for()
     assert (
@@ -287,12 +289,12 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     )
     row.hover()
     row.locator(".out").click()
-    said(page, "Ahora no estás en la clase.")
+    wait_for_status(page, "Ahora no estás en la clase.")
     row.locator(".see").and_(teacher.locator("[aria-label*='not here']")).wait_for()
     row.locator(".out").click()  # nor is the work kept then
     row.wait_for(state="detached")
     page.close()
-    assert [each for each in pages.wrong if "403" not in each] == []
+    assert [error for error in pages.wrong if "403" not in error] == []
     pages.wrong.clear()
 
 
@@ -335,8 +337,8 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -
     room = taught.room
     room.teach({"do": "class_places", "places": 60})
     tokens = []
-    found = room.teach({"do": "class"})
-    for k in range(30 - len(found["pupils"]) - len(found["kept"])):
+    state = room.teach({"do": "class"})
+    for k in range(30 - len(state["pupils"]) - len(state["kept"])):
         asked = {"do": "join", "code": room.code, "name": f"Pupil {k + 1}"}
         tokens.append(room.answer("", "192.0.2.7", asked)["token"])
         text = "SI|F(1, 50);" * (k % 3 + 1)
@@ -364,7 +366,7 @@ def test_a_picture_is_seen_large_while_the_next_one_is_made(
     teacher.evaluate(HOLDS)
     for language in ("es", "en"):  # each makes it anew
         with teacher.expect_response(
-            lambda found: '"class_text"' in (found.request.post_data or "")
+            lambda response: '"class_text"' in (response.request.post_data or "")
         ):
             speak(teacher, language)
         teacher.wait_for_function(HELD)
@@ -494,12 +496,12 @@ def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -
     teacher.click("#class_settings")
     teacher.click("[data-text=class_take]")
     linked(ana, "Your turn is over.")
-    said(ana, "Robots: 0.")
+    wait_for_status(ana, "Robots: 0.")
     teacher.click("#class_window [data-text=link_look]")
     teacher.locator(f"#class_window select option[value='{robot.port}']").wait_for(state="attached")
     teacher.locator("#class_window select").select_option(robot.port)
     teacher.click("[data-text=class_give]")
-    said(ana, "Robots: 1.")
+    wait_for_status(ana, "Robots: 1.")
     teacher.click("#class_window [data-text=close]")
 
 
@@ -508,7 +510,7 @@ def test_a_robot_that_is_off_is_said(ana: Page, robot: PtyRobot) -> None:
     robot.switch_off()
     asks(ana)
     linked(ana, "Nothing responds.")
-    said(ana, "You are in the class, ")
+    wait_for_status(ana, "You are in the class, ")
 
 
 def test_everything_is_seen_and_axe_finds_nothing(
@@ -564,8 +566,8 @@ def test_the_work_of_a_class_is_saved_opened_and_given_back(
         teacher.click("[data-text=class_save]")
     file = tmp_path / "class.json"
     saving.value.save_as(file)
-    found = {each["name"]: each["text"] for each in json.loads(file.read_text())["pupils"]}
-    assert found["Ana"] == "F(1, 77)"
+    texts = {pupil["name"]: pupil["text"] for pupil in json.loads(file.read_text())["pupils"]}
+    assert texts["Ana"] == "F(1, 77)"
     write(ana, "F(1, 33)")
     for name, says in (("bad.json", "bad.json is not saved work"), ("class.json", "Opened. ")):
         (tmp_path / "bad.json").write_text('{"tiniscript_class": 1, "pupils": [{"name": 5}]}')
@@ -615,7 +617,7 @@ def test_work_is_kept_until_the_page_has_said_that_it_has_it(
     row.locator("button").click()
     row.filter(has_text="Ana is getting the work back.").wait_for()
     noted(ana, "Your teacher gave you back your work.")
-    said(ana, "The teacher’s computer is not responding.")
+    wait_for_status(ana, "The teacher’s computer is not responding.")
     assert "F(1, 77)" in str(taught.room.works())
     ana.reload()
     checked(ana)
@@ -648,11 +650,11 @@ def test_who_closes_the_page_and_comes_back_is_the_same_pupil(
     page.locator("#class_pupil input").nth(0).fill(taught.room.code)
     page.locator("#class_pupil input").nth(1).fill("noa")
     page.click("[data-text=class_join]")
-    said(page, "You are in the class, Noa.")
+    wait_for_status(page, "You are in the class, Noa.")
     assert tile(teacher, "Noa").count() == 1
     page.close()
     only_ana(taught)
-    wrong = [each for each in pages.wrong if "403" not in each]
+    wrong = [error for error in pages.wrong if "403" not in error]
     assert wrong == []
     pages.wrong.clear()
 
@@ -711,10 +713,10 @@ def ends(pages: Pages, taught: Class, erases: bool) -> None:
     )
     checked(ana)
     kept = "JSON.stringify(localStorage) + JSON.stringify(sessionStorage)"
-    found = ana.evaluate(kept)
-    assert ("F(1, 33)" in found) is not erases
+    ended = ana.evaluate(kept)
+    assert ("F(1, 33)" in ended) is not erases
     if erases:
-        assert "tiniscript." not in found
+        assert "tiniscript." not in ended
         write(ana, "F(1, 44)")  # what is written now is kept in this page alone
         ana.click("#my_programs")
         ana.click("#new")

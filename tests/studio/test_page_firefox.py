@@ -63,9 +63,9 @@ def visited(firefox: Browser, address: str) -> Iterator[tuple[Pages, Page]]:
 
 @pytest.fixture
 def page(visited: tuple[Pages, Page]) -> Iterator[Page]:
-    pages, found = visited
-    studio.begin_anew(found)
-    yield found
+    pages, current_page = visited
+    studio.begin_anew(current_page)
+    yield current_page
     wrong, pages.wrong[:] = pages.wrong[:], []
     assert not wrong
 

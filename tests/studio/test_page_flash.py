@@ -12,7 +12,7 @@ from tests.machines.bootloaders import bootloader
 from tests.machines.uno import needed
 from tests.support import studio, studio_serial
 from tests.support.flashed_boards import new_board, to_hex
-from tests.support.page_link import said
+from tests.support.page_link import wait_for_message
 from tests.support.platformio import firmware, shared
 from tests.support.studio import enter
 from tests.support.waiting import until
@@ -44,28 +44,32 @@ def test_a_new_board_becomes_a_robot(
         new_board(bootloader("uno")) as uno,
         studio_serial.context(playwright, tmp_path, uno.pty, server.address) as context,
     ):
-        found = context.pages[0]
-        found.set_default_timeout(120_000)
-        enter(found, server.address)
-        found.click("#side_real")
-        found.locator("#link_port option").first.wait_for(state="attached")
-        found.click("#link_teacher summary")
+        first_page = context.pages[0]
+        first_page.set_default_timeout(120_000)
+        enter(first_page, server.address)
+        first_page.click("#side_real")
+        first_page.locator("#link_port option").first.wait_for(state="attached")
+        first_page.click("#link_teacher summary")
         # Of another robot there is no firmware here; what is no firmware is not written.
-        found.select_option("#robot", "liner")
-        found.click("#flash_write")
-        said(found, "There is no firmware here for this robot on this board.")
-        found.select_option("#robot", "tinibot")
-        found.set_input_files("#flash_file", {"name": "<b>.hex", "mimeType": "", "buffer": b":00"})
-        said(found, "<b>.hex is ready")
-        found.click("#flash_write")
-        said(found, "That is not a complete HEX file")
-        assert found.locator("#flash_board option").all_inner_texts() == ["Uno"]
+        first_page.select_option("#robot", "liner")
+        first_page.click("#flash_write")
+        wait_for_message(first_page, "There is no firmware here for this robot on this board.")
+        first_page.select_option("#robot", "tinibot")
+        first_page.set_input_files(
+            "#flash_file", {"name": "<b>.hex", "mimeType": "", "buffer": b":00"}
+        )
+        wait_for_message(first_page, "<b>.hex is ready")
+        first_page.click("#flash_write")
+        wait_for_message(first_page, "That is not a complete HEX file")
+        assert first_page.locator("#flash_board option").all_inner_texts() == ["Uno"]
         # Cancelled in the middle it does nothing, and is whole once it has got its firmware again.
-        found.click("#flash_write")
-        done = "document.querySelector('#flash_progress').value"  # the page evaluates no text
-        until(lambda: float(found.evaluate(done)) >= 0.1, "a tenth is written")
-        found.click("#flash_cancel")
-        said(found, "Cancelled halfway ")
-        assert found.locator("#flash_cancel, #flash_progress").filter(visible=True).count() == 0
-        found.click("#flash_write")
-        said(found, "Connected: ")
+        first_page.click("#flash_write")
+        progress = "document.querySelector('#flash_progress').value"  # the page evaluates no text
+        until(lambda: float(first_page.evaluate(progress)) >= 0.1, "a tenth is written")
+        first_page.click("#flash_cancel")
+        wait_for_message(first_page, "Cancelled halfway ")
+        assert (
+            first_page.locator("#flash_cancel, #flash_progress").filter(visible=True).count() == 0
+        )
+        first_page.click("#flash_write")
+        wait_for_message(first_page, "Connected: ")

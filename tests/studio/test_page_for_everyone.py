@@ -94,8 +94,10 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
         if screen not in ("teacher", "programs"):  # one is scrolled, one in front of all
             for end in (0,) if size in SCREENS else (0, 10_000):
                 look = LOOK if size in SCREENS else SCROLLED
-                found = page.evaluate(f"(end) => {{ scrollTo(0, end); return ({look})(); }}", end)
-                assert found == [], (screen, size, end)
+                problems = page.evaluate(
+                    f"(end) => {{ scrollTo(0, end); return ({look})(); }}", end
+                )
+                assert problems == [], (screen, size, end)
         if size in SCREENS:
             assert page.evaluate(CUT) == [], (screen, size)
         if size in SCREENS and screen in LEAST:
@@ -182,9 +184,9 @@ def test_the_keyboard_alone_is_enough(page: Page) -> None:
 def test_a_screen_reader_hears_what_is_said(page: Page) -> None:
     write(page, "F(-2, 80)")
     assert page.get_by_role("status").first.inner_text() == "1 mistake"
-    said = "Line 1: -2 is out of range: here F takes 0 or more. Try: B(2, 80)"
-    assert page.get_by_role("status").get_by_text(said).count() == 1
-    assert page.get_by_role("button", name=said).inner_text() == "Line 1"
+    sentence = "Line 1: -2 is out of range: here F takes 0 or more. Try: B(2, 80)"
+    assert page.get_by_role("status").get_by_text(sentence).count() == 1
+    assert page.get_by_role("button", name=sentence).inner_text() == "Line 1"
     assert page.get_by_role("textbox", name="Program").count() == 1
     assert page.get_by_role("combobox", name="Robot").count() == 1
     page.get_by_role("button", name="Apply the fix: line 1, B(2, 80)").wait_for()
@@ -222,7 +224,7 @@ def test_the_policy_holds(page: Page, only_page: tuple[Pages, Page]) -> None:
         other.setblocking(False)
         with pytest.raises(BlockingIOError):
             other.accept()
-    assert sum("Content Security Policy" in each for each in wrong) >= 5
+    assert sum("Content Security Policy" in error for error in wrong) >= 5
     wrong.clear()
 
 
@@ -289,9 +291,9 @@ def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
             tab.close()
             tab = context.new_page()
             enter(tab, server.address)
-            if found := tab.locator("html[data-build]").count():
+            if count := tab.locator("html[data-build]").count():
                 break
-        assert found == 1
+        assert count == 1
         assert image(tab) == compile("SI|F(3, 30)").image  # and the work is kept
     context.close()
 
@@ -314,7 +316,7 @@ def test_the_service_worker_has_every_file() -> None:
         "licences.txt",
         serving.FIRMWARE_FILE,
     }
-    said = json.loads(source.partition("LANGUAGES = ")[2].partition(";")[0])
-    assert set(said) == set(languages())
-    later = {name for code in said if code != SOURCE_LANGUAGE for name in said[code]}
+    codes = json.loads(source.partition("LANGUAGES = ")[2].partition(";")[0])
+    assert set(codes) == set(languages())
+    later = {name for code in codes if code != SOURCE_LANGUAGE for name in codes[code]}
     assert set(listed) == {"./", *names} - later and later < names

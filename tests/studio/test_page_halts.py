@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.page_breakpoints import COUNTING_PROGRAM, press_margin
-from tests.support.page_link import connect, first, first_robot, page, pages, robot, said
+from tests.support.page_link import (
+    connect,
+    first,
+    first_robot,
+    page,
+    pages,
+    robot,
+    wait_for_message,
+)
 from tests.support.page_robot import running
 from tests.support.pty_robot import PtyRobot
 from tests.support.silent_serial import SILENT_SERIAL
@@ -56,13 +64,13 @@ def put(page: Page, text: str, lines: tuple[int, ...]) -> None:
 
 
 def is_halted(page: Page) -> bool:
-    """Wait for the next halt, and what is told of it; return False where the program has ended."""
+    """Wait for the next halt, and what is said about it; False where the program has ended."""
     halt = page.locator("html[data-halt=read]")
     halt.or_(page.locator("html[data-halt=none]")).wait_for(state="attached")
     return halt.count() == 1
 
 
-def seen(page: Page, variables: int) -> tuple[str, list[str]]:
+def state_of(page: Page, variables: int) -> tuple[str, list[str]]:
     """Return what is marked, and the values of the variables."""
     values = page.locator("#link_values:not(.past) dd").all_inner_texts()
     return running(page), values[:variables]
@@ -73,15 +81,15 @@ def walk(page: Page, begin: str, button: str, text: str) -> list[tuple[str, list
     kept the page silent until its robot was stopped."""
     variables = len(check(text.encode(), "tinibot", "en").variables)
     for _ in range(UPLOADS):
-        found = []
+        halts = []
         page.click(begin)
         page.locator("html[data-halt=read]").wait_for(state="attached")
         while is_halted(page):
-            found.append(seen(page, variables))
+            halts.append(state_of(page, variables))
             page.click(button)
-        said(page, re.compile(r"Done\.|[Ss]topped"))
+        wait_for_message(page, re.compile(r"Done\.|[Ss]topped"))
         if "Done." in page.locator("#link_said").inner_text():
-            return found
+            return halts
     raise AssertionError(f"stopped {UPLOADS} times")
 
 
@@ -95,7 +103,7 @@ def virtual(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple[str, l
     parts = tuple(place.offset for place in program.places)
     marks = Marks(parts, breaks, len(program.variables), is_held=steps)
     it = Simulation("tinibot", worlds.load("obstacles"), program.image, marks)
-    found = []
+    halts = []
     while it.robot.is_running:
         if it.held_at is None:
             it.go(1)
@@ -109,13 +117,13 @@ def virtual(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple[str, l
             ("TRUE" if value else "FALSE") if variable.is_yes_no else f"{value:g}"
             for variable, value in zip(program.variables, state["variables"], strict=True)
         ]
-        found.append((part, values))
+        halts.append((part, values))
         if steps:
             it.step(60_000)
         else:
             it.go_on()
             it.go(1)
-    return found
+    return halts
 
 
 @pytest.mark.sampled("name")
@@ -138,7 +146,7 @@ def test_a_step_goes_to_the_next_part_of_the_program(page: Page, name: str) -> N
 
 
 def halts(page: Page, line: int) -> None:
-    said(page, f"Stopped before line {line}.")
+    wait_for_message(page, f"Stopped before line {line}.")
     page.locator("html[data-halt=read]").wait_for(state="attached")
 
 
@@ -179,10 +187,10 @@ def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: Pty
     page.wait_for_timeout(500)
     assert page.locator("html[data-halt=running]").count()
     page.click("#stop")
-    said(page, "Stopped: ")
+    wait_for_message(page, "Stopped: ")
     press_margin(page, 5)
     page.click("#link_send")
-    said(page, "The robot has the program")
+    wait_for_message(page, "The robot has the program")
     page.click("#link_start")
     halts(page, 5)
 
@@ -193,11 +201,11 @@ def test_a_line_that_runs_between_takes_no_breakpoint_away(page: Page) -> None:
     page.click("#link_upload")
     halts(page, 3)
     page.click("#link_go_on")
-    said(page, "Done.")
+    wait_for_message(page, "Done.")
     page.fill("#link_line", "SHOW(6 * 7)")
     page.keyboard.press("Enter")
     page.locator("#link_shown").filter(has_text="42").wait_for()
-    said(page, "Done.")
+    wait_for_message(page, "Done.")
     page.click("#link_start")
     halts(page, 3)
 
@@ -211,7 +219,7 @@ def test_a_robot_has_the_first_four(page: Page) -> None:
     for line in (1, 2, 3, 4):
         halts(page, line)
         page.click("#link_go_on")
-    said(page, "Done.")
+    wait_for_message(page, "Done.")
     press_margin(page, 1)
     note.wait_for(state="hidden")
 
@@ -229,9 +237,9 @@ def test_a_robot_that_cannot_halt_says_so_and_runs(
         press_margin(page, 2)
         assert "This robot cannot stop at breakpoints." in note.inner_text()
         page.click("#link_upload")
-        said(page, "Done.")
+        wait_for_message(page, "Done.")
         page.click("#link_step")
-        said(page, "This robot cannot stop at breakpoints.")
+        wait_for_message(page, "This robot cannot stop at breakpoints.")
     connect_again(page, robot)
     assert note.is_hidden()
 
@@ -273,13 +281,13 @@ def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     offered.wait_for(state="hidden")
     press_margin(other, 2)
     offered.click()
-    said(other, "but the robot no longer reads typed text")
+    wait_for_message(other, "but the robot no longer reads typed text")
     assert other.locator("html[data-robot=none]").count() == 1
     assert other.locator("#flash_halts").is_checked()
     assert other.input_value("#flash_board") == "uno"
     assert not [name for name in asked if name.endswith(".hex")]
     other.click("#flash_write")
-    said(other, "That is not a complete HEX file")
+    wait_for_message(other, "That is not a complete HEX file")
     assert [name for name in asked if name.endswith(".hex")] == [f"{HALTING}-uno-digest.hex"]
     other.select_option("#flash_board", "nano")
     other.locator("#flash_halts").wait_for(state="hidden")
@@ -315,7 +323,7 @@ def test_what_is_halted_ends_as_what_runs_does(page: Page, robot: PtyRobot, how:
         robot.push()
     else:
         robot.switch_off_and_on()
-    said(page, re.compile("Stopped: |was stopped with its button|The robot restarted"))
+    wait_for_message(page, re.compile("Stopped: |was stopped with its button|The robot restarted"))
     page.locator("html[data-halt=none]").wait_for(state="attached")
     assert page.locator("#link_values").is_hidden() and running(page) == ""
     assert page.locator("#link_go_on").is_disabled() and page.locator("#link_step").is_enabled()
@@ -331,7 +339,7 @@ def test_a_program_that_is_stopped_on_its_way_never_starts(
     pressed: list[bool] = []
 
     def press(route: Route) -> None:
-        asked = [each["do"] for each in (route.request.post_data_json or {}).get("asked", [])]
+        asked = [request["do"] for request in (route.request.post_data_json or {}).get("asked", [])]
         response = route.fetch()
         if what in asked and not pressed:
             pressed.append(True)
@@ -341,7 +349,7 @@ def test_a_program_that_is_stopped_on_its_way_never_starts(
     page.route("**/robots", press)
     page.click("#link_upload")
     hears(page, lambda: pressed, "it is on its way")
-    said(page, re.compile("Stopped: |stopped"))
+    wait_for_message(page, re.compile("Stopped: |stopped"))
     page.wait_for_timeout(1000)
     page.unroute_all(behavior="wait")
     assert "MOTORS 80 80" not in robot.did[before:]
@@ -354,7 +362,7 @@ def test_a_recording_of_a_halted_program_is_as_long_as_one_that_was_not(page: Pa
     halts(page, 3)
     page.wait_for_timeout(2500)
     page.click("#link_go_on")
-    said(page, "Done.")
+    wait_for_message(page, "Done.")
     page.click("#runs_open" if page.locator("#runs_open").is_visible() else "#side_virtual")
     page.click("#runs_open")
     rows = page.locator("#runs_list li").all_inner_texts()

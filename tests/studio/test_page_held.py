@@ -12,7 +12,7 @@ import pytest
 
 from tests.support import studio
 from tests.support.node import in_node
-from tests.support.page_link import said
+from tests.support.page_link import wait_for_message
 from tests.support.silent_serial import SILENT_SERIAL
 from tests.support.studio import Pages, checked, enter, hears
 from tiniscript.studio import serving
@@ -35,15 +35,15 @@ def server(browser: Browser) -> Iterator[serving.Server]:
         serving.FIRMWARE_FILE: serving.File(json.dumps(rows).encode(), "application/json"),
         FILE: serving.File(b":01000000FF00\n:00000001FF\n", "text/plain"),
     }
-    with studio.served(page) as made:
-        yield made
+    with studio.served(page) as server:
+        yield server
 
 
 @pytest.fixture
 def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
-    found = Pages(browser, server.address)
-    yield found
-    found.close()
+    opened_pages = Pages(browser, server.address)
+    yield opened_pages
+    opened_pages.close()
 
 
 class Held:
@@ -97,15 +97,15 @@ def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
     for count, ends in enumerate(("cancel", "nothing"), 1):
         page.click("#flash_write")
         hears(page, partial(held.has, count), "it is fetched")
-        said(page, "Fetching the firmware. Nothing has been written yet.")
+        wait_for_message(page, "Fetching the firmware. Nothing has been written yet.")
         page.clock.fast_forward(4000)
-        said(page, "The firmware has not arrived.")
+        wait_for_message(page, "The firmware has not arrived.")
         if ends == "cancel":
             page.click("#flash_cancel")
-            said(page, "Cancelled. Nothing was written: the board has not changed.")
+            wait_for_message(page, "Cancelled. Nothing was written: the board has not changed.")
         else:
             page.clock.fast_forward(25_000)
-            said(page, "The firmware did not arrive, so nothing was written")
+            wait_for_message(page, "The firmware did not arrive, so nothing was written")
         assert page.locator("#flash_cancel, #flash_progress").filter(visible=True).count() == 0
     assert page.evaluate("window.port.opened") == 0
 
@@ -120,11 +120,11 @@ def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
     for _ in range(2):
         page.click("#flash_write")
         hears(page, lambda: held.routes, "it is fetched")
-        said(page, "Fetching the firmware. Nothing has been written yet.")
+        wait_for_message(page, "Fetching the firmware. Nothing has been written yet.")
         page.clock.fast_forward(4000)
-        said(page, "The firmware has not arrived.")
+        wait_for_message(page, "The firmware has not arrived.")
         page.click("#flash_cancel")
-        said(page, "Cancelled. Nothing was written: the board has not changed.")
+        wait_for_message(page, "Cancelled. Nothing was written: the board has not changed.")
     assert page.evaluate("window.port.opened") == 0
 
 
@@ -136,15 +136,15 @@ def test_a_port_that_takes_no_bytes_is_closed_and_may_be_tried_again(
     for count in (1, 2):
         page.click("#link_serial")
         hears(page, lambda: page.evaluate("window.port.isOpen"), "it is open")
-        said(page, "Connecting")
+        wait_for_message(page, "Connecting")
         hears(page, lambda: page.locator("#link_ways").is_visible(), "it is given up")
-        said(page, STUCK)
+        wait_for_message(page, STUCK)
         hears(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
         assert page.evaluate("window.port.opened") == count
     page.click("#flash_write")
-    said(page, "Writing and verifying the firmware")
+    wait_for_message(page, "Writing and verifying the firmware")
     page.click("#flash_cancel")
-    said(page, "Cancelled. Nothing was written")
+    wait_for_message(page, "Cancelled. Nothing was written")
     hears(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
 
 
@@ -154,7 +154,7 @@ def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: servi
     page.evaluate("() => { window.port.open = () => new Promise(() => {}); }")
     page.click("#link_serial")
     page.click("#link_leave")
-    said(page, "Disconnected.")
+    wait_for_message(page, "Disconnected.")
     assert page.locator("#link_serial:enabled").is_visible()
 
 
@@ -183,19 +183,19 @@ def hasty(browser: Browser) -> Iterator[serving.Server]:
             data = data.replace(b"comes 0s 3s", b"comes 0s .5s")
         if data != file.data:
             page[name] = serving.File(data, file.content_type)
-    with studio.served(page) as made:
-        yield made
+    with studio.served(page) as server:
+        yield server
 
 
 @pytest.fixture
 def visits(browser: Browser, hasty: serving.Server) -> Iterator[Pages]:
-    found = Pages(browser, hasty.address)
-    yield found
-    found.wrong.clear()  # a browser complains of each file that it has not got
-    found.close()
+    opened_pages = Pages(browser, hasty.address)
+    yield opened_pages
+    opened_pages.wrong.clear()  # a browser complains of each file that it has not got
+    opened_pages.close()
 
 
-# Keeps all that is told of the virtual robot, however soon something else is.
+# Keeps all that is said about the virtual robot, however soon something else is.
 TOLD = """window.told = [];
 new MutationObserver(() => {
   const said = document.querySelector('#doing')?.textContent;

@@ -45,17 +45,17 @@ def open_lesson(page: Page, number: int, step: int = 0) -> None:
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_each_kind_of_block_is_new_in_the_first_lesson_that_speaks_of_it(language: str) -> None:
     """Each lesson has a block to look for; what one has brought, no later one takes away."""
-    seen: set[str] = set()
+    taught_words: set[str] = set()
     for number in LESSONS:
         taught, new = (
             f(number, language) for f in (page_lessons.taught_kinds, page_lessons.new_pieces)
         )
         kinds = {piece.partition(" ")[0] for piece in new}
         assert new and kinds <= set(taught)
-        assert set(taught) - seen <= kinds
+        assert set(taught) - taught_words <= kinds
         assert set(page_lessons.needed_kinds(number, language)) <= set(taught) <= KINDS.keys()
-        seen |= set(taught)
-        assert set(page_lessons.offered_kinds(number, language)) == seen
+        taught_words |= set(taught)
+        assert set(page_lessons.offered_kinds(number, language)) == taught_words
 
 
 def test_a_piece_is_what_somebody_looks_for() -> None:
@@ -79,7 +79,7 @@ def test_the_level_rises_to_what_a_lesson_needs_and_never_falls(
     for number in some_of(pytestconfig, "levels of lessons", LESSONS, 4):
         open_lesson(page, number)
         needed = set(page_lessons.needed_kinds(number, "en")) & kinds["all"]
-        least = next(each for each in LEVELS if needed <= kinds[each] | {"set"})
+        least = next(level for level in LEVELS if needed <= kinds[level] | {"set"})
         level = max(level, least, key=LEVELS.index)
         assert page.input_value("#level") == level, number
     page.select_option("#level", "few")
@@ -195,20 +195,20 @@ def test_what_a_lesson_names_of_a_block_is_what_the_block_says(
     """Nothing that is read there is of a text; the only codes are names that a program gives."""
     speak(page, language)
     shown(page)
-    found = 0
+    count = 0
     lessons = some_of(pytestconfig, "words of lessons", LESSONS, 4)
     for number in lessons:
         open_lesson(page, number)
         is_line_on_floor = has_line_on_floor(number)
         for k in range(page.locator("#lesson_steps button").count()):
             page.locator("#lesson_steps button").nth(k).click()
-            said, codes, on_blocks, names = page.evaluate(READ)
-            assert text_only_words(said, language, is_line_on_floor=is_line_on_floor) == []
+            texts, codes, on_blocks, names = page.evaluate(READ)
+            assert text_only_words(texts, language, is_line_on_floor=is_line_on_floor) == []
             assert text_only_words(names, language, is_line_on_floor=True) == []
             assert not [code for code in codes if code in WORDS or not code.isidentifier()], codes
-            assert not [each for each in on_blocks if NO_LABEL.search(each)], on_blocks
-            found += len(on_blocks)
-    assert found > len(lessons)
+            assert not [row for row in on_blocks if NO_LABEL.search(row)], on_blocks
+            count += len(on_blocks)
+    assert count > len(lessons)
 
 
 @pytest.mark.sampled("language")

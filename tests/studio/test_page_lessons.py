@@ -51,8 +51,8 @@ def test_each_lesson_says_of_a_wrong_answer_what_the_command_says(page: Page, pa
     for number, folder in list(enumerate(FOLDERS, 1))[part::6]:
         _, wrong = catalogue.answers(folder)
         choose_lesson(page, number)
-        said = check_answer(page, wrong[0].program)
-        assert said == ("failed", [wrong[0].sentence_by_language["en"], *rest(page)]), number
+        verdict = check_answer(page, wrong[0].program)
+        assert verdict == ("failed", [wrong[0].sentence_by_language["en"], *rest(page)]), number
         assert page.inner_text("#lesson_said").startswith("Not yet"), number
 
 
@@ -82,8 +82,8 @@ def test_any_program_can_be_checked(page: Page) -> None:
         ("\0🤖<b>", "mistakes"), ("SI|SHOW(1 / 0 * DISTANCE)", "failed"),
         ("X = 0; SHOW(1 / X)", "failed"),
     ):  # fmt: skip
-        found, said = check_answer(page, program)
-        assert (found, len(said)) == (verdict, verdict == "failed"), program
+        shown_verdict, sentences = check_answer(page, program)
+        assert (shown_verdict, len(sentences)) == (verdict, verdict == "failed"), program
 
 
 @drawn
@@ -208,16 +208,16 @@ def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
         for button in page.locator("#lesson_steps button").all():
             button.click()
-            seen, whole = page.evaluate(
+            height, whole = page.evaluate(
                 "(({clientHeight, scrollHeight}) => [clientHeight, scrollHeight])"
                 "(document.querySelector('#lesson_page'))"
             )
-            assert seen >= min(PAGES[size], whole), (number, button.inner_text())
-            assert size[0] != 1366 or seen == whole
+            assert height >= min(PAGES[size], whole), (number, button.inner_text())
+            assert size[0] != 1366 or height == whole
             if page.locator("#lesson_hint").is_visible() and size == (1024, 600):
                 page.click("#lesson_hint summary")
-                seen = page.evaluate("document.querySelector('#lesson_page').clientHeight")
-                assert seen >= 100, "what is to be done, beside a hint"
+                height = page.evaluate("document.querySelector('#lesson_page').clientHeight")
+                assert height >= 100, "what is to be done, beside a hint"
                 page.click("#lesson_hint summary")
     for number in (1, 7):  # its name is whole, beside its number or over the step
         page.select_option("#lesson", str(number))
@@ -252,11 +252,11 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     choose_lesson(page, 12)
     _, wrong = catalogue.answers(FOLDERS[11])
     assert check_answer(page, wrong[0].program)[0] == "failed"
-    said = page.inner_text("#lesson_said")
+    message = page.inner_text("#lesson_said")
     assert page.input_value("#robot") == "liner"
     label = page.locator("#world option:checked").inner_text()
     seed = label.rpartition(" ")[2]
-    assert label.startswith("Lesson 12, world ") and seed in said
+    assert label.startswith("Lesson 12, world ") and seed in message
     assert page.inner_text("#lesson_stars").count("★") == int(seed) - 1
     speak(page, "es")
     assert page.locator("#world option:checked").inner_text().startswith("Lección 12, mundo ")
@@ -304,8 +304,8 @@ def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(
     right, _ = catalogue.answers(FOLDERS[1])
     kept = (json.dumps(["01_first_line", 5, "<b>", "x" * 500, None]), '"x"', "no JSON", "[]")
     locator = page.locator("#lesson option", has_text="✓")
-    for k, each in enumerate(kept):
-        page.evaluate("kept => localStorage.setItem('tiniscript.lessons', kept)", each)
+    for k, lesson in enumerate(kept):
+        page.evaluate("kept => localStorage.setItem('tiniscript.lessons', kept)", lesson)
         speak(page, "es")
         page.locator("#lesson option", has_text="línea").first.wait_for(state="attached")
         speak(page, "en")

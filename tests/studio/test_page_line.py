@@ -33,11 +33,11 @@ class Page:
 
     def go(self, milliseconds: int, *asked: dict[str, Any], is_away: bool = False) -> None:
         """Let time go on. A page that is away asks for nothing."""
-        for each in range(milliseconds):
+        for ms in range(milliseconds):
             now_ms = self.robot.now_ms + 1
             sent = b""
             if not is_away:
-                answer = self.page.go(self._back, now_ms, list(asked) if each == 0 else [])
+                answer = self.page.go(self._back, now_ms, list(asked) if ms == 0 else [])
                 sent, self._back = bytes.fromhex(answer["send"]), b""
                 self.news += answer["news"]
                 self.file = answer.get("keys", self.file)
@@ -47,9 +47,9 @@ class Page:
         self._count += 1
         self.go(1, {"do": do, "id": self._count, **fields})
         for _ in range(limit_ms):
-            found = [each for each in self.news if each.get("id") == self._count]
-            if found:
-                return found[0]
+            answers = [item for item in self.news if item.get("id") == self._count]
+            if answers:
+                return answers[0]
             self.go(1)
         raise AssertionError("no answer")
 
@@ -64,9 +64,9 @@ class Page:
 
 @pytest.fixture
 def page() -> Page:
-    found = Page()
-    assert found.ask("hello")["robot"]["robot"] == "tinibot"
-    return found
+    made_page = Page()
+    assert made_page.ask("hello")["robot"]["robot"] == "tinibot"
+    return made_page
 
 
 def test_a_page_that_was_away_stops_its_robot_when_it_is_back(page: Page) -> None:
@@ -151,7 +151,7 @@ def test_every_shipped_robot_can_be_named() -> None:
 def test_a_page_is_told_where_its_program_is(page: Page) -> None:
     page.upload(FOREVER)
     page.go(500)
-    assert "PLACE" in {each.get("event") for each in page.news}
+    assert "PLACE" in {item.get("event") for item in page.news}
 
 
 STICK = "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nIF(KEY_B);\nS;\nENDIF;\nW(0.02);\nEND_LOOP"
@@ -209,10 +209,10 @@ def test_keys_end_no_upload_and_take_no_place_of_it(page: Page) -> None:
     for k in range(40):
         page.go(20, {"do": "keys", "id": 200 + k, "keys": 1, "x": 0, "y": k})
     page.go(2000)
-    answers = {each["id"]: each for each in page.news if "id" in each}
+    answers = {item["id"]: item for item in page.news if "id" in item}
     assert answers[99].get("ok")
     assert {*range(100, 160), *range(200, 240)} <= answers.keys(), "each has its answer"
-    assert not any(each.get("said") for each in answers.values())
+    assert not any(answer.get("said") for answer in answers.values())
     names = [{"do": "hello", "id": 300 + k} for k in range(MOST_WAITING)]
     keys = {"do": "keys", "id": 400, "keys": 0, "x": 0, "y": 0}
     page.go(1, *names, keys)

@@ -21,8 +21,8 @@ from tests.support.page_link import (
     page,
     pages,
     robot,
-    said,
     upload_until_it_runs,
+    wait_for_message,
 )
 from tests.support.page_screens import LOOK, SCREENS
 from tests.support.pty_robot import PtyRobot
@@ -61,22 +61,22 @@ def test_a_program_and_a_line_are_sent_and_run(page: Page, robot: PtyRobot) -> N
     write(page, text)
     before = len(robot.did)
     page.click("#link_upload")
-    said(page, "Done.")
+    wait_for_message(page, "Done.")
     assert page.locator("#link_shown").inner_text() == "2.5\n1 < 2 TRUE"
     assert "MOTORS 80 80" in robot.did[before:]
     page.click("#link_send")
-    said(page, "The robot has the program. ")
+    wait_for_message(page, "The robot has the program. ")
     page.fill("#link_line", "SHOW(6 * 7)")
     page.keyboard.press("Enter")
-    said(page, "Done.")
+    wait_for_message(page, "Done.")
     assert page.locator("#link_shown").inner_text() == "6 * 7 42"
     page.fill("#link_line", "F(2, 500)")
     page.keyboard.press("Enter")
-    said(page, "Try: ")
+    wait_for_message(page, "Try: ")
     assert not robot.moves
     write(page, "X = 0;\nF(0.1, 50);\nSHOW(1 / X)")
     page.click("#link_upload")
-    said(page, "Line 3: the program divided by 0.")
+    wait_for_message(page, "Line 3: the program divided by 0.")
     page.locator(".cm-activeLine").filter(has_text="SHOW").wait_for()
 
 
@@ -84,12 +84,12 @@ def test_a_robot_that_restarts_is_told(page: Page, robot: PtyRobot) -> None:
     drives(page, robot)
     robot.switch_off()
     robot.switch_on()
-    said(page, "The robot restarted, which ended its program.")
+    wait_for_message(page, "The robot restarted, which ended its program.")
     assert not robot.moves
     page.click("#link_upload")  # the connection goes on
-    said(page, "The robot has the program")
+    wait_for_message(page, "The robot has the program")
     page.click("#stop")
-    said(page, "Stopped: the robot has confirmed the stop.")
+    wait_for_message(page, "Stopped: the robot has confirmed the stop.")
 
 
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
@@ -104,7 +104,7 @@ def test_stop_stops(page: Page, robot: PtyRobot) -> None:
             page.click("#stop")
         robot.until(lambda: not robot.moves, f"it stands: {way}")
         page.click("#side_real")
-        said(page, "Stopped: the robot has confirmed the stop.")
+        wait_for_message(page, "Stopped: the robot has confirmed the stop.")
 
 
 def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
@@ -114,22 +114,22 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
     began_ms = robot.robot_ms
     hang(page, HUNG_MS)
     assert robot.stands_after_ms(began_ms) < 0.9 * HUNG_MS
-    said(page, "Stopped")  # and it is told when it is back
+    wait_for_message(page, "Stopped")  # and it is told when it is back
     drives(page, robot)
     page.evaluate(
         "Object.defineProperty(document, 'visibilityState', {value: 'hidden', configurable: true});"
         "document.dispatchEvent(new Event('visibilitychange'))"
     )
     robot.until(lambda: not robot.moves, "it stands")
-    said(page, "this page was hidden")
+    wait_for_message(page, "this page was hidden")
     page.evaluate("delete document.visibilityState")
     drives(page, robot)
     page.context.set_offline(True)
     robot.until(lambda: not robot.moves, "it stands")
-    said(page, "tsc studio has stopped responding")
+    wait_for_message(page, "tsc studio has stopped responding")
     page.context.set_offline(False)
     wrong = first[0].wrong
-    assert wrong and all("ERR_INTERNET_DISCONNECTED" in each for each in wrong)
+    assert wrong and all("ERR_INTERNET_DISCONNECTED" in error for error in wrong)
     wrong.clear()
 
 
@@ -139,43 +139,43 @@ def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: Pty
     other.click("#side_real")
     other.locator("#link_port option").first.wait_for(state="attached")
     other.click("#link_connect")
-    said(other, "Another tab of this browser is driving this robot.")
+    wait_for_message(other, "Another tab of this browser is driving this robot.")
     drives(page, robot)
     other.click("#stop")  # whoever sees STOP may press it
     robot.until(lambda: not robot.moves, "it stands")
     other.close()
     while BLINKS not in page.locator("#link_said").inner_text():
         page.click("#link_identify")  # refused for a moment after a STOP for all
-        said(page, re.compile(f"{VOID}|{BLINKS}"))
+        wait_for_message(page, re.compile(f"{VOID}|{BLINKS}"))
 
 
 @drawn
 def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     page.click("#link_identify")
-    said(page, BLINKS)
+    wait_for_message(page, BLINKS)
     page.click("#link_teacher summary")
     page.fill("#link_rename_to", "Ñandú")
     page.click("#link_rename")
-    said(page, "The robot is now called Ñandú.")
+    wait_for_message(page, "The robot is now called Ñandú.")
     assert page.locator("#link_name").inner_text() == "Ñandú"
     page.fill("#trim_balance", "-7")
     page.check("#trim_left")
     page.click("#trim_set")
-    said(page, "The robot has saved these settings.")
+    wait_for_message(page, "The robot has saved these settings.")
     pace = page.locator("#trim_pace")
     assert pace.inner_text() == "Its speed is estimated from its kit; tsc set trim measures it."
     page.click("#link_leave")
-    said(page, "Disconnected.")
+    wait_for_message(page, "Disconnected.")
     time.sleep(0.3)
     measured = ("--speed-40", "20", "--speed-80", "45", "--turn-40", "100", "--turn-80", "212.5")
     assert pty_robots.on(robot, "set", "trim", *measured).code == 0
     time.sleep(0.3)
     page.click("#link_connect")
-    said(page, "Connected: Ñandú.")
+    wait_for_message(page, "Connected: Ñandú.")
     page.locator("#trim_left:checked").wait_for(state="attached")
     assert page.input_value("#trim_balance") == "-7"
     page.click("#trim_set")  # leaves the pace
-    said(page, "The robot has saved these settings.")
+    wait_for_message(page, "The robot has saved these settings.")
     assert pace.inner_text() == (
         "It drives 20 cm per second at 40 %, and 45 at 80 %."
         " It turns 100 degrees per second at 40 %, and 212.5 at 80 %."
@@ -211,7 +211,7 @@ def test_nothing_that_a_robot_says_becomes_markup(page: Page, robot: PtyRobot) -
     page.click("#link_teacher summary")
     page.fill("#link_rename_to", "<b>x</b>")
     page.click("#link_rename")
-    said(page, "The robot is now called <b>x</b>.")
+    wait_for_message(page, "The robot is now called <b>x</b>.")
     assert page.evaluate("document.querySelectorAll('script, b, img').length === window.before")
     assert not page.evaluate("'taken' in window")
     page.click("#link_leave")
@@ -231,12 +231,12 @@ def test_why_there_is_no_connection(pages: Pages) -> None:
         page.click("#side_real")
         page.locator("#link_port option").first.wait_for(state="attached")
         page.click("#link_connect")
-        said(page, "Nada responde.")
+        wait_for_message(page, "Nada responde.")
         robot.switch_on()
         page.click("#link_connect")
-        said(page, "Conectado")
+        wait_for_message(page, "Conectado")
         robot.pull()
-        said(page, "cable")
+        wait_for_message(page, "cable")
 
 
 @drawn
@@ -254,7 +254,7 @@ def test_run_with_a_mistake_stops_what_runs(page: Page, robot: PtyRobot) -> None
     with page.expect_request(lambda request: '"do":"stop"' in (request.post_data or "")):
         page.click("#link_upload")
     robot.until(lambda: not robot.moves, "it stands")
-    said(page, "The robot was stopped. Fix the program first.")
+    wait_for_message(page, "The robot was stopped. Fix the program first.")
 
 
 def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
@@ -276,8 +276,8 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
     second.evaluate("sessionStorage.setItem('tiniscript.token', '0'.repeat(32))")
     enter(second, server.address)
     second.click("#side_real")
-    said(second, "tsc studio was restarted")
-    assert [each for each in pages.wrong if "403" not in each] == []
+    wait_for_message(second, "tsc studio was restarted")
+    assert [error for error in pages.wrong if "403" not in error] == []
     pages.wrong.clear()
 
 
@@ -288,12 +288,12 @@ def test_what_the_robot_shows_has_the_name_of_its_show(page: Page) -> None:
     write(page, "X = 3;\nSHOW(X);\nSHOW(DISTANCE < -1);\nSHOW(x);\nW(1)")
     upload_until_it_runs(page)
     write(page, "S")
-    said(page, "Done.")
+    wait_for_message(page, "Done.")
     assert shown.inner_text() == "X (line 2) 3\nDISTANCE < -1 FALSE\nX (line 4) 3"
     for line in ("NEAR = 4; SHOW(NEAR)", "FAR = 4; SHOW(FAR)"):
         page.fill("#link_line", line)
         page.keyboard.press("Enter")
-        said(page, "Done.")
+        wait_for_message(page, "Done.")
         shown.filter(has_text=f"{line.split()[0]} 4").wait_for()
 
 
@@ -308,13 +308,13 @@ def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> 
         response = route.fetch()
         answer = response.json()
         news = answer.get("news", [])
-        if any(each.get("event") == "STARTED" for each in news):
+        if any(item.get("event") == "STARTED" for item in news):
             news[:0] = late
             has_begun.append(True)
         elif not has_begun:
-            values = [each for each in news if each.get("event") == "SHOW"]
-            answer["news"] = [each for each in news if each not in values]
-            late.extend({key: each[key] for key in each if key != "number"} for each in values)
+            values = [item for item in news if item.get("event") == "SHOW"]
+            answer["news"] = [item for item in news if item not in values]
+            late.extend({key: value[key] for key in value if key != "number"} for value in values)
         route.fulfill(response=response, json=answer)
 
     write(page, "NEAR = 4;\nLOOP(FOREVER);\nSHOW(NEAR);\nW(0.1);\nEND_LOOP")
@@ -329,7 +329,7 @@ def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> 
     assert names[: len(late)] == ["NEAR"] * len(late), names
     page.unroute_all(behavior="wait")
     page.click("#stop")
-    said(page, "Stopped: the robot has confirmed the stop")
+    wait_for_message(page, "Stopped: the robot has confirmed the stop")
 
 
 @drawn
@@ -338,10 +338,10 @@ def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
     upload_until_it_runs(page)
     page.locator("#record_play:visible").wait_for()
     page.click("#stop")
-    said(page, "stopped")
+    wait_for_message(page, "stopped")
     page.fill("#link_line", "SHOW(7)")
     page.keyboard.press("Enter")
-    said(page, "Done.")
+    wait_for_message(page, "Done.")
     assert events(page) == ["SHOW 5", "STOPPED"]
     upload_until_it_runs(page)
     page.locator("#record_play:visible").wait_for()
@@ -360,7 +360,7 @@ def test_a_program_of_the_button_is_recorded_from_its_first_event(
         upload_until_it_runs(page)
         page.wait_for_timeout(700)
         robot.push()
-        said(page, "Done.")
+        wait_for_message(page, "Done.")
 
     agrees(page, run)
     assert events(page) == ["SHOW 5", "SHOW 6", "DONE"]
@@ -372,11 +372,11 @@ def test_a_recording_has_what_the_program_read(page: Page) -> None:
 
     def run() -> None:
         upload_until_it_runs(page)
-        said(page, "Done.")
+        wait_for_message(page, "Done.")
 
     agrees(page, run)
-    found = events(page)
-    assert sorted(found)[:2] == ["DONE", "READ LIGHT_L 0"] and "READ LIGHT_R 0" in found
+    recorded = events(page)
+    assert sorted(recorded)[:2] == ["DONE", "READ LIGHT_L 0"] and "READ LIGHT_R 0" in recorded
     assert page.locator("#record_lacks").is_hidden()
 
 
@@ -391,9 +391,9 @@ def test_a_robot_that_does_not_tell_readings_says_so_where_the_program_has_some(
     for text, is_told in (("SHOW(1)", False), ("X = LIGHT_L;SHOW(X)", True)):
         write(page, text)
         upload_until_it_runs(page)
-        said(page, "Done.")
+        wait_for_message(page, "Done.")
         assert note.is_visible() is is_told
-        assert [each for each in events(page) if each.startswith("READ")] == []
+        assert [event for event in events(page) if event.startswith("READ")] == []
     assert note.inner_text().startswith("This robot does not report what its program reads")
 
 
@@ -416,7 +416,7 @@ def test_a_run_is_recorded_and_played_on_the_virtual_robot_beside(page: Page) ->
 
     def run() -> None:
         page.click("#link_upload")
-        said(page, "Done.")
+        wait_for_message(page, "Done.")
 
     agrees(page, run)
     assert events(page)[-2:] == ["SHOW 5", "DONE"]
@@ -453,7 +453,7 @@ def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
         marked(page, part)
         assert page.locator("#blocks .blocklyDraggable.running").count() == 1
     page.click("#view_text")
-    said(page, "Done.")
+    wait_for_message(page, "Done.")
     unmarked(page)
 
 
@@ -481,10 +481,10 @@ def upload_until_told(page: Page, at: int) -> None:
     def changed(route: Route) -> None:
         response = route.fetch()
         answer = response.json()
-        for each in answer.get("news", []):
-            if each.get("event") == "PLACE":
-                each["at"] = at
-                places.append(each["at"])
+        for item in answer.get("news", []):
+            if item.get("event") == "PLACE":
+                item["at"] = at
+                places.append(item["at"])
         route.fulfill(response=response, json=answer)
 
     page.route("**/robots", changed)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.support.command import FOREVER
-from tests.support.page_link import KIT, connect, said
+from tests.support.page_link import KIT, connect, wait_for_message
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import Pages, checked, drives, hang, hears, write
 from tests.support.torn_requests import lose_answer, refuse, tear_requests
@@ -60,12 +60,12 @@ def robot() -> Iterator[PtyRobot]:
 @pytest.fixture
 def page(opened: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     """A page of many tests, which has not connected yet."""
-    pages, found = opened
-    yield found
-    found.unroute_all(behavior="ignoreErrors")
-    found.evaluate("delete document.visibilityState")
-    if found.locator("#link_leave").is_visible():
-        found.click("#link_leave")
+    pages, current_page = opened
+    yield current_page
+    current_page.unroute_all(behavior="ignoreErrors")
+    current_page.evaluate("delete document.visibilityState")
+    if current_page.locator("#link_leave").is_visible():
+        current_page.click("#link_leave")
     pages.wrong.clear()  # a browser complains of each lost request
 
 
@@ -76,7 +76,7 @@ def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobo
         torn = tear_requests(page, "stop", lambda route: route.abort(), times=9)
         page.click("#stop")
         hears(page, lambda: not robot.moves, "it stands")
-        said(page, CONFIRMED)
+        wait_for_message(page, CONFIRMED)
         assert torn
         page.unroute_all(behavior="wait")
 
@@ -90,7 +90,7 @@ def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> 
     page.wait_for_timeout(300)
     assert page.locator("html[data-robot=connected]").count() and robot.moves
     torn = tear_requests(page, "beat", refuse, times=1000)  # but one that goes on is told
-    said(page, "tsc studio has stopped responding")
+    wait_for_message(page, "tsc studio has stopped responding")
     assert torn
 
 
@@ -114,12 +114,15 @@ def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
     page.click("#link_look")
     page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
     page.click("#link_connect")
-    said(page, "tsc studio has stopped responding")
+    wait_for_message(page, "tsc studio has stopped responding")
     page.evaluate(LISTEN)
     page.click("#link_connect")
-    said(page, "Connected: ")
+    wait_for_message(page, "Connected: ")
     messages = page.evaluate("window.told")
-    assert [each.split("…")[0].split(":")[0] for each in messages] == ["Connecting", "Connected"]
+    assert [message.split("…")[0].split(":")[0] for message in messages] == [
+        "Connecting",
+        "Connected",
+    ]
 
 
 # -- what is said of a stop
@@ -129,24 +132,24 @@ class Mute:
     """What keeps the word of a stop from a page, until it is told."""
 
     def __init__(self, page: Page, *kinds: str) -> None:
-        self.kept: list[dict[str, Any]] = []
+        self.withheld: list[dict[str, Any]] = []
         self.is_open = False
         self._kinds = kinds
         page.route("**/robots", self._handle)
 
     def keeps(self, is_any: bool) -> bool:
-        return bool(self.kept) == is_any
+        return bool(self.withheld) == is_any
 
     def _handle(self, route: Route) -> None:
         response = route.fetch()
         answer = response.json()
         news = answer.get("news", [])
-        stops = [each for each in news if each.get("event") in self._kinds]
-        answer["news"] = [each for each in news if each not in stops]
-        self.kept += [{k: each[k] for k in each if k != "number"} for each in stops]
+        stops = [item for item in news if item.get("event") in self._kinds]
+        answer["news"] = [item for item in news if item not in stops]
+        self.withheld += [{k: stop[k] for k in stop if k != "number"} for stop in stops]
         if self.is_open:
-            answer["news"] += self.kept
-            self.kept = []
+            answer["news"] += self.withheld
+            self.withheld = []
         route.fulfill(response=response, json=answer)
 
 
@@ -167,19 +170,19 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
             page.evaluate(HIDE, "hidden")
 
     stop()
-    hears(page, lambda: mute.kept, "it has stopped")
+    hears(page, lambda: mute.withheld, "it has stopped")
     assert page.evaluate("window.told") == ["Stopping…"]
     mute.is_open = True
-    said(page, HIDDEN if way == "hidden" else CONFIRMED)
+    wait_for_message(page, HIDDEN if way == "hidden" else CONFIRMED)
     mute.is_open = False
     page.evaluate(HIDE, "visible")
     drives(page, robot)
     page.evaluate(LISTEN)
     stop()
     page.keyboard.press("Escape")  # it is the same stop
-    said(page, SILENT)
+    wait_for_message(page, SILENT)
     mute.is_open = True
-    said(page, LATE)
+    wait_for_message(page, LATE)
     assert page.evaluate("window.told") == ["Stopping…", SILENT, LATE]
 
 
@@ -194,7 +197,7 @@ def test_who_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
         hears(page, partial(mute.keeps, True), "it has stopped")
         page.wait_for_timeout(300)  # for the second stop, unless both were one
         mute.is_open = True
-        said(page, CONFIRMED)
+        wait_for_message(page, CONFIRMED)
         hears(page, partial(mute.keeps, False), "all is told")
         page.wait_for_timeout(300)
         page.unroute_all(behavior="wait")
@@ -211,7 +214,7 @@ def test_who_presses_five_times_stops_once_more_and_is_told_once(
     torn = tear_requests(page, "stop", lambda route: route.abort(), times=99)
     page.evaluate(LISTEN)
     page.evaluate("() => { for (let k = 0; k < 5; k++) document.querySelector('#stop').click(); }")
-    said(page, CONFIRMED)
+    wait_for_message(page, CONFIRMED)
     hears(page, lambda: torn, "they are lost")
     page.wait_for_timeout(300)
     assert page.evaluate("window.told") == ["Stopping…", CONFIRMED]
@@ -244,7 +247,7 @@ def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
     robot.switch_off()
     page.evaluate(LISTEN)
     page.click("#stop")
-    said(page, SILENT)
+    wait_for_message(page, SILENT)
     page.wait_for_timeout(2500)  # the link gives it up, too
     assert page.evaluate("window.told") == ["Stopping…", SILENT]
 
@@ -258,11 +261,11 @@ def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
     page.evaluate(LISTEN)
     write(page, FOREVER)
     page.click("#link_upload")
-    said(page, "The robot has stopped responding")
+    wait_for_message(page, "The robot has stopped responding")
     page.wait_for_timeout(4000)
-    texts = [each.split(";")[0] for each in page.evaluate("window.told")]
+    texts = [sentence.split(";")[0] for sentence in page.evaluate("window.told")]
     assert texts[0] == "Sending…"
-    assert [each for each in texts if each == "The robot has stopped responding"] == texts[-1:]
+    assert [text for text in texts if text == "The robot has stopped responding"] == texts[-1:]
 
 
 @drawn
@@ -274,7 +277,7 @@ def test_who_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
     robot.switch_off()
     page.evaluate(LISTEN)
     page.click("#link_identify")
-    said(page, "The robot has stopped responding")
+    wait_for_message(page, "The robot has stopped responding")
     assert page.evaluate("window.told")[0] == "Waiting for the robot…"
 
 
@@ -287,7 +290,7 @@ def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
     hears(page, lambda: torn, "a beat is lost")
     page.unroute_all(behavior="wait")
     hang(page, round(1000 * LEFT_S) + 500)
-    said(page, "tsc studio heard nothing from this page for a while")
+    wait_for_message(page, "tsc studio heard nothing from this page for a while")
 
 
 @drawn
@@ -300,5 +303,5 @@ def test_an_end_before_the_word_of_a_stop_says_that_there_is_none(
     page.evaluate(LISTEN)
     page.click("#stop")
     page.click("#link_leave")
-    said(page, f"Disconnected. {SILENT}")
+    wait_for_message(page, f"Disconnected. {SILENT}")
     assert page.evaluate("window.told") == ["Stopping…", f"Disconnected. {SILENT}"]

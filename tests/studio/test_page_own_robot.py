@@ -33,7 +33,7 @@ def names(page: Page, name: str, colour: int) -> None:
     page.get_by_role("button", name="Close").click()
 
 
-def kept(page: Page, place: str, what: object) -> None:
+def store(page: Page, place: str, what: object) -> None:
     page.evaluate("([place, what]) => localStorage.setItem(place, what)", [place, json.dumps(what)])
 
 
@@ -53,8 +53,8 @@ def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages)
     page.reload()
     enter(page, page.url)
     assert page.inner_text("#doing") == f"Pip: {before}"
-    found = colors_of(page, "#arena")
-    assert PINK in found and GREEN not in found
+    colors = colors_of(page, "#arena")
+    assert PINK in colors and GREEN not in colors
 
 
 @pytest.mark.sampled("what")
@@ -73,8 +73,8 @@ def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages)
 def test_what_is_kept_may_be_damaged(pages: Pages, what: object) -> None:
     page = pages.open("start")
     for place in (PLACE, STARS):
-        kept(page, place, what)
-    kept(page, DONE, [])
+        store(page, place, what)
+    store(page, DONE, [])
     page.reload()
     enter(page, page.url)
     assert GREEN in colors_of(page, "#arena")
@@ -103,8 +103,8 @@ def test_a_name_and_a_face_leave_a_run_as_it_is(pages: Pages) -> None:
 def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
     """And its stars are added up, each lesson's once."""
     page = pages.open(reduced_motion="reduce" if way == "still" else "no-preference")
-    kept(page, DONE, ["01_first_line"])
-    kept(page, STARS, {"01_first_line": 1, "04_none": 2})
+    store(page, DONE, ["01_first_line"])
+    store(page, STARS, {"01_first_line": 1, "04_none": 2})
     page.evaluate(NOTE_EFFECTS)
     page.evaluate(CONFETTI)
     if way == "muted":

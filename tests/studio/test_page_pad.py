@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.support.page_link import connect, said
+from tests.support.page_link import connect, wait_for_message
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import (
     UPLOADS,
@@ -45,8 +45,8 @@ def pages(hosted_pages: Pages) -> Pages:
 
 def driven(page: Page) -> str:
     """Return the power of the virtual robot's motors, as its trace has it."""
-    found = [line.partition(" MOTORS ")[2] for line in trace(page) if " MOTORS " in line]
-    return found[-1] if found else ""
+    powers = [line.partition(" MOTORS ")[2] for line in trace(page) if " MOTORS " in line]
+    return powers[-1] if powers else ""
 
 
 def trace(page: Page) -> list[str]:
@@ -60,8 +60,8 @@ class Fingers:
         self._session = page.context.new_cdp_session(page)
 
     def are(self, kind: str, *points: tuple[float, float]) -> None:
-        found = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]
-        self._session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": found})
+        touches = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]
+        self._session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": touches})
 
 
 def middle(page: Page, place: str) -> tuple[float, float]:
@@ -260,9 +260,9 @@ def test_a_real_robot_is_driven_and_stands_when_the_page_is_not_seen(pages: Page
         drives_by(page, robot, press, let_go)
         page.keyboard.press("Escape")
         hears(page, lambda: not robot.moves, "it is stopped")
-        said(page, "Stopped")
+        wait_for_message(page, "Stopped")
         page.click("#link_start")
-        said(page, "It is running")
+        wait_for_message(page, "It is running")
         since_ms = robot.robot_ms
         hears(page, lambda: robot.robot_ms > since_ms + 700, "time goes by")
         assert not robot.moves, "it is pressed anew first"

@@ -194,13 +194,13 @@ def test_what_cannot_be_shared_says_why(page: Page) -> None:
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(4))
 def test_every_line_is_that_of_the_command(page: Page, part: int) -> None:
-    found = programs()[part::4]
+    sample = programs()[part::4]
     requests = [
-        {"text": program.text, "robot": program.robot, "language": "es"} for program in found
+        {"text": program.text, "robot": program.robot, "language": "es"} for program in sample
     ]
     refused = 0
     for program, answer in zip(
-        found, asked(page, [{"do": "line", **request} for request in requests]), strict=True
+        sample, asked(page, [{"do": "line", **request} for request in requests]), strict=True
     ):
         wanted = line_for_robot(program.text.encode(), program.robot, "es")
         if isinstance(wanted, str):
@@ -208,7 +208,7 @@ def test_every_line_is_that_of_the_command(page: Page, part: int) -> None:
         else:
             refused += 1
             assert answer == {"message": wanted.message, "fix": wanted.fix}, program.name
-    assert 0 < refused < len(found)
+    assert 0 < refused < len(sample)
 
 
 # Reads the modules of the code as a camera would see them: another package than the one that draws.
@@ -296,7 +296,7 @@ def test_a_new_program_is_one_press_away_and_keeps_the_one_before(page: Page, bu
 
 
 def picture_of_blocks(page: Page) -> tuple[int, int, dict[str, int]]:
-    """Save the picture of the blocks; return its size, and how often it has each colour."""
+    """Save the picture of the blocks; return its size, and how many times it has each colour."""
     unfold(page)
     with page.expect_download() as download:
         page.click("#share_picture")

@@ -68,8 +68,8 @@ PLAIN = """() => {
 
 
 def _answer(route: Route) -> None:
-    said = route.fetch().json()
-    route.fulfill(body=json.dumps(pseudo(said)), content_type="application/json")
+    answer = route.fetch().json()
+    route.fulfill(body=json.dumps(pseudo(answer)), content_type="application/json")
 
 
 @pytest.mark.sampled(of="longer texts")
@@ -100,16 +100,16 @@ def would_be_noticed(page: Page, button: str) -> None:
 @pytest.mark.sampled(of="longer texts")
 def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
     """The wall of ten pupils who want a robot and help, and each window in front of it."""
-    with studio.taught([]) as made:
-        joins = {"do": "join", "code": made.room.code}
+    with studio.taught([]) as taught_class:
+        joins = {"do": "join", "code": taught_class.room.code}
         for number in range(10):
             join = {**joins, "name": f"Maximiliano {number}"}
-            token = made.room.answer("", f"192.0.2.{number}", join)["token"]
-            made.room.answer(token, f"192.0.2.{number}", WANTS)
-        pages = Pages(browser, made.server.address)
+            token = taught_class.room.answer("", f"192.0.2.{number}", join)["token"]
+            taught_class.room.answer(token, f"192.0.2.{number}", WANTS)
+        pages = Pages(browser, taught_class.server.address)
         page = pages.blank()
         page.route("**/texts.en.json", _answer)
-        page.goto(made.server.entrance())
+        page.goto(taught_class.server.entrance())
         page.locator("#class_settings", has_text="Cläss").wait_for()
         page.locator("#wall li").nth(9).wait_for()
         would_be_noticed(page, "#class_settings")

@@ -60,7 +60,7 @@ def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, 
         elif request["do"] == "stop":
             simulation.stop()
         wanted = simulation.state()
-        wanted["events"] = [list(each) for each in wanted["events"]]
+        wanted["events"] = [list(event) for event in wanted["events"]]
         assert answer == wanted
 
 
@@ -150,9 +150,9 @@ def test_run_waits_for_the_compiler(page: Page) -> None:
     page.locator(".cm-content").evaluate(PASTED_AND_PRESSED, ["SHOW(5)", "#run"])
     in_phase(page, "ended")
     assert "SHOW 5" in (page.locator("#trace").text_content() or "")
-    said = page.evaluate("() => window.said")
-    assert "The compiler is still working…" in said
-    assert "Fix the program first." not in said
+    text = page.evaluate("() => window.said")
+    assert "The compiler is still working…" in text
+    assert "Fix the program first." not in text
 
 
 def test_stop_ends_the_waiting_for_the_compiler(page: Page) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from tests.studio.runs_again import recorded
 from tests.support.page_robot import running, value
-from tests.support.page_runs import kept
+from tests.support.page_runs import run_names
 from tests.support.studio import in_phase, write
 from tiniscript import compile, robots
 from tiniscript.studio.playing import play, prepare
@@ -53,8 +53,8 @@ def doing(page: Page) -> str:
     return page.locator("#doing").text_content() or ""
 
 
-def wait_for_status(page: Page, said: str) -> None:
-    page.locator("#doing", has_text=said).wait_for()
+def wait_for_status(page: Page, text: str) -> None:
+    page.locator("#doing", has_text=text).wait_for()
 
 
 def real(*rows: tuple[int, str], text: str = LOOKS) -> str:
@@ -73,7 +73,7 @@ def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> N
     ran(page, "SI|X = 7;\nF(0.5, 60);\nSHOW(X)", "SHOW 7")
     pose = page.locator("#where").text_content()
     ran(page, "SI|Y = 8;\nSHOW(Y)", "SHOW 8")
-    assert len(kept(page)) >= 2
+    assert len(run_names(page)) >= 2
     page.locator("#runs_list li").nth(1).locator("button").first.click()
     wait_for_status(page, "Looking back: this was at ")  # its text is another one
     assert page.locator("#where").text_content() == pose
@@ -90,7 +90,7 @@ def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> N
 def test_of_more_than_ten_runs_the_newest_ten_are_kept(page: Page) -> None:
     for number in range(12):
         ran(page, f"SI|SHOW({number})", f"SHOW {number}")
-    rows = kept(page)
+    rows = run_names(page)
     assert len(rows) == 10
     numbers = [int(row.split(":")[0].removeprefix("Run ")) for row in rows]
     assert numbers == list(range(numbers[0], numbers[0] - 10, -1))
@@ -115,7 +115,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
     page.mouse.up()
     page.click("#stop")
     in_phase(page, "ended")
-    kept(page)
+    run_names(page)
     data = saved(page, 0)
     recording = decode(data)
     assert any(row.pressed is not None and row.pressed.keys for row in recording.rows)
@@ -126,7 +126,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
     write(page, "SI|S")
     opened(page, data, tmp_path / "run.tsr")
     wait_for_status(page, f"The virtual robot did exactly the same again. Rows: {played.agreed}.")
-    kept(page)
+    run_names(page)
     assert decode(saved(page, 0)).rows == recording.rows
     page.click("#runs_close")
 
@@ -153,7 +153,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     wait_for_status(
         page, "Line 5: the robot reported 6 after 0.5 s, but the virtual robot reported 5 after"
     )
-    names = kept(page)
+    names = run_names(page)
     assert names[0].startswith("Run ") and "real robot" in names[0]
     assert [row.event for row in decode(saved(page, 0)).rows] == [event for _, event in changed]
     page.click("#runs_close")
@@ -162,9 +162,9 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     wait_for_status(page, "Line 1: the program reads DISTANCE, but the recording lacks")
 
 
-@pytest.mark.sampled("data", "said")
+@pytest.mark.sampled("data", "message")
 @pytest.mark.parametrize(
-    ("data", "said"),
+    ("data", "message"),
     [
         (b"a letter", "The file is damaged, or is not a run (line 1)."),
         (real((1, "DONE")).encode()[:-10], "The end of the file is missing (after line 2)."),
@@ -178,15 +178,15 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     ids=["letter", "cut", "older", "newer", "huge"],
 )
 def test_a_file_that_is_no_run_says_why_and_nothing_is_lost(
-    page: Page, tmp_path: Path, data: bytes, said: str
+    page: Page, tmp_path: Path, data: bytes, message: str
 ) -> None:
     ran(page, "SI|SHOW(77)", "SHOW 77")
-    before = kept(page)
+    before = run_names(page)
     page.click("#runs_close")
     opened(page, data, tmp_path / "run.tsr")
-    page.locator("#runs_said", has_text=said).wait_for()
+    page.locator("#runs_said", has_text=message).wait_for()
     page.click("#runs_close")
-    assert kept(page) == before
+    assert run_names(page) == before
     page.click("#runs_close")
     assert doing(page) == "It has ended."
     assert running(page) == ""

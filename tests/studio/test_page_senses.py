@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.page_link import KIT, connect, said, upload_until_it_runs
-from tests.support.page_runs import kept
+from tests.support.page_link import KIT, connect, upload_until_it_runs, wait_for_message
+from tests.support.page_runs import run_names
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import Pages, axe, drives, write
 from tiniscript import robots
@@ -69,13 +69,13 @@ def robot() -> Iterator[PtyRobot]:
 @pytest.fixture
 def page(opened: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     """A page of many tests that has met its robot, and has never read a sensor."""
-    pages, found = opened
-    found.evaluate("localStorage.removeItem('tiniscript.watches')")
-    connect(found, robot)
-    yield found
-    found.click("#side_real")
-    found.locator("#link_leave").dispatch_event("click")
-    found.locator("html:not([data-robot=connected])").wait_for(state="attached")
+    pages, current_page = opened
+    current_page.evaluate("localStorage.removeItem('tiniscript.watches')")
+    connect(current_page, robot)
+    yield current_page
+    current_page.click("#side_real")
+    current_page.locator("#link_leave").dispatch_event("click")
+    current_page.locator("html:not([data-robot=connected])").wait_for(state="attached")
     wrong, pages.wrong[:] = pages.wrong[:], []
     assert not wrong
 
@@ -87,14 +87,14 @@ def does(page: Page, what: str) -> None:
 
 def senses(page: Page, robot: PtyRobot, *values: int) -> None:
     """Let the robot sense so much, and wait until the gauges say so."""
-    robot.ask(lambda made: made.sense(*(1000 * value for value in values)))
+    robot.ask(lambda robot: robot.sense(*(1000 * value for value in values)))
     for row, value in enumerate(values):
-        said = page.locator(f"#gauges > div:nth-child({row + 1}) > dd")
-        said.filter(has_text=re.compile(rf"^{value}\b")).wait_for()
+        gauge = page.locator(f"#gauges > div:nth-child({row + 1}) > dd")
+        gauge.filter(has_text=re.compile(rf"^{value}\b")).wait_for()
 
 
-def sense(distance: int, made: HostFirmware) -> None:
-    made.sense(3000, 4000, 1000 * distance)
+def sense(distance: int, robot: HostFirmware) -> None:
+    robot.sense(3000, 4000, 1000 * distance)
 
 
 def watch(page: Page) -> None:
@@ -113,7 +113,7 @@ def rests(page: Page) -> None:
 def seen_runs(page: Page) -> list[str]:
     """Return what each run is called that is kept."""
     page.click("#side_virtual")
-    runs = kept(page)
+    runs = run_names(page)
     page.click("#runs_close")
     page.click("#side_real")
     return runs
@@ -131,7 +131,7 @@ def test_the_gauges_say_what_the_robot_senses_and_nobody_hears_of_it(
     assert not [line for line in robot.did[before:] if line.startswith(("BEEP", "SET"))]
     assert not robot.moves
     assert page.locator("#link_shown").inner_text() == ""
-    said(page, "Connected: ")
+    wait_for_message(page, "Connected: ")
     assert page.locator("[aria-live], [role=status], [role=log]").locator("#gauges").count() == 0
     assert axe(page, within="#link") == []
     assert seen_runs(page) == runs
@@ -156,7 +156,7 @@ def test_a_program_comes_first_and_the_gauges_after_it(page: Page, robot: PtyRob
     watch(page)
     write(page, "SHOW(5);\nF(0.3, 80);\nSHOW(6)")
     upload_until_it_runs(page)
-    said(page, "Done.")
+    wait_for_message(page, "Done.")
     assert page.locator("#link_shown").inner_text().split() == ["5", "6"]
     does(page, "senses")
     senses(page, robot, 3, 4, 5)
@@ -166,7 +166,7 @@ def test_a_program_comes_first_and_the_gauges_after_it(page: Page, robot: PtyRob
     rests(page)
     page.locator("#link_shown").filter(has_text=re.compile(r"^(7\n){5}")).wait_for()
     page.click("#link_watch")
-    said(page, "You will see the sensors when it has ended.")
+    wait_for_message(page, "You will see the sensors when it has ended.")
     assert set(page.locator("#link_shown").inner_text().split()) == {"7"}
 
 
@@ -185,7 +185,7 @@ def test_a_program_that_waits_for_the_robots_button_gets_it(
         does(page, "own")
     write(page, "SB|LOOP(FOREVER);F(9, 80);END_LOOP" if way == "waits for it" else "F(9, 80)")
     page.click("#link_upload" if way == "waits for it" else "#link_send")
-    said(page, re.compile("The robot has the program.|Done."))
+    wait_for_message(page, re.compile("The robot has the program.|Done."))
     rests(page)
     page.wait_for_timeout(1500)  # in which nothing begins by itself
     robot.push()
@@ -199,10 +199,10 @@ def test_the_robots_button_ends_them_and_then_starts_its_program(
 ) -> None:
     write(page, "LOOP(FOREVER);F(9, 80);END_LOOP")
     page.click("#link_send")
-    said(page, "The robot has the program.")
+    wait_for_message(page, "The robot has the program.")
     watch(page)
     robot.push()
-    said(page, "The robot’s button ended “Watch the sensors”.")
+    wait_for_message(page, "The robot’s button ended “Watch the sensors”.")
     rests(page)
     robot.push()
     robot.until(lambda: robot.moves, "it drives")
@@ -212,7 +212,7 @@ def test_a_stop_is_a_stop_until_somebody_wants_more(page: Page, robot: PtyRobot)
     for begins in (watch, lambda page: drives(page, robot)):
         begins(page)
         page.click("#stop")
-        said(page, "Stopped: the robot has confirmed the stop.")
+        wait_for_message(page, "Stopped: the robot has confirmed the stop.")
         rests(page)
         page.wait_for_timeout(1500)  # in which nothing begins by itself
         does(page, "stopped")
@@ -232,7 +232,7 @@ def test_they_come_by_themselves_where_somebody_has_wanted_them(
     for ask, word in (("#link_identify", "blinks and plays its tune"), ("#side_virtual", "")):
         page.click(ask)
         if word:
-            said(page, word)
+            wait_for_message(page, word)
         else:
             page.locator("#link_watch[aria-pressed=false]").wait_for(state="attached")
             page.click("#side_real")
@@ -279,7 +279,7 @@ def test_a_port_where_nothing_answers_says_so_within_three_seconds(
     page.click("#link_look")
     page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
     page.click("#link_connect")
-    said(page, "Connecting")
+    wait_for_message(page, "Connecting")
     page.clock.run_for(2900)
     assert "There is no response on this port yet." in page.locator("#link_said").inner_text()
     page.close()

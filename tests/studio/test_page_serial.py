@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support import studio, studio_serial
-from tests.support.page_link import said
+from tests.support.page_link import wait_for_message
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import HUNG_MS, drives, enter, hang, write
 from tiniscript import robots
@@ -47,20 +47,20 @@ def context(
 @pytest.fixture
 def page(context: BrowserContext) -> Page:
     """A page that has met its robot."""
-    found = context.pages[0]
-    found.click("#side_real")
-    if found.locator("html[data-robot=connected]").count() == 0:
-        found.click("#link_look")
-        found.locator("#link_port option").first.wait_for(state="attached")
-        found.click("#link_connect")
-        found.locator("html[data-robot=connected]").wait_for(state="attached")
-    return found
+    current_page = context.pages[0]
+    current_page.click("#side_real")
+    if current_page.locator("html[data-robot=connected]").count() == 0:
+        current_page.click("#link_look")
+        current_page.locator("#link_port option").first.wait_for(state="attached")
+        current_page.click("#link_connect")
+        current_page.locator("html[data-robot=connected]").wait_for(state="attached")
+    return current_page
 
 
 def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
     write(page, "SHOW(2.5);\nF(0.2, 80);\nX = 0;\nSHOW(1 / X)")
     page.click("#link_upload")
-    said(page, "Line 4: the program divided by 0.")
+    wait_for_message(page, "Line 4: the program divided by 0.")
     assert page.locator("#link_shown").inner_text() == "2.5"
     assert "MOTORS 80 80" in robot.did
 
@@ -68,7 +68,7 @@ def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
     drives(page, robot)
     page.keyboard.press("Escape")
-    said(page, "Stopped: the robot has confirmed the stop.")
+    wait_for_message(page, "Stopped: the robot has confirmed the stop.")
     assert not robot.moves
 
 
@@ -85,7 +85,7 @@ def test_two_tabs_do_not_fight(context: BrowserContext, page: Page, robot: PtyRo
     other.click("#side_real")
     other.locator("#link_port option").first.wait_for(state="attached")
     other.click("#link_connect")
-    said(other, "Another tab of this browser is driving this robot.")
+    wait_for_message(other, "Another tab of this browser is driving this robot.")
     other.close()
     assert page.locator("html[data-robot=connected]").count() == 1
 
@@ -102,11 +102,11 @@ def test_a_page_that_is_closed_stops_its_robot(
 
 def test_what_a_reload_has_left_is_met_again(page: Page) -> None:
     page.click("#link_leave")
-    said(page, "Disconnected.")
+    wait_for_message(page, "Disconnected.")
     page.click("#link_connect")
-    said(page, "Connected: ")
+    wait_for_message(page, "Connected: ")
 
 
 def test_a_cable_that_is_pulled_is_said(page: Page, robot: PtyRobot) -> None:
     robot.pull()
-    said(page, "The cable is unplugged. The")
+    wait_for_message(page, "The cable is unplugged. The")

@@ -245,7 +245,7 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
 
     def place() -> list[int]:
         transform = canvas.get_attribute("transform") or ""
-        return [round(100 * float(each)) for each in re.findall(r"[-\d.e]+(?=[,)])", transform)]
+        return [round(100 * float(number)) for number in re.findall(r"[-\d.e]+(?=[,)])", transform)]
 
     whole, cut = place(), page.evaluate(CUT)
     assert size[0] != 1366 or cut == []
@@ -403,9 +403,9 @@ def test_a_city_has_lawns_and_streets_with_a_line_in_the_middle(page: Page) -> N
     for world in ("delivery", "free"):
         page.select_option("#world", world)
         in_phase(page, "off")
-        found = set(page.evaluate(COLORS))
-        assert ({lawn, street} <= found) == (world == "delivery")
-        assert (lawn in found or street in found) == (world == "delivery")
+        colors = set(page.evaluate(COLORS))
+        assert ({lawn, street} <= colors) == (world == "delivery")
+        assert (lawn in colors or street in colors) == (world == "delivery")
 
 
 @pytest.mark.sampled("size")

@@ -98,11 +98,11 @@ def test_what_comes_late_leaves_a_run_alone(pages: Pages) -> None:
     page.click("[data-begin=dance]")
     page.locator("#doing", has_text="The compiler is still working").wait_for()
     hears(page, lambda: held, "the compiler is asked for")
-    assert not any("/blocks-" in each for each in fetched)
+    assert not any("/blocks-" in url for url in fetched)
     held.pop().continue_()
     in_phase(page, "running")
     shown(page)
-    assert any("/blocks-" in each for each in fetched)
+    assert any("/blocks-" in url for url in fetched)
     page.click("#home")
     page.click("#start_lessons")
     hears(page, lambda: held, "the lessons are asked for")
@@ -195,17 +195,20 @@ def test_no_name_of_a_picture_is_covered(pages: Pages) -> None:
     """It looks the same without the mark that plays it."""
     page = pages.open("start", viewport={"width": 1366, "height": 768})
     names = page.locator("#pictures span")
-    seen: dict[tuple[str, int, int], list[bytes]] = {}
+    shots_by_size: dict[tuple[str, int, int], list[bytes]] = {}
     sizes = [(language, *size) for language in ("en", "es") for size in SIZES]
     for language, width, height in (*sizes, *sizes):
-        if (language, width, height) == sizes[0] and seen:
+        if (language, width, height) == sizes[0] and shots_by_size:
             page.evaluate(NO_MARKS)
         page.set_viewport_size({"width": width, "height": height})
         speak(page, language)
         page.evaluate(SETTLED)
         page.mouse.move(2, 2)
-        found = [page.screenshot(clip=words_of(name)) for name in names.all()]
-        assert seen.setdefault((language, width, height), found) == found, (language, width)
+        shots = [page.screenshot(clip=words_of(name)) for name in names.all()]
+        assert shots_by_size.setdefault((language, width, height), shots) == shots, (
+            language,
+            width,
+        )
 
 
 @drawn

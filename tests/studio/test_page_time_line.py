@@ -115,7 +115,7 @@ def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
     page.locator("#trace", has_text="DONE", has_not_text="SHOW").wait_for(state="attached")
     in_phase(page, "ended")
     assert doing(page) == "It has ended."
-    first, last, now = (float(page.evaluate(f"time_at.{each}")) for each in ("min", "max", "value"))
+    first, last, now = (float(page.evaluate(f"time_at.{end}")) for end in ("min", "max", "value"))
     assert last - first < 1000 and now == last
 
 
@@ -146,9 +146,9 @@ def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> Non
     read = set()
     asked = r"Line 3 asks DISTANCE > 3\. DISTANCE was ([\d.]+)\. The answer was yes\."
     for _ in range(5):
-        if found := re.search(asked, doing(page)):
+        if match := re.search(asked, doing(page)):
             assert doing(page).endswith("The task on line 1 was driving the motors."), doing(page)
-            read.add(found[1])
+            read.add(match[1])
         page.keyboard.press("ArrowRight")
     assert len(read) > 1
     page.keyboard.press("Home")

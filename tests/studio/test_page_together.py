@@ -15,9 +15,9 @@ from tests.support.class_pages import (
     has,
     joined,
     lines,
-    said,
     teaches,
     types,
+    wait_for_status,
 )
 from tests.support.page_link import events
 from tests.support.pty_robot import PtyRobot
@@ -49,16 +49,16 @@ NOTES_WHEN = """(part) => { const root = document.querySelector('#editor').shado
 
 @pytest.fixture(scope="module")
 def taught(browser: Browser) -> Iterator[Class]:
-    with class_of_many() as made:
-        yield made
+    with class_of_many() as taught_class:
+        yield taught_class
 
 
 @pytest.fixture(scope="module")
 def pages(browser: Browser, taught: Class) -> Iterator[Pages]:
-    found = Pages(browser, taught.server.address)
-    yield found
-    found.close()
-    assert {"ERR_INTERNET_DISCONNECTED" in said for said in found.wrong} <= {True}
+    opened_pages = Pages(browser, taught.server.address)
+    yield opened_pages
+    opened_pages.close()
+    assert {"ERR_INTERNET_DISCONNECTED" in error for error in opened_pages.wrong} <= {True}
 
 
 @pytest.fixture(scope="module")
@@ -221,13 +221,13 @@ def test_each_drives_and_each_stops_the_robot_of_the_group(
             page.click("#side_real")
         ana.click("[data-text=class_ask]")
         ana.locator("html[data-robot=connected]").wait_for(state="attached")
-        said(luz, "Ana is driving ")
+        wait_for_status(luz, "Ana is driving ")
         drives(ana, robot)
         luz.click("#stop")
         until(lambda: not robot.moves, "the robot stands")
         luz.locator("#class_pupil [data-text=link_connect]").click()
         luz.locator("html[data-robot=connected]").wait_for(state="attached")
-        said(ana, "Luz is driving ")
+        wait_for_status(ana, "Luz is driving ")
         drives(luz, robot)
         ana.keyboard.press("Escape")
         until(lambda: not robot.moves, "the robot stands")
@@ -314,7 +314,7 @@ def test_work_that_is_given_back_waits_for_who_does_not_want_it_in_the_group(
                        "lessons": []})  # fmt: skip
     state = taught.room.teach({"do": "class"})
     [kept] = state["kept"]
-    number = next(each["number"] for each in state["pupils"] if each["name"] == "Luz")
+    number = next(pupil["number"] for pupil in state["pupils"] if pupil["name"] == "Luz")
     with luz.expect_event("dialog") as asked:
         luz.once("dialog", lambda dialog: dialog.dismiss())
         taught.room.teach({"do": "class_give_back", "key": kept["key"], "pupil": number})
@@ -322,7 +322,7 @@ def test_work_that_is_given_back_waits_for_who_does_not_want_it_in_the_group(
     luz.evaluate(HEARD_TWICE)  # and is asked no more
     for page in two:
         has(page, *ROWS)
-    assert [each["key"] for each in taught.room.teach({"do": "class"})["kept"]] == [kept["key"]]
+    assert [work["key"] for work in taught.room.teach({"do": "class"})["kept"]] == [kept["key"]]
     luz.click("#side_real")
     luz.click("[data-text=group_leave]")
     has(luz, "F(1, 77)")
@@ -403,8 +403,8 @@ def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
 ) -> None:
     ana, luz = two
     begins(two)
-    seen = Pages(browser, taught.server.address)
-    teacher = teaches(seen, taught)
+    teacher_pages = Pages(browser, taught.server.address)
+    teacher = teaches(teacher_pages, taught)
     tile = teacher.locator("#wall li").filter(has_text="Red")
     tile.filter(has_text="Ana, Luz").wait_for()
     assert teacher.locator("#wall li").filter(has_text="Ana").count() == 1
@@ -419,7 +419,7 @@ def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
     program.filter(has_text="B(1, 66)").wait_for()
     teacher.locator("#big_pupil pre").last.filter(has_text="Luz: → B(1, 66)").wait_for()
     assert ana.locator("#class_mates").inner_text() == "Luz"  # who looks is not seen
-    seen.close()
+    teacher_pages.close()
 
 
 def test_the_teacher_takes_part_and_leaves(
@@ -427,8 +427,8 @@ def test_the_teacher_takes_part_and_leaves(
 ) -> None:
     ana, luz = two
     begins(two)
-    seen = Pages(browser, taught.server.address)
-    teacher = teaches(seen, taught)
+    teacher_pages = Pages(browser, taught.server.address)
+    teacher = teaches(teacher_pages, taught)
     tile = teacher.locator("#wall li").filter(has_text="Red")
     tile.hover()
     tile.locator("button.join").click()
@@ -453,4 +453,4 @@ def test_the_teacher_takes_part_and_leaves(
     tile.wait_for()
     assert not teacher.locator("#class_leave").is_visible()
     until(lambda: ana.locator("#class_mates").inner_text() == "Luz", "the teacher has left")
-    seen.close()
+    teacher_pages.close()

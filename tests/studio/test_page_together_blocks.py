@@ -39,16 +39,16 @@ ROWS = [row.strip() for row in PROGRAM.splitlines()]
 
 @pytest.fixture(scope="module")
 def taught(browser: Browser) -> Iterator[Class]:
-    with class_of_many() as made:
-        yield made
+    with class_of_many() as taught_class:
+        yield taught_class
 
 
 @pytest.fixture(scope="module")
 def pages(browser: Browser, taught: Class) -> Iterator[Pages]:
-    found = Pages(browser, taught.server.address)
-    yield found
-    found.close()
-    assert not found.wrong
+    opened_pages = Pages(browser, taught.server.address)
+    yield opened_pages
+    opened_pages.close()
+    assert not opened_pages.wrong
 
 
 @pytest.fixture(scope="module")
@@ -92,8 +92,8 @@ def two(both: tuple[Page, Page]) -> tuple[Page, Page]:
 
 
 def text_of(page: Page) -> str:
-    found = page.evaluate("JSON.parse(sessionStorage['tiniscript.work']).text")
-    return str(found)
+    text = page.evaluate("JSON.parse(sessionStorage['tiniscript.work']).text")
+    return str(text)
 
 
 def field(page: Page, words: str, which: int = 0) -> None:
@@ -246,10 +246,10 @@ def random_change(page: Page, has_blocks: bool, rng: Random) -> bool:
     from playwright.sync_api import Error
 
     if has_blocks:
-        found = page.locator(f"{PROGRAM_BLOCKS} .blocklyNumberField")
-        which = rng.randrange(max(1, found.count()))
+        number_fields = page.locator(f"{PROGRAM_BLOCKS} .blocklyNumberField")
+        which = rng.randrange(max(1, number_fields.count()))
         try:
-            found.nth(which).click(timeout=3000)
+            number_fields.nth(which).click(timeout=3000)
         except Error:  # others have taken it away meanwhile
             return False
         page.keyboard.press("Control+a")
@@ -277,12 +277,12 @@ def race(members: Sequence[Page], count: int, seed: int) -> None:
     other one has blocks."""
     with_blocks, with_text = members[::2], members[1::2]
     rng = Random(seed)
-    done = tries = 0
-    while done < count:  # a click may come too late: others have changed what it was for
+    change_count = tries = 0
+    while change_count < count:  # a click may come too late: others have changed what it was for
         assert tries < 10 * count
         tries += 1
         page = rng.choice(members)
-        done += random_change(page, page in with_blocks, rng)
+        change_count += random_change(page, page in with_blocks, rng)
     for page in with_text:
         page.locator(".cm-content").evaluate("(it) => it.blur()")
     until(lambda: len({text_of(page).strip() for page in members}) == 1, "all have the same", 60)
@@ -315,20 +315,20 @@ def main() -> None:
     """Let pupils make so many changes in four browsers: 200, say."""
     count = int(sys.argv[1])
     with (
-        class_of_many() as made,
+        class_of_many() as taught_class,
         studio.driver() as playwright,
         studio.browser(playwright) as browser,
     ):
-        found = Pages(browser, made.server.address)
-        members = (*group_of(found, made), *others_of(found, made))
+        opened_pages = Pages(browser, taught_class.server.address)
+        members = (*group_of(opened_pages, taught_class), *others_of(opened_pages, taught_class))
         for k in range(count // 20):
             race(members, 20, k)
             print(f"{20 * (k + 1)} changes: text, blocks and image are one", flush=True)
         for page, name in zip(members, ("ana", "luz", "teo", "eva"), strict=True):
             if len(sys.argv) > 2:
                 page.screenshot(path=f"{sys.argv[2]}/{name}.png")
-        found.close()
-        assert not found.wrong
+        opened_pages.close()
+        assert not opened_pages.wrong
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.page_worlds import NO_BORDER, drag, draw_wall, put, said, saved
+from tests.support.page_worlds import NO_BORDER, drag, draw_wall, put, saved, wait_for_status
 from tests.support.studio import Pages, checked, hears, image, in_phase, noted, write
 from tiniscript import compile
 from tiniscript.virtual.worlds import read
@@ -43,7 +43,7 @@ def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
     def opens(tab: Page, width_cm: int) -> None:
         name = f"w{width_cm}.toml"
         put(tab, NO_BORDER.replace(b"120.06", b"%d" % width_cm).replace(b"118", b"20"), name)
-        said(tab, f"Opened: {name}")
+        wait_for_status(tab, f"Opened: {name}")
         saved(tab)
 
     page = pages.open()
@@ -63,7 +63,7 @@ def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
             saved(tab)
     kept = "(store) => JSON.parse(window[store]['tiniscript.worlds_before'])"
     widths = {
-        store: [read(each, "before").width_cm for each in other.evaluate(kept, store)]
+        store: [read(world, "before").width_cm for world in other.evaluate(kept, store)]
         for store in ("localStorage", "sessionStorage")
     }
     # The next tab finds those of both; this one has its own.
@@ -97,7 +97,7 @@ def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:
     newest, before = other.evaluate(
         "[localStorage['tiniscript.world'], JSON.parse(localStorage['tiniscript.worlds_before'])]"
     )
-    assert [each.count("[[walls]]") for each in (newest, *before)] == [2, 1]
+    assert [text.count("[[walls]]") for text in (newest, *before)] == [2, 1]
 
 
 def test_a_program_of_a_tab_that_is_hidden_is_kept(page: Page) -> None:

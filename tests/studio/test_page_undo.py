@@ -29,28 +29,28 @@ PROGRAMS = (
     "SI|F(2, 80);\nWHEN(DISTANCE < 20);\n  B(1, 60);\nEND_WHEN;\n",
     "SI|DEF HOP;\n  F(1, 50);\nEND_DEF;\nHOP;\n\n/// W(2)\n",
 )
-Seen = tuple[str, list[Any]]
+BlocksState = tuple[str, list[Any]]
 
 
 @pytest.fixture
 def page(only_page: tuple[Pages, Page]) -> Any:
-    pages, found = only_page
-    found.bring_to_front()
-    found.set_viewport_size({"width": 1366, "height": 768})
-    speak(found, "en")
-    yield found
+    pages, current_page = only_page
+    current_page.bring_to_front()
+    current_page.set_viewport_size({"width": 1366, "height": 768})
+    speak(current_page, "en")
+    yield current_page
     wrong, pages.wrong[:] = pages.wrong[:], []
     assert not wrong
 
 
-def seen(page: Page) -> Seen:
-    page.evaluate(SETTLED)  # Blockly tells of a change a moment later
+def state_of(page: Page) -> BlocksState:
+    page.evaluate(SETTLED)  # Blockly reports a change a moment later
     text = text_of(page)
     return text, page.locator(f"{PROGRAM} > .blocklyBlock").evaluate_all(STACKS)
 
 
-def becomes_seen(page: Page, wanted: Seen) -> None:
-    hears(page, lambda: seen(page) == wanted, str(wanted))
+def wait_for_state(page: Page, wanted: BlocksState) -> None:
+    hears(page, lambda: state_of(page) == wanted, str(wanted))
 
 
 def move(page: Page, words: str, to: tuple[float, float]) -> None:
@@ -64,8 +64,8 @@ def move(page: Page, words: str, to: tuple[float, float]) -> None:
 
 def _moves(page: Page, dice: random.Random) -> None:
     """A hat, or a loose stack, to an empty place at the right."""
-    words = [each for each in ("same time", "each time", "new word", "wait")
-             if block(page, each).count()]  # fmt: skip
+    words = [word for word in ("same time", "each time", "new word", "wait")
+             if block(page, word).count()]  # fmt: skip
     if words:
         move(page, dice.choice(words), (dice.randint(480, 560), dice.randint(330, 560)))
 
@@ -92,17 +92,17 @@ def test_each_undo_brings_back_the_text_and_every_place(page: Page, seed: int) -
     dice = random.Random(seed)
     page.select_option("#robot", "tinibot32")
     start(page, dice.choice(PROGRAMS), "usual")
-    past = [seen(page)]
+    past = [state_of(page)]
     for act in (_moves, *dice.choices(ACTS, k=5)):
         act(page, dice)
-        if (now := seen(page)) != past[-1]:
+        if (now := state_of(page)) != past[-1]:
             past.append(now)
     for wanted in past[-2::-1]:
         page.click("#undo")
-        becomes_seen(page, wanted)
+        wait_for_state(page, wanted)
     for wanted in past[1:]:
         page.click("#redo")
-        becomes_seen(page, wanted)
+        wait_for_state(page, wanted)
 
 
 def test_undo_moves_a_hat_back_and_keeps_it(page: Page) -> None:
@@ -114,17 +114,17 @@ def test_undo_moves_a_hat_back_and_keeps_it(page: Page) -> None:
     for begins in ("dragged", "written"):
         if begins == "written":
             start(page, whole)
-        before = seen(page)
+        before = state_of(page)
         move(page, "each time", (520, 560))
-        after = seen(page)
+        after = state_of(page)
         assert after[0] == whole and after != before
         page.click("#undo")
-        becomes_seen(page, before)
+        wait_for_state(page, before)
         page.click("#redo")
-        becomes_seen(page, after)
+        wait_for_state(page, after)
         page.click("#view_text")
         page.locator(".cm-content").focus()
         page.keyboard.press("Control+z")
         page.click("#view_blocks")
         shown(page)
-        assert seen(page) == before
+        assert state_of(page) == before

@@ -253,7 +253,7 @@ def test_a_bout_is_seen_and_heard_and_how_it_ends(listening: Page) -> None:
     )
     page.locator("#world option:checked", has_text="bout").wait_for(state="attached")
     assert count(page, RIVAL) > 100 and count(page, DARK) > 1000
-    for program, score, said in (
+    for program, score, message in (
         (
             "// robot: sumo\nSI|F(5, 80)",
             "⇥ 1/1   100   ★★★",
@@ -263,7 +263,7 @@ def test_a_bout_is_seen_and_heard_and_how_it_ends(listening: Page) -> None:
     ):
         write(page, program)
         page.click("#run")
-        page.locator("#doing", has_text=said).wait_for()
+        page.locator("#doing", has_text=message).wait_for()
         in_phase(page, "ended")
         assert page.locator("#score").inner_text() == score
-        assert said in page.locator("#where").inner_text()
+        assert message in page.locator("#where").inner_text()

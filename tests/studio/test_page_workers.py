@@ -108,7 +108,9 @@ def version() -> str:
     return source.partition('VERSION = "')[2].partition('"')[0]
 
 
-def left(context: BrowserContext, loot: Stranger, name: str, options: dict[str, str]) -> int:
+def leave_worker(
+    context: BrowserContext, loot: Stranger, name: str, options: dict[str, str]
+) -> int:
     """Let a stranger's server leave its worker; return the port, which is free then."""
     evil = EVIL.replace("VERSION", version())
     evil = evil.replace("LOOT", f"http://{serving.HOST}:{loot.server_port}/")
@@ -135,7 +137,7 @@ def test_no_worker_of_a_stranger_hears_the_code(
     context: BrowserContext, loot: Stranger, name: str, options: dict[str, str]
 ) -> None:
     """Whatever it calls itself, and however long a browser may keep it."""
-    port = left(context, loot, name, options)
+    port = leave_worker(context, loot, name, options)
     with hosted(port) as server:
         page = context.new_page()
         enter(page, server.entrance())
@@ -163,7 +165,7 @@ def test_the_own_worker_stays(context: BrowserContext) -> None:
 
 
 def test_a_worker_that_does_not_go_gets_no_code(context: BrowserContext, loot: Stranger) -> None:
-    port = left(context, loot, "evil.js", {})
+    port = leave_worker(context, loot, "evil.js", {})
     with hosted(port) as server:
         page = context.new_page()
         page.add_init_script("ServiceWorkerRegistration.prototype.unregister = async () => false;")

@@ -6,7 +6,15 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.page_worlds import Place, drag, on_screen, put, read_start, said, saved
+from tests.support.page_worlds import (
+    Place,
+    drag,
+    on_screen,
+    put,
+    read_start,
+    saved,
+    wait_for_status,
+)
 from tests.support.studio import SETTLED, Pages, checked, finger, in_phase, speak, turn, write
 from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
@@ -88,8 +96,8 @@ def test_an_undo_while_a_finger_moves_a_part_puts_it_back(floor: Page) -> None:
 def picture(page: Page) -> str:
     """Return what the floor looks like once it is drawn."""
     page.evaluate(SETTLED)
-    found: str = page.evaluate("document.querySelector('#arena').toDataURL()")
-    return found
+    url: str = page.evaluate("document.querySelector('#arena').toDataURL()")
+    return url
 
 
 @drawn
@@ -112,9 +120,9 @@ def test_a_stroke_that_is_let_go_is_not_seen(floor: Page) -> None:
             floor.evaluate("document.querySelector('#world_undo').click()")  # another finger
         else:
             floor.locator("#arena").dispatch_event("pointercancel")
-        found = picture(floor)
+        shown = picture(floor)
         floor.mouse.up()
-        assert found == wanted, way
+        assert shown == wanted, way
         assert saved(floor).walls == ()
 
 
@@ -130,7 +138,7 @@ def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
     assert [(round(x), round(y)) for x, y in world.walls[0]] == [(60, 30), (100, 60)]
     line = [(round(x), round(y)) for x, y in world.lines[0].points]
     assert (line[0], line[-1]) == ((150, 60), (60, 140)) and 3 <= len(line) <= 9
-    assert [round(each) for each in world.lamps[0].place] == [200, 180]
+    assert [round(coordinate) for coordinate in world.lamps[0].place] == [200, 180]
     name_at = {(80, 45): "Wall 1", (100, 140): "Line 1", (200, 180): "Lamp 1", (56, 82.5): "Robot",
                (110, 100): "Box 1", (10, 190): "Floor"}  # fmt: skip
     for place, name in name_at.items():
@@ -161,7 +169,7 @@ def test_keys_alone_are_enough(floor: Page) -> None:
     assert saved(floor).walls == (((89, 105), (129, 104)),)
     floor.locator("#arena").focus()
     press("Delete")
-    said(floor, "Deleted: Wall 1")
+    wait_for_status(floor, "Deleted: Wall 1")
     assert saved(floor).walls == ()
     floor.select_option("#world_part", label="Robot")
     floor.locator("#arena").focus()
@@ -227,7 +235,7 @@ def test_no_step_of_a_world_is_made_in_another_one(floor: Page, step: str) -> No
 def test_nothing_leaves_the_floor(floor: Page) -> None:
     drag(floor, [(56, 82.5), (-60, 300)])
     assert saved(floor).start[:2] == (0, 200)
-    said(floor, "does not fit there")
+    wait_for_status(floor, "does not fit there")
     floor.click("#world_undo")
     assert saved(floor).start[:2] == (56, 82.5)
 
@@ -320,7 +328,7 @@ es = "aula"
 @drawn
 def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
     put(floor, OWN)
-    said(floor, "Opened: own.toml")
+    wait_for_status(floor, "Opened: own.toml")
     wanted = read(OWN.decode(), "own")
     world = saved(floor)
     assert (world.start, world.width_cm, world.labels) == (wanted.start, 90, wanted.labels)
@@ -334,11 +342,11 @@ def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
         (b"#" * 3_000_000, "has more than"),
     ):
         put(floor, data)
-        said(floor, why)
+        wait_for_status(floor, why)
         assert floor.input_value("#world_width_cm") == "90"
     speak(floor, "es")
     put(floor, b"\xff")
-    said(floor, "no se abrió")
+    wait_for_status(floor, "no se abrió")
 
 
 def test_a_damaged_world_does_no_harm(page: Page) -> None:
@@ -353,7 +361,7 @@ def test_a_damaged_world_does_no_harm(page: Page) -> None:
     page.reload()
     checked(page)
     assert page.input_value("#world") == "obstacles"
-    said(page, "drew can no longer be read.")
+    wait_for_status(page, "drew can no longer be read.")
     page.click("#run")
     in_phase(page, "running")
     page.keyboard.press("Escape")

@@ -13,8 +13,8 @@ from tests.support.page_worlds import (
     on_screen,
     put,
     read_start,
-    said,
     saved,
+    wait_for_status,
 )
 from tests.support.studio import Pages, checked, in_phase, speak, write
 from tiniscript.virtual import worlds
@@ -36,9 +36,9 @@ def walls_of(page: Page, label: str) -> int:
     """Choose a world of the list; return how many walls it has."""
     page.select_option("#world", label=label)
     page.click("#world_draw")
-    found = len(saved(page).walls)
+    count = len(saved(page).walls)
     page.click("#world_done")
-    return found
+    return count
 
 
 def test_a_world_is_not_lost_to_the_next_one(pages: Pages) -> None:
@@ -58,7 +58,7 @@ def test_a_world_is_not_lost_to_the_next_one(pages: Pages) -> None:
     assert walls_of(page, "my world (before)") == 1
     page.click("#world_draw")
     put(page, NO_BORDER, "aula.toml")  # nor to a file that is opened
-    said(page, "Opened: aula.toml")
+    wait_for_status(page, "Opened: aula.toml")
     page.click("#world_done")
     assert listed(page) == ["aula", "my world (before)", "my world (before 2)"]
     assert walls_of(page, "my world (before)") == 1
@@ -83,14 +83,14 @@ def test_five_worlds_before_are_kept(page: Page) -> None:
     page.click("#world_draw")
     for k in range(8):
         put(page, NO_BORDER, f"w{k}.toml")
-        said(page, f"Opened: w{k}.toml")
+        wait_for_status(page, f"Opened: w{k}.toml")
     numbers = ["", " 2", " 3", " 4", " 5"]
-    found = ["w7", *(f"w{6 - k} (before{number})" for k, number in enumerate(numbers))]
-    assert listed(page) == found
+    names = ["w7", *(f"w{6 - k} (before{number})" for k, number in enumerate(numbers))]
+    assert listed(page) == names
     page.click("#world_done")
     page.reload()
     checked(page)
-    assert listed(page) == found
+    assert listed(page) == names
 
 
 @drawn
@@ -164,14 +164,14 @@ def test_a_run_that_was_left_moves_nothing(page: Page) -> None:
     page.select_option("#world", "light")
     assert read_start(page) == (40, 40)
     assert page.locator("#values dd").first.inner_text() == "–"
-    said(page, "Collect the flags in order (1)")
+    wait_for_status(page, "Collect the flags in order (1)")
 
 
 @drawn
 def test_the_robot_stays_on_a_floor_of_any_size(page: Page) -> None:
     page.click("#world_draw")
     put(page, NO_BORDER)
-    said(page, "Opened")
+    wait_for_status(page, "Opened")
     page.select_option("#world_part", label="Robot")
     page.locator("#arena").focus()
     page.keyboard.press("ArrowRight")
@@ -194,10 +194,10 @@ def test_a_world_that_cannot_be_written_is_told(page: Page) -> None:
     )
     try:
         page.click("#world_save")
-        said(page, "starts outside the floor")
+        wait_for_status(page, "starts outside the floor")
         page.select_option("#world_part", label="Robot")
         page.locator("#arena").focus()
         page.keyboard.press("ArrowRight")
-        said(page, "starts outside the floor")
+        wait_for_status(page, "starts outside the floor")
     finally:
         page.evaluate("() => { Worker.prototype.postMessage = window.posted; }")

@@ -52,7 +52,7 @@ def parting(*events: tuple[int, str], text: str = LOOKS) -> Divergence:
     return played.divergence
 
 
-def found(*events: tuple[int, str], text: str = LOOKS) -> tuple[str, int, int]:
+def recording_of(*events: tuple[int, str], text: str = LOOKS) -> tuple[str, int, int]:
     return parting(*events, text=text)[:3]
 
 
@@ -85,7 +85,7 @@ def test_a_reading_that_is_recorded_is_that_of_the_virtual_sensor_from_then_on(v
             (1900, "READ DISTANCE 9"), (2030, "SHOW 18"), (2031, "DONE")]  # fmt: skip
     assert parting(*rows, text=text) == Divergence("same", len(shows) + 2)
     rows[-2] = (2030, "SHOW 16")
-    assert found(*rows, text=text) == ("value", len(shows), 3)
+    assert recording_of(*rows, text=text) == ("value", len(shows), 3)
 
 
 def test_the_first_value_or_time_that_differs_is_told_with_its_line() -> None:
@@ -94,19 +94,19 @@ def test_the_first_value_or_time_that_differs_is_told_with_its_line() -> None:
     assert divergence.robot == Row(2060, "SHOW 9")
     assert divergence.virtual is not None and divergence.virtual.event == "SHOW 8"
     late = [(ms + 900 * (ms > 2000), event) for ms, event in LINES]
-    assert found(*late) == ("time", 2, 3)
+    assert recording_of(*late) == ("time", 2, 3)
 
 
 def test_a_quarter_of_a_second_and_a_twentieth_of_the_time_are_the_same_time() -> None:
-    assert found((281, "SHOW 1"), text="SHOW(1)")[0] == "same"  # the virtual one: 17
-    assert found((282, "SHOW 1"), text="SHOW(1)")[0] == "time"
+    assert recording_of((281, "SHOW 1"), text="SHOW(1)")[0] == "same"  # the virtual one: 17
+    assert recording_of((282, "SHOW 1"), text="SHOW(1)")[0] == "time"
 
 
 def test_who_goes_on_alone_is_told() -> None:
-    assert found(*LINES[:2], (9000, "STOPPED")) == ("virtual_more", 2, 3)
-    more = found((100, "SHOW 1"), (200, "SHOW 2"), text="SHOW(1);W(0.1)")
+    assert recording_of(*LINES[:2], (9000, "STOPPED")) == ("virtual_more", 2, 3)
+    more = recording_of((100, "SHOW 1"), (200, "SHOW 2"), text="SHOW(1);W(0.1)")
     assert more[:2] == ("value", 1)  # DONE in place of the second one
-    assert found((100, "SHOW 1"), text="W(9);SHOW(1)")[0] == "robot_more"
+    assert recording_of((100, "SHOW 1"), text="W(9);SHOW(1)")[0] == "robot_more"
 
 
 @pytest.mark.parametrize("end", [[], [(1500, "STOPPED")], [(2200, "STOPPED")], [(9000, "LOST")]])
@@ -115,13 +115,13 @@ def test_a_recording_that_ends_early_is_compared_as_far_as_it_goes(
 ) -> None:
     """By a person, by the link, or because the robot still runs: each of them is no difference."""
     assert parting(*LINES[:2], *end) == Divergence("same", 2)
-    assert found(LINES[0], (1020, "SHOW 36"), *end)[:2] == ("value", 1)
+    assert recording_of(LINES[0], (1020, "SHOW 36"), *end)[:2] == ("value", 1)
 
 
 def test_what_did_not_arrive_ends_the_comparison() -> None:
     assert parting(*LINES[:2], (2060, "MISSED")) == Divergence("missed", 2)
     assert parting((9, "MISSED")) == Divergence("missed", 0)
-    assert found(LINES[0], (1020, "SHOW 36"), (2060, "MISSED"))[0] == "value"
+    assert recording_of(LINES[0], (1020, "SHOW 36"), (2060, "MISSED"))[0] == "value"
     assert parting((9, "LOST")).what == parting().what == "empty"
 
 

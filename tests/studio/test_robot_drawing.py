@@ -27,7 +27,7 @@ def after(text: str, robot: str, ms: int) -> dict[str, Any]:
 
 def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
     """And such a servo has no jaws."""
-    known = {each["name"]: each for each in description()["robots"]}
+    known = {robot["name"]: robot for robot in description()["robots"]}
     grabber = json.loads(json.dumps(known["grabber"]))
     grabber["places"]["DISTANCE"]["turns_with"] = "GRIPPER"
     state = after("SI|GRIPPER(45);W(9)", "grabber", 100)
@@ -53,7 +53,7 @@ def test_wheels_turn_as_far_as_they_have_rolled() -> None:
 
     def treads(drawn: Drawing, is_left: bool) -> list[float]:
         """Where the treads of a wheel are, from the back to the front."""
-        rows = [each for each in shapes(drawn, "stroke", TREAD) if (each[1] > 0) == is_left]
+        rows = [shape for shape in shapes(drawn, "stroke", TREAD) if (shape[1] > 0) == is_left]
         return sorted(row[0] for row in rows)
 
     for is_left in (True, False):
@@ -87,7 +87,7 @@ def test_the_jaws_are_as_open_as_they_are() -> None:
         right, left = shapes(drawn, "stroke", "#37434f")
         return left[-1] - right[-1]
 
-    states = [after(f"GRIPPER({each});W(1)", "grabber", 300) for each in (0, 90, 180)]
+    states = [after(f"GRIPPER({angle});W(1)", "grabber", 300) for angle in (0, 90, 180)]
     closed, half, wide = map(
         gap, drawings_of(*(("grabber", state, STANDING_STILL) for state in states))
     )

@@ -26,8 +26,8 @@ def run(rng: random.Random, kind: int) -> Kept:
 def stories() -> list[list[Kept]]:
     """Return runs of one kind, and of all kinds."""
     rng = random.Random(1)
-    found = [[run(rng, kind) for _ in range(25)] for kind in range(3) for _ in range(3)]
-    return found + [[run(rng, rng.randrange(3)) for _ in range(25)] for _ in range(20)]
+    runs = [[run(rng, kind) for _ in range(25)] for kind in range(3) for _ in range(3)]
+    return runs + [[run(rng, rng.randrange(3)) for _ in range(25)] for _ in range(20)]
 
 
 def test_the_newest_runs_are_kept_as_far_as_there_is_room_and_the_oldest_goes_first() -> None:

@@ -37,9 +37,11 @@ __all__ = ["page_data"]
 Parts = list[tuple[bool, str]]
 
 
-def words(said: str) -> list[str]:
-    plain = unicodedata.normalize("NFD", said.lower())
-    return WORD.findall("".join(each for each in plain if not unicodedata.combining(each)))
+def words(text: str) -> list[str]:
+    plain = unicodedata.normalize("NFD", text.lower())
+    return WORD.findall(
+        "".join(character for character in plain if not unicodedata.combining(character))
+    )
 
 
 def stem(word: str) -> str:
@@ -48,10 +50,10 @@ def stem(word: str) -> str:
 
 def twice(parts: Parts) -> list[str]:
     """Return what is said again at once: a word after itself, or one of a block beside it."""
-    said = "".join(part for _, part in parts)
-    found = [
+    text = "".join(part for _, part in parts)
+    repeated_words = [
         repeated
-        for repeated in re.findall(r"\b(\w+)[ (%]{1,3}\1\b", said, re.I)
+        for repeated in re.findall(r"\b(\w+)[ (%]{1,3}\1\b", text, re.I)
         if not repeated.isdigit()
     ]
     for k, (is_block, label) in enumerate(parts):
@@ -63,8 +65,8 @@ def twice(parts: Parts) -> list[str]:
         )
         near = words(re.split(r"[.?!:;]", before)[-1])[-NEAR:]
         near += words(re.split(r"[.?!:;]", after)[0])[:NEAR]
-        found += [word for word in near if stem(word) in own]
-    return found
+        repeated_words += [word for word in near if stem(word) in own]
+    return repeated_words
 
 
 def sentences_of(number: int, language: str, form: str) -> list[str]:
@@ -90,17 +92,17 @@ def found_sentences(language: str) -> Iterator[str]:
             )
 
 
-def seen(page_data: Path, language: str, rows: list[dict[str, Any]]) -> list[Parts]:
+def shown_parts(page_data: Path, language: str, rows: list[dict[str, Any]]) -> list[Parts]:
     """Return the parts of sentences as a page in a language shows them."""
     (page_data / "texts.json").write_text(json.dumps(page_texts(language)), encoding="utf-8")
     given = "\n".join(json.dumps(row) for row in rows)
     lines = in_node(SCRIPT, str(page_data), given=given)
     assert len(lines) == len(rows)
-    return [[(bool(is_block), said) for is_block, said in json.loads(line)] for line in lines]
+    return [[(bool(is_block), text) for is_block, text in json.loads(line)] for line in lines]
 
 
-def spoken_in(found: str) -> dict[str, dict[str, Any]]:
-    return block_speech.blocks_of(CODE.findall(found), profile_of("tinibot").kit)
+def spoken_in(text: str) -> dict[str, dict[str, Any]]:
+    return block_speech.blocks_of(CODE.findall(text), profile_of("tinibot").kit)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -109,14 +111,14 @@ def test_no_lesson_says_beside_a_block_what_the_block_says(page_data: Path, lang
     for number in range(1, len(catalogue.folders()) + 1):
         robot = catalogue.load(catalogue.folder_of(str(number))).robot
         spoken = page_lessons.spoken_blocks(number, language)
-        rows += [{"robot": robot, "sentence": each, "spoken": spoken}
-                 for each in sentences_of(number, language, BLOCKS)]  # fmt: skip
-    rows += [{"robot": "tinibot", "sentence": each, "spoken": spoken_in(each)}
-             for each in found_sentences(language)]  # fmt: skip
-    parts = seen(page_data, language, rows)
+        rows += [{"robot": robot, "sentence": sentence, "spoken": spoken}
+                 for sentence in sentences_of(number, language, BLOCKS)]  # fmt: skip
+    rows += [{"robot": "tinibot", "sentence": sentence, "spoken": spoken_in(sentence)}
+             for sentence in found_sentences(language)]  # fmt: skip
+    parts = shown_parts(page_data, language, rows)
     assert sum(is_block for row in parts for is_block, _ in row) > 100
-    wrong = {"".join(f"[{said}]" if is_block else said for is_block, said in row): found
-             for row in parts if (found := twice(row))}  # fmt: skip
+    wrong = {"".join(f"[{text}]" if is_block else text for is_block, text in row): repeated_words
+             for row in parts if (repeated_words := twice(row))}  # fmt: skip
     assert wrong == {}
 
 
@@ -131,16 +133,16 @@ def test_a_warning_names_its_code_as_blocks_do(page_data: Path, language: str) -
         for program in programs
         for finding in json.loads(worker.answer(learn, str(program).encode()))["findings"]
     ]
-    said = [finding["on_blocks"] for finding in findings]
-    rows = [{"robot": "tinibot", "sentence": each[part], "spoken": each["spoken"]}
-            for each in said for part in ("message", "fix")]  # fmt: skip
-    parts = seen(page_data, language, rows)
+    on_blocks = [finding["on_blocks"] for finding in findings]
+    rows = [{"robot": "tinibot", "sentence": finding[part], "spoken": finding["spoken"]}
+            for finding in on_blocks for part in ("message", "fix")]  # fmt: skip
+    parts = shown_parts(page_data, language, rows)
     assert {finding["code"] for finding in findings} > set(warned[:5])
     assert sum(is_block for row in parts for is_block, _ in row) > len(warned)
     plain = [part for row in parts for is_block, part in row if not is_block]
-    left = [part for part in plain for word in CAPITAL_WORDS.findall(part)
+    unexplained = [part for part in plain for word in CAPITAL_WORDS.findall(part)
             if word in WORDS and not word.startswith("END")]  # fmt: skip
-    assert left == []
+    assert unexplained == []
 
 
 @pytest.mark.parametrize("sentence, marked", [
@@ -157,8 +159,8 @@ def test_code_in_a_sentence_is_what_is_read_as_a_block(sentence: str, marked: st
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_no_text_has_a_word_twice(language: str) -> None:
     for number in range(1, len(catalogue.folders()) + 1):
-        for each in sentences_of(number, language, TEXT):
-            assert twice([(False, each.replace("`", ""))]) == [], each
+        for text in sentences_of(number, language, TEXT):
+            assert twice([(False, text.replace("`", ""))]) == [], text
 
 
 @pytest.mark.parametrize("parts, repeated", [

@@ -36,7 +36,7 @@ class Room:
     """The clock, and what robots have done."""
 
     now_ms = 0
-    done: ClassVar[list[tuple[str, int]]] = []  # and when
+    actions: ClassVar[list[tuple[str, int]]] = []  # and when
     robots: ClassVar[list[ThreadlessRobot]] = []
 
     @classmethod
@@ -53,17 +53,17 @@ class NotingLink:
 
     def stop(self) -> None:
         self.has_run = False
-        Room.done.append(("stop", Room.now_ms))
+        Room.actions.append(("stop", Room.now_ms))
         self._news.append({"event": "STOPPED"})
 
     def ask(self, request: Json) -> None:
         self.has_run = True
-        Room.done.append(("run", Room.now_ms))
+        Room.actions.append(("run", Room.now_ms))
         self._news.append({"id": request["id"], "ok": True})
 
     def news(self, limit_s: float = 0) -> list[Json]:
-        found, self._news = self._news, []
-        return found
+        news, self._news = self._news, []
+        return news
 
 
 class ThreadlessRobot:
@@ -100,7 +100,7 @@ class ThreadlessRobot:
 @pytest.fixture(autouse=True)
 def own_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Room, "now_ms", 0)
-    monkeypatch.setattr(Room, "done", [])
+    monkeypatch.setattr(Room, "actions", [])
     monkeypatch.setattr(Room, "robots", [])
 
 
@@ -160,12 +160,12 @@ class ComingPage:
             self._beat()
 
     def _beat(self) -> None:
-        for each in self._ask("beat", asked=self._asked[:8]).get("news", ()):
-            if "over" in each:
+        for item in self._ask("beat", asked=self._asked[:8]).get("news", ()):
+            if "over" in item:
                 self._is_there = False
-            elif each["number"] > self._seen:
-                self._seen = each["number"]
-                self._asked = [one for one in self._asked if one["id"] != each.get("id")]
+            elif item["number"] > self._seen:
+                self._seen = item["number"]
+                self._asked = [one for one in self._asked if one["id"] != item.get("id")]
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -183,14 +183,14 @@ def test_nobody_starts_after_a_stop_for_all_whenever_it_has_come(
             hosting.answer({"do": "stop_all"})
             latched_until_ms = Room.now_ms + round(1000 * LATCH_S)
             stops += 1
-        begun = len(Room.done)
+        begun = len(Room.actions)
         for robot in Room.robots:
             robot.step()
             assert not (robot.link.has_run and Room.now_ms < latched_until_ms)
         if Room.now_ms % BEAT_MS == 0:
             for page in pages:
                 page.turn()
-        runs = [what for what, _ in Room.done[begun:] if what == "run"]
+        runs = [what for what, _ in Room.actions[begun:] if what == "run"]
         assert not (runs and Room.now_ms < latched_until_ms), (Room.now_ms, latched_until_ms)
         late_runs += len(runs) if stops else 0
     assert stops > 3 and late_runs > 10
@@ -220,11 +220,11 @@ def test_each_silence_of_a_page_stops_what_it_drives_once(seed: int) -> None:
             Room.now_ms += LOOK_MS
             if is_heard:
                 attending.on_beat([], 0)
-            was_driving, done = link.has_run, len(Room.done)
+            was_driving, call_count = link.has_run, len(Room.actions)
             is_silent = attending.silent_s > ATTENDED_S
             attending.attend(cast(RobotLink, link), 0)
             assert link.has_run == (was_driving and not is_silent)
-            stops = [what for what, _ in Room.done[done:]]
+            stops = [what for what, _ in Room.actions[call_count:]]
             assert stops == (["stop"] if was_driving and is_silent else [])
             silences += len(stops)
     assert silences > 3 and ATTENDED_S < LEFT_S
@@ -258,7 +258,7 @@ class HeldClient:
         """Nothing of the page's runs."""
 
 
-@pytest.mark.parametrize("leaves", [each for k in (1, 2, 3) for each in product((0, 1), repeat=k)])
+@pytest.mark.parametrize("leaves", [bits for k in (1, 2, 3) for bits in product((0, 1), repeat=k)])
 def test_a_port_that_is_let_go_once_is_held_for_nobody(
     monkeypatch: pytest.MonkeyPatch, leaves: tuple[int, ...]
 ) -> None:
@@ -268,14 +268,14 @@ def test_a_port_that_is_let_go_once_is_held_for_nobody(
     monkeypatch.setattr(opening, "remember", lambda *_: None)
     monkeypatch.setattr(HeldClient, "all_left", Event())
     monkeypatch.setattr(HeldClient, "was_held", None)
-    made = hosted_robot.HostedRobot("p", "tinibot", "en")
-    until(lambda: made.name != "", "it is met")
+    robot = hosted_robot.HostedRobot("p", "tinibot", "en")
+    until(lambda: robot.name != "", "it is met")
     for lets_go in leaves:
-        made.leave(is_letting_go=bool(lets_go))
+        robot.leave(is_letting_go=bool(lets_go))
     HeldClient.all_left.set()
-    made.join(HANGS_S)
+    robot.join(HANGS_S)
     assert HeldClient.was_held == (not any(leaves))
-    assert made.has_ended and not made.is_parting
+    assert robot.has_ended and not robot.is_parting
 
 
 # -- many requests on one connection
@@ -295,8 +295,8 @@ def answered(request: Json) -> Json:
 
 @pytest.fixture
 def server() -> Iterator[serving.Server]:
-    with serves(serving.Server(PAGE, 0, answered)) as made:
-        yield made
+    with serves(serving.Server(PAGE, 0, answered)) as server:
+        yield server
 
 
 @pytest.fixture

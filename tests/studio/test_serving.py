@@ -32,8 +32,8 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def server(folder: Path) -> Iterator[serving.Server]:
-    with serves(serving.Server(serving.files(folder), 0)) as made:
-        yield made
+    with serves(serving.Server(serving.files(folder), 0)) as server:
+        yield server
 
 
 def test_the_next_studio_has_the_port_as_soon_as_the_last_one_has_ended(folder: Path) -> None:
@@ -62,8 +62,8 @@ def test_the_page_comes_with_its_policy(own: str) -> None:
     assert (response.status, data, response.getheader("Content-Length")) == (200, b"", "1")
     with socket.create_connection((serving.HOST, int(own.rpartition(":")[2])), HANGS_S) as browser:
         browser.sendall(f"HEAD /main.js HTTP/1.0\r\nHost: {own}\r\n\r\n".encode())
-        said = b"".join(iter(lambda: browser.recv(4096), b""))
-    assert b" 200 " in said and said.endswith(b"\r\n\r\n")  # nothing after the head
+        reply = b"".join(iter(lambda: browser.recv(4096), b""))
+    assert b" 200 " in reply and reply.endswith(b"\r\n\r\n")  # nothing after the head
 
 
 @pytest.mark.parametrize(
@@ -130,6 +130,6 @@ def test_a_port_that_is_taken_is_a_sentence(
     tsc: Tsc, server: serving.Server, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(serving, "PAGE", folder)
-    done = tsc("studio", "--listen", str(server.server_port), "--no-browser")
-    assert done.code == 3
-    assert server.address in done.err and "--listen" in done.err
+    result = tsc("studio", "--listen", str(server.server_port), "--no-browser")
+    assert result.code == 3
+    assert server.address in result.err and "--listen" in result.err

@@ -154,7 +154,7 @@ def test_a_slow_stranger_does_not_close_who_loads_the_page(taught: Class) -> Non
 
 
 @pytest.mark.parametrize(
-    ("words", "code", "said"),
+    ("words", "code", "message"),
     [
         (("--turn", "2"), 2, "Add --class."),
         (("--address", "127.0.0.1"), 2, "Add --class."),
@@ -170,13 +170,13 @@ def test_a_slow_stranger_does_not_close_who_loads_the_page(taught: Class) -> Non
 )
 def test_the_command_says_what_is_wrong(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], code: int,
-    said: str,
+    message: str,
 ) -> None:  # fmt: skip
     (tmp_path / "index.html").write_text('<!doctype html>\n<html lang="en">\n')
     monkeypatch.setattr(serving, "PAGE", tmp_path)
-    done = tsc("studio", "--no-browser", "--lang", "en", *words)
-    assert done.code == code and said in done.err, done.err
-    assert "\x1b" not in done.err
+    result = tsc("studio", "--no-browser", "--lang", "en", *words)
+    assert result.code == code and message in result.err, result.err
+    assert "\x1b" not in result.err
 
 
 def test_the_second_class_of_a_user_is_refused_and_touches_nothing(
@@ -190,11 +190,11 @@ def test_the_second_class_of_a_user_is_refused_and_touches_nothing(
         room.answer("", ELSEWHERE, {"do": "join", "code": room.code, "name": "Ana"})
         first.keep(room.state_to_keep())
         kept = class_keeping.path().read_bytes()
-        done = tsc(*words)
-        assert done.code == 3 and "another tsc studio." in done.err
+        result = tsc(*words)
+        assert result.code == 3 and "another tsc studio." in result.err
         assert class_keeping.path().read_bytes() == kept
     # The first one has ended, and leaves no lock behind; nor does one that cannot begin.
     for _ in range(2):
-        done = tsc(*words, "--listen", "1", "--address", "203.0.113.5")
-        assert done.code == 3 and "203.0.113.5" in done.err
+        result = tsc(*words, "--listen", "1", "--address", "203.0.113.5")
+        assert result.code == 3 and "203.0.113.5" in result.err
     assert class_keeping.path().read_bytes() == kept

@@ -41,8 +41,8 @@ def robots() -> Recorder:
 @pytest.fixture
 def server(tmp_path: Path, robots: Recorder) -> Iterator[serving.Server]:
     (tmp_path / "index.html").write_text("<!doctype html>")
-    with serves(serving.Server(serving.files(tmp_path), 0, robots.answer)) as made:
-        yield made
+    with serves(serving.Server(serving.files(tmp_path), 0, robots.answer)) as server:
+        yield server
 
 
 PORTS = b'{"do": "ports"}'
@@ -132,10 +132,10 @@ def test_the_token_is_another_one_each_time_and_in_no_file(
 
 def test_a_server_without_robots_has_none(tmp_path: Path) -> None:
     (tmp_path / "index.html").write_text("<!doctype html>")
-    with serves(serving.Server(serving.files(tmp_path), 0)) as made:
-        own = f"{serving.HOST}:{made.server_port}"
-        assert post(own, made.entrances.token, PORTS)[0] == 404
-        assert made.entrance() == made.address
+    with serves(serving.Server(serving.files(tmp_path), 0)) as server:
+        own = f"{serving.HOST}:{server.server_port}"
+        assert post(own, server.entrances.token, PORTS)[0] == 404
+        assert server.entrance() == server.address
 
 
 def test_a_thousand_connections_keep_nobody_out(server: serving.Server, own: str) -> None:

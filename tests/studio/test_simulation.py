@@ -75,10 +75,10 @@ def test_it_is_told_where_each_task_is() -> None:
 
     def lit() -> set[int]:
         """The lines of the text that are marked."""
-        found = set()
+        lines = set()
         for at in simulation.state()["places"]:
-            found.add(next(place for place in reversed(places) if place.offset <= at).line)
-        return found
+            lines.add(next(place for place in reversed(places) if place.offset <= at).line)
+        return lines
 
     simulation.go(100)
     assert lit() == {1, 2, 8}
@@ -152,14 +152,14 @@ def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> N
     simulation.set_breakpoints(())
     simulation.stop()
     assert not simulation.robot.is_running and not any(simulation.state()["motors"])
-    seen = []
-    for each in (fresh, simulation):
-        each.robot.take_events()
-        each.push()
-        each.go(1500)
-        assert each.held_at is None
-        seen.append(trace_of(each))
-    assert seen[0] == seen[1] and len(seen[0]) > 10
+    runs = []
+    for one_simulation in (fresh, simulation):
+        one_simulation.robot.take_events()
+        one_simulation.push()
+        one_simulation.go(1500)
+        assert one_simulation.held_at is None
+        runs.append(trace_of(one_simulation))
+    assert runs[0] == runs[1] and len(runs[0]) > 10
 
 
 def test_a_fault_is_named() -> None:
@@ -171,8 +171,8 @@ def test_a_fault_is_named() -> None:
         simulation.go(1)
     state = simulation.state()
     assert (state["fault"], state["at"]) == ("DIVIDE_BY_ZERO", None)
-    found = check(b"W(1); X = 0; SHOW(1 / X)", "tinibot", "en")
-    place = max(place for place in found.places if place.offset <= state["fault_at"])
+    result = check(b"W(1); X = 0; SHOW(1 / X)", "tinibot", "en")
+    place = max(place for place in result.places if place.offset <= state["fault_at"])
     assert (place.line, place.column) == (1, 14)
     state = started_simulation("X = 0; SHOW(1 / X)").state()  # at once
     assert state["fault"] == "DIVIDE_BY_ZERO" and state["fault_at"] is not None
@@ -223,14 +223,14 @@ def test_the_page_says_what_is_held_of_a_remote_control() -> None:
     def motors(do: str, data: bytes = b"", **more: object) -> object:
         return json.loads(worker.answer(json.dumps({"do": do, **more}), data))["motors"]
 
-    found = json.loads(
+    answer = json.loads(
         worker.answer(
             json.dumps({"do": "check", "robot": "tinibot", "language": "en"}), STICK.encode()
         )
     )
-    assert found["remote"] == ["PAD_Y"]
+    assert answer["remote"] == ["PAD_Y"]
     on = {"robot": "tinibot", "world": "obstacles", "language": "en"}
-    image = bytes.fromhex(found["image"])
+    image = bytes.fromhex(answer["image"])
     assert motors("power_on", image, **on) == [0, 0]
     assert motors("go", duration_ms=100, held=[0, 0, 60]) == [60, 60]
     assert motors("go", duration_ms=100, held=[0, 0, 0]) == [0, 0]
@@ -241,8 +241,8 @@ def test_the_page_says_what_is_held_of_a_remote_control() -> None:
 
 def test_the_page_asks_for_all_of_it() -> None:
     def ask(data: bytes = b"", **fields: object) -> dict[str, object]:
-        found: dict[str, object] = json.loads(worker.answer(json.dumps(fields), data))
-        return found
+        answer: dict[str, object] = json.loads(worker.answer(json.dumps(fields), data))
+        return answer
 
     image = compile("SB|F(1, 80);R(1, 80)").image
     ask(image, do="power_on", robot="tinibot", world="obstacles", parts=[0, 3])

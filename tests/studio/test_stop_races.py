@@ -50,30 +50,30 @@ class Meeting:
             now_ms = self.robot.now_ms + step_ms
             heard = self.robot.step(now_ms, b"" if self.is_cut else self._sent)
             self._sent = self.line.go(b"" if self.is_cut else heard, now_ms)
-            arrived = [each for at_ms, each in self._under_way if at_ms <= now_ms]
-            self._under_way = [each for each in self._under_way if each[0] > now_ms]
+            arrived = [answer for at_ms, answer in self._under_way if at_ms <= now_ms]
+            self._under_way = [pair for pair in self._under_way if pair[0] > now_ms]
             if arrived or now_ms >= self._beat_ms:
                 self._beat_ms = now_ms + BEAT_MS
-                self.news += self.attending.on_beat(arrived, self.seen)
+                self.news += self.attending.on_beat(arrived, self.newest_number)
             if now_ms >= self._look_ms:
                 self._look_ms = now_ms + self.chance.randrange(1, LOOK_MS)
                 self.attending.attend(self.link, 0)
 
     @property
-    def seen(self) -> int:
+    def newest_number(self) -> int:
         """The newest of the news that the page knows."""
-        return max((each["number"] for each in self.news), default=0)
+        return max((item["number"] for item in self.news), default=0)
 
     def upload(self, delay_ms: int) -> int:
         """The page sends a program; return the number of the request."""
         self._number += 1
         request = {"do": "upload", "id": self._number, "image": self.chance.choice(PROGRAMS),
-                   "robot": "tinibot", "runs": True, "seen": self.seen}  # fmt: skip
+                   "robot": "tinibot", "runs": True, "seen": self.newest_number}  # fmt: skip
         self._under_way.append((self.robot.now_ms + delay_ms, request))
         return self._number
 
     def answer(self, number: int) -> dict[str, Any]:
-        return next((each for each in self.news if each.get("id") == number), {})
+        return next((item for item in self.news if item.get("id") == number), {})
 
     def races(self) -> None:
         """Some uploads are before the STOP, in the middle of it, and after it."""
@@ -159,8 +159,8 @@ class LateLink:
         if self.now_ms >= self._confirms_ms:
             self._confirms_ms = float("inf")
             self._news.append({"event": "STOPPED"})
-        found, self._news = self._news, []
-        return found
+        news, self._news = self._news, []
+        return news
 
 
 @pytest.mark.parametrize("end", ["latch", "part"])
@@ -192,6 +192,6 @@ def test_no_stop_of_before_confirms_the_newest_one(
 
 if __name__ == "__main__":
     wanted = int(sys.argv[1])
-    for each in range(0, wanted, 100):
-        race(min(100, wanted - each), each)
-        print(f"{min(wanted, each + 100)} races, none drives", flush=True)
+    for start in range(0, wanted, 100):
+        race(min(100, wanted - start), start)
+        print(f"{min(wanted, start + 100)} races, none drives", flush=True)

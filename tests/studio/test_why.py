@@ -22,7 +22,7 @@ ONE, TWO = [1, "DISTANCE < 10", [DISTANCE]], [3, "N > 3", [N]]
 
 
 def explanations(*cases: tuple[str, str]) -> list[Any]:
-    """Return what is told of programs, each at the first instruction with a text."""
+    """Return what is said about programs, each at the first instruction with a text."""
     rows = []
     for text, wanted in cases:
         program = check(text.encode(), "tinibot", "en")
@@ -37,7 +37,7 @@ def explanations(*cases: tuple[str, str]) -> list[Any]:
 
 
 @pytest.mark.parametrize(
-    ("text", "wanted", "found"),
+    ("text", "wanted", "values"),
     [
         (ARMS, "B(1, 10)", [[1, "DISTANCE < 10", [], True]]),  # it has been read again
         (ARMS, "F(1, 20)", [[*ONE, False], [*TWO, True]]),
@@ -58,9 +58,9 @@ def explanations(*cases: tuple[str, str]) -> list[Any]:
     ],
 )  # fmt: skip
 def test_the_conditions_around_an_instruction_are_told_with_their_values(
-    text: str, wanted: str, found: list[Any]
+    text: str, wanted: str, values: list[Any]
 ) -> None:
-    assert explanations((f"N = 0;{text}", wanted))[0]["told"] == found
+    assert explanations((f"N = 0;{text}", wanted))[0]["told"] == values
 
 
 def test_any_nesting_is_told_from_the_outside() -> None:
@@ -111,7 +111,7 @@ def test_the_answer_is_what_the_values_make_of_the_condition() -> None:
         *((f"N = 0;F(9, 50) UNTIL({condition})", "F(9") for condition in conditions)
     )
     for condition, row in zip(conditions, rows, strict=True):
-        python = re.sub(r"[A-Z_]+|<>|(?<![<>])=", lambda found: words[found[0]], condition)
+        python = re.sub(r"[A-Z_]+|<>|(?<![<>])=", lambda match: words[match[0]], condition)
         exact = re.sub(r"\d+(?:\.\d+)?", r"Fraction('\g<0>')", python)
         assert row["told"][0][3] == eval(exact, {"Fraction": Fraction}), condition
 

@@ -34,9 +34,9 @@ def shipped() -> list[World]:
 
 
 def test_the_text_of_a_form_is_the_same_world() -> None:
-    found = shipped()
-    assert len(found) > 10 and any(world.lamps for world in found)
-    for world in found:
+    worlds = shipped()
+    assert len(worlds) > 10 and any(world.lamps for world in worlds)
+    for world in worlds:
         round_tripped = read(toml_of(form_of(world)), world.name)
         assert is_near(tuple(round_tripped), tuple(world)), world.name
 
@@ -54,7 +54,8 @@ def test_random_forms_keep_every_number() -> None:
         form = {
             "name": "own",
             "labels": {
-                each: chance.choice(['my "own"', "a\\b", "own", "ñandú 🤖"]) for each in LANGUAGES
+                language: chance.choice(['my "own"', "a\\b", "own", "ñandú 🤖"])
+                for language in LANGUAGES
             },
             "width_cm": 200.5,
             "height_cm": 150,
@@ -90,8 +91,8 @@ def as_tuples(value: Any) -> Any:
 
 def opened(data: bytes, name: str = "own.toml", language: str = "en") -> dict[str, Any]:
     request = {"do": "open_world", "name": name, "language": language}
-    found: dict[str, Any] = json.loads(worker.answer(json.dumps(request), data))
-    return found
+    answer: dict[str, Any] = json.loads(worker.answer(json.dumps(request), data))
+    return answer
 
 
 GOOD = b"[floor]\nwidth_cm = 100\nheight_cm = 80\n[start]\nx_cm = 30\ny_cm = 30\n"
@@ -111,18 +112,23 @@ HOSTILE = {
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_a_file_that_is_no_world_says_why(name: str) -> None:
-    data, said = HOSTILE[name]
+    data, message = HOSTILE[name]
     for language in ("en", "es"):
-        found = opened(data, language=language)
-        assert set(found) == {"refused"} and found["refused"]
-        assert all(len(each) < 400 and each.isprintable() for each in found["refused"])
-        assert language == "es" or said in " ".join(found["refused"])
+        answer = opened(data, language=language)
+        assert set(answer) == {"refused"} and answer["refused"]
+        assert all(len(sentence) < 400 and sentence.isprintable() for sentence in answer["refused"])
+        assert language == "es" or message in " ".join(answer["refused"])
 
 
 @pytest.mark.parametrize("name", ["a.toml", ".toml", "", "x" * 5000 + ".toml", "\x1b[31m\n.toml"])
 def test_any_name_of_a_file_can_be_opened_and_written(name: str) -> None:
-    found = opened(GOOD, name)
-    request = {"do": "write_world", "form": found["world"], "robot": "tinibot", "language": "en"}
+    opened_world = opened(GOOD, name)
+    request = {
+        "do": "write_world",
+        "form": opened_world["world"],
+        "robot": "tinibot",
+        "language": "en",
+    }
     answer = json.loads(worker.answer(json.dumps(request)))
     assert not answer["is_blocked"]
     assert read(answer["text"], "own").start == (30, 30, 0)
@@ -135,9 +141,12 @@ def test_a_robot_that_does_not_fit_or_is_off_its_floor_is_told() -> None:
     start = {"do": "power_on", "robot": "tinibot", "world": {"form": world}, "language": "en"}
     assert "does not fit" in json.loads(worker.answer(json.dumps(start)))["refused"][0]
     world["start"]["x_cm"] = 100.1
-    for language, said in (("en", "starts outside the floor"), ("es", "empieza fuera del piso")):
+    for language, expected in (
+        ("en", "starts outside the floor"),
+        ("es", "empieza fuera del piso"),
+    ):
         answer = json.loads(worker.answer(json.dumps({**request, "language": language})))
-        assert set(answer) == {"refused"} and said in answer["refused"][0]
+        assert set(answer) == {"refused"} and expected in answer["refused"][0]
 
 
 def test_a_robot_begins_where_it_is_to_if_it_has_room_there() -> None:
@@ -145,9 +154,9 @@ def test_a_robot_begins_where_it_is_to_if_it_has_room_there() -> None:
     start = {"do": "power_on", "robot": "tinibot", "world": {"form": world}, "language": "en"}
     image = compile("SI|S").image
     at = (world["start"]["x_cm"], world["start"]["y_cm"], world["start"]["heading"])
-    for pose, found in ((None, at), ((40, 35, 90), (40, 35, 90)), ((1, 1, 0), at)):
+    for pose, place in ((None, at), ((40, 35, 90), (40, 35, 90)), ((1, 1, 0), at)):
         answer = json.loads(worker.answer(json.dumps({**start, "pose": pose}), image))
-        assert tuple(answer["pose"]) == pytest.approx(found), pose
+        assert tuple(answer["pose"]) == pytest.approx(place), pose
 
 
 def test_the_limits_are_those_of_the_reader() -> None:

@@ -23,15 +23,15 @@ class Built(NamedTuple):
 
 def firmware(board: str, own: Path, shared: Path) -> Built:
     """Return the sketch for a board, built once for all workers of a session."""
-    found = Built(shared / f"builder-{board}.hex", "")
-    log = found.hex.with_suffix(".log")
+    built = Built(shared / f"builder-{board}.hex", "")
+    log = built.hex.with_suffix(".log")
     if not log.exists():
-        made = _build(board, own)
+        build = _build(board, own)
         mine = shared / f"builder-{board}.{os.getpid()}"
-        for text, target in ((made.hex.read_text(), found.hex), (made.log, log)):
+        for text, target in ((build.hex.read_text(), built.hex), (build.log, log)):
             mine.write_text(text, encoding="utf-8")
             mine.replace(target)
-    return found._replace(log=log.read_text(encoding="utf-8"))
+    return built._replace(log=log.read_text(encoding="utf-8"))
 
 
 def _build(board: str, folder: Path) -> Built:

@@ -22,23 +22,23 @@ class AskingPage:
         self._number = 0
 
     def asks(self, do: str, *asked: Json, connection: int = 1, **more: object) -> Json:
-        seen = max((each["number"] for each in self.news), default=0)
+        number = max((item["number"] for item in self.news), default=0)
         request = {"do": do, "page": "me", "connection": connection, "port": self.port,
-                   "robot": "tinibot", "language": "en", "seen": seen, "asked": list(asked),
+                   "robot": "tinibot", "language": "en", "seen": number, "asked": list(asked),
                    **more}  # fmt: skip
         answer = self.answer(request)
-        self.news += [each for each in answer.get("news", ()) if each["number"] > seen]
+        self.news += [item for item in answer.get("news", ()) if item["number"] > number]
         return answer
 
     def beats_until(self, is_so: Callable[[Json], object], what: str, **more: Any) -> None:
         def looks() -> bool:
             self.asks("beat", **more)
-            return any(is_so(each) for each in self.news)
+            return any(is_so(item) for item in self.news)
 
         until(looks, what)
 
     def run(self, stops: int) -> Json:
         self._number += 1
-        seen = max(each["number"] for each in self.news)
+        number = max(item["number"] for item in self.news)
         return {"do": "upload", "id": self._number, "image": compile(FOREVER).image.hex(),
-                "robot": "tinibot", "runs": True, "stops": stops, "seen": seen}  # fmt: skip
+                "robot": "tinibot", "runs": True, "stops": stops, "seen": number}  # fmt: skip

@@ -84,7 +84,7 @@ class Echo(Peripheral):
 
 
 class BleRobot(Peripheral):
-    """A module and the robot behind it. `late_s`: each notification comes so much later; `said` is
+    """A module and the robot behind it. `late_s`: each notification comes so much later; `sent` is
     all that the module has sent by radio."""
 
     def __init__(
@@ -94,7 +94,7 @@ class BleRobot(Peripheral):
         super().__init__(name, address, service, mtu)
         self.robot = robot
         self.late_s = late_s
-        self.said: list[bytes] = []
+        self.sent: list[bytes] = []
         self._uart = os.open(robot.port, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         import tty
 
@@ -127,7 +127,7 @@ class BleRobot(Peripheral):
         if not data:  # the robot is gone
             self.loop.remove_reader(self._uart)
             return
-        self.said.append(data)
+        self.sent.append(data)
         if self.late_s:
             self.loop.call_later(self.late_s, self.tell, data)
         else:

@@ -16,8 +16,8 @@ from tiniscript.syntax.lexer import scan
 
 def comment_words(text: str) -> list[str]:
     """Return the words of all comments: joined and moved to the next line they are the same."""
-    found = " ".join(token.text[2:] for token in scan(text).comments)
-    return [word for word in found.split() if word != "//"]
+    comments = " ".join(token.text[2:] for token in scan(text).comments)
+    return [word for word in comments.split() if word != "//"]
 
 
 def check_blocks(text: str, kit: Kit) -> None:
@@ -38,8 +38,8 @@ def check_form(form: Form, text: str, kit: Kit, image: bytes) -> None:
     assert comment_words(printed.text) == comment_words(text), printed.text
     round_tripped = read_blocks(printed.text, kit)
     assert format_blocks(round_tripped).text == printed.text
-    found = zip(in_order(round_tripped.body), printed.places, strict=True)
-    for block, place in found:
+    pairs = zip(in_order(round_tripped.body), printed.places, strict=True)
+    for block, place in pairs:
         if block.kind != "comment":
             assert block.place == place, (block, place, printed.text)
 

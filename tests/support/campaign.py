@@ -21,11 +21,11 @@ def wanted(count: int, seed: int, *flags: str) -> Namespace:
 
 
 def each_seed(check: Callable[[int], object], given: Namespace) -> None:
-    """Run a check with each seed; print how often each thing came of it, or a seed that fails.
+    """Run a check with each seed; print how many times each thing came of it, or a seed that fails.
 
     `check` returns what came of it, or None where that is always the same.
     """
-    found: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     begun_s = time.monotonic()
     for seed in range(given.seed, given.seed + given.count):
         try:
@@ -34,8 +34,8 @@ def each_seed(check: Callable[[int], object], given: Namespace) -> None:
             print(f"seed {seed}", flush=True)
             raise
         if came is not None:
-            found[str(came)] += 1
-    print(f"{given.count}, nothing wrong: {dict(found)}, {time.monotonic() - begun_s:.0f} s")
+            counts[str(came)] += 1
+    print(f"{given.count}, nothing wrong: {dict(counts)}, {time.monotonic() - begun_s:.0f} s")
 
 
 def failure_text(wrong: AssertionError) -> str:

@@ -83,7 +83,7 @@ def read(path: Path) -> list[Case]:
                         cases.append(Case(path, number, name, {}))
         elif fence == "refused":
             if LISTED.match(row):
-                cases[-1].parts["bytecode"] += "".join(f"{each}\n" for each in _unfolded(row))
+                cases[-1].parts["bytecode"] += "".join(f"{line}\n" for line in _unfolded(row))
             elif not row.startswith("//"):
                 rule, name = row.split(": ", 1)
                 cases.append(Case(path, number, name, {"refused": f"{rule}\n", "bytecode": ""}))
@@ -105,29 +105,29 @@ def _unfolded(row: str) -> list[str]:
 
 def _folded(text: str) -> str:
     """Return a disassembly with one row for several that are alike."""
-    found = []
+    lines = []
     for _, group in groupby(text.splitlines(), lambda row: row[4:] if LISTED.match(row) else row):
         rows = list(group)
         is_many = len(rows) >= FOLDED and LISTED.match(rows[0])
-        found += [f"{rows[0]}, {len(rows)} times"] if is_many else rows
-    return "".join(f"{row}\n" for row in found)
+        lines += [f"{rows[0]}, {len(rows)} times"] if is_many else rows
+    return "".join(f"{row}\n" for row in lines)
 
 
 def _said(case: Case, fence: str, text: str, end: int) -> Iterator[Case]:
     """Yield a case with what is said of it, and one for each row that says what it is about."""
     before, *titled = ABOUT.split(text)
-    found = [(case, before)] if before or not titled else []
+    parts = [(case, before)] if before or not titled else []
     if case.parts and titled and not before:
         yield case  # of the heading above, which has said all
-    line = end - sum(each.count("\n") for each in titled) - len(titled) // 2
-    for title, said in zip(titled[::2], titled[1::2], strict=True):
-        found.append((Case(case.path, line, title, {}), said))
-        line += 1 + said.count("\n")
-    for each, said in found:
-        each.parts[fence] = said and said.rstrip("\n") + "\n"
-        if shown := SHOWN.match(said):
-            each.parts.setdefault("tiniscript", shown[1])
-        yield each
+    line = end - sum(block.count("\n") for block in titled) - len(titled) // 2
+    for title, part_text in zip(titled[::2], titled[1::2], strict=True):
+        parts.append((Case(case.path, line, title, {}), part_text))
+        line += 1 + part_text.count("\n")
+    for example, part_text in parts:
+        example.parts[fence] = part_text and part_text.rstrip("\n") + "\n"
+        if shown := SHOWN.match(part_text):
+            example.parts.setdefault("tiniscript", shown[1])
+        yield example
 
 
 class Example(NamedTuple):
@@ -143,7 +143,7 @@ class Example(NamedTuple):
 
 def examples(path: Path) -> list[Example]:
     """Return the Python of one document."""
-    found: list[Example] = []
+    example_list: list[Example] = []
     fence, start, lines = "", 0, list[str]()
     is_right_after = False  # an example, with nothing but empty lines between
     for number, row in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
@@ -156,12 +156,12 @@ def examples(path: Path) -> list[Example]:
             text = "".join(f"{line}\n" for line in lines)
             is_python = fence in ("python", "python robot")
             if is_python:
-                found.append(Example(path, start, text, "", fence == "python robot"))
+                example_list.append(Example(path, start, text, "", fence == "python robot"))
             elif fence == "output":
                 assert is_right_after, f"{path.name}:{start}: the output of no example"
-                found[-1] = found[-1]._replace(output=text)
+                example_list[-1] = example_list[-1]._replace(output=text)
             is_right_after, fence = is_python, ""
-    return found
+    return example_list
 
 
 def all_cases() -> list[Case]:
@@ -187,7 +187,7 @@ def accept(case: Case, part: str, actual: str) -> None:
     """Write `actual` where the case says something else; git shows what changed."""
     rows = case.path.read_text(encoding="utf-8").splitlines(keepends=True)
     # where the case stands now: what was accepted before may have moved it
-    now = next(each for each in read(case.path) if each.title == case.title)
+    now = next(other for other in read(case.path) if other.title == case.title)
     if part == "refused":
         rows[now.line - 1] = f"{actual.rstrip()}: {now.title}\n"
     else:

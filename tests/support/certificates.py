@@ -52,4 +52,4 @@ class Authority:
 
 
 def _run(*command: str | Path) -> None:
-    subprocess.run([str(each) for each in command], check=True, capture_output=True)
+    subprocess.run([str(word) for word in command], check=True, capture_output=True)

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 @contextmanager
 def class_of_many() -> Iterator[Class]:
     """A class without a robot, with room for all at one address."""
-    with studio.taught([]) as made:
-        made.room.teach({"do": "class_places", "places": MOST_PUPILS})
-        yield made
+    with studio.taught([]) as taught_class:
+        taught_class.room.teach({"do": "class_places", "places": MOST_PUPILS})
+        yield taught_class
 
 
-def said(page: Page, text: str) -> None:
+def wait_for_status(page: Page, text: str) -> None:
     page.locator("#class_pupil [role=status]").filter(has_text=text).wait_for()
 
 
@@ -34,7 +34,7 @@ def joined(pages: Pages, taught: Class, name: str) -> Page:
     page.locator("#class_pupil input").nth(0).fill(taught.room.code.lower())
     page.locator("#class_pupil input").nth(1).fill(name)
     page.dblclick("[data-text=class_join]")
-    said(page, "You are in the class, ")
+    wait_for_status(page, "You are in the class, ")
     assert f"{name} (2)" not in json.dumps(taught.room.teach({"do": "class"})["pupils"])
     return page
 
@@ -52,12 +52,12 @@ def enters(page: Page) -> None:
 
 
 def lines(page: Page) -> list[str]:
-    found = page.evaluate("""() => { const root = document.querySelector('#editor').shadowRoot;
+    texts = page.evaluate("""() => { const root = document.querySelector('#editor').shadowRoot;
         return [...root.querySelectorAll('.cm-line')].map((line) => {
           const copy = line.cloneNode(true);
           for (const name of copy.querySelectorAll('.cm-mate')) name.remove();
           return copy.textContent; }); }""")
-    return [str(row) for row in found]
+    return [str(row) for row in texts]
 
 
 def has(page: Page, *rows: str) -> None:

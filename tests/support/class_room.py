@@ -21,7 +21,7 @@ class FakeRobot:
 
     has_ended: bool = False
     name: str = "TINI"
-    left: str = ""
+    leave_reason: str = ""
     stopped: int = 0
     was_left: bool = False
     silent_s: float = 0.0
@@ -29,7 +29,7 @@ class FakeRobot:
     witness: Callable[[list[Json]], object] | None = None
 
     def leave(self, why: str) -> None:
-        self.left = why
+        self.leave_reason = why
         self.has_ended = True
 
     @property
@@ -87,8 +87,8 @@ class Room:
         return self.made.teach({"do": do, **more})
 
     def number(self, name: str) -> int:
-        return next(int(each["number"]) for each in self.teaches("class")["pupils"]
-                    if each["name"] == name)  # fmt: skip
+        return next(int(pupil["number"]) for pupil in self.teaches("class")["pupils"]
+                    if pupil["name"] == name)  # fmt: skip
 
 
 @pytest.fixture(autouse=True)

@@ -27,7 +27,7 @@ LONG = "LOOP(2);" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 54)) + "END
 TSC = [sys.executable, "-m", "tiniscript"]
 
 
-class Done:
+class CommandResult:
     """What a command did: its exit code and what it printed."""
 
     def __init__(self, code: int, out: str, err: str) -> None:
@@ -41,11 +41,14 @@ class Done:
         """What a test that fails shows."""
         return f"exit code {self.code}, out {self.out!r}, err {self.err!r}"
 
-    def gives(self, code: int, *err: str, out: str | tuple[str, ...] = ()) -> Done:
+    def gives(self, code: int, *err: str, out: str | tuple[str, ...] = ()) -> CommandResult:
         """Assert its exit code, and words of its errors and of its output: "" is nothing at all."""
         assert self.code == code, self
-        for stream, said in ((self.err, err), (self.out, (out,) if isinstance(out, str) else out)):
-            for words in said:
+        for stream, expected in (
+            (self.err, err),
+            (self.out, (out,) if isinstance(out, str) else out),
+        ):
+            for words in expected:
                 assert words in stream if words else not stream, (words, self)
         return self
 
@@ -54,28 +57,32 @@ class Tsc:
     def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
         self.capsys = capsys
 
-    def __call__(self, *arguments: str | Path) -> Done:
+    def __call__(self, *arguments: str | Path) -> CommandResult:
         code = main([str(argument) for argument in arguments])
         capture_result = self.capsys.readouterr()
-        return Done(code, capture_result.out, capture_result.err)
+        return CommandResult(code, capture_result.out, capture_result.err)
 
 
-def inside(*arguments: str | Path, data: bytes = b"") -> Done:
+def inside(*arguments: str | Path, data: bytes = b"") -> CommandResult:
     """Run `tsc` in this process."""
-    streams = [io.TextIOWrapper(io.BytesIO(each), encoding="utf-8") for each in (data, b"", b"")]
+    streams = [
+        io.TextIOWrapper(io.BytesIO(data_in), encoding="utf-8") for data_in in (data, b"", b"")
+    ]
     stdin, out, err = streams
     with mock.patch.object(sys, "stdin", stdin), redirect_stdout(out), redirect_stderr(err):
         code = main([str(argument) for argument in arguments])
         out.flush()
         err.flush()
-    return Done(code, *(text_iowrapper.buffer.getvalue().decode() for text_iowrapper in (out, err)))
+    return CommandResult(
+        code, *(text_iowrapper.buffer.getvalue().decode() for text_iowrapper in (out, err))
+    )
 
 
-def process(*arguments: str | Path, data: bytes = b"") -> Done:
+def process(*arguments: str | Path, data: bytes = b"") -> CommandResult:
     """Run `tsc` as a process of its own."""
     words = [*TSC, *map(str, arguments)]
     completed = subprocess.run(words, input=data, capture_output=True, timeout=HANGS_S)
-    return Done(completed.returncode, completed.stdout.decode(), completed.stderr.decode())
+    return CommandResult(completed.returncode, completed.stdout.decode(), completed.stderr.decode())
 
 
 class Command:
@@ -98,14 +105,14 @@ class Command:
             self.process.stdin.write(data)
             self.process.stdin.flush()
 
-    def until(self, said: str, is_aside: bool = False) -> None:
+    def until(self, text: str, is_aside: bool = False) -> None:
         """Wait until it has printed a line with these words, on standard error if `is_aside`."""
         stream = self.process.stderr if is_aside else self.process.stdout
         assert stream
         for line in stream:
-            if said in line.decode():
+            if text in line.decode():
                 return
-        raise AssertionError(f"never printed: {said}. {self.ended().err}")
+        raise AssertionError(f"never printed: {text}. {self.ended().err}")
 
     @classmethod
     def is_any_there(cls) -> bool:
@@ -119,9 +126,9 @@ class Command:
         self.process.kill()
         self.process.communicate()
 
-    def ended(self) -> Done:
+    def ended(self) -> CommandResult:
         out, err = self.process.communicate(timeout=HANGS_S)
-        return Done(self.process.returncode, out.decode(), err.decode())
+        return CommandResult(self.process.returncode, out.decode(), err.decode())
 
 
 def rest_of(terminal: int) -> bytes:

@@ -25,8 +25,8 @@ def have_kit() -> None:
     for path in sorted(path for pattern in SOURCES for path in ROOT.glob(pattern)):
         digest.update(bytes(path.relative_to(ROOT)) + path.read_bytes())
     for name in conformance.FILES:
-        made = once(BUILDS / f"{digest.hexdigest()[:16]}-{name}", partial(_make, name))
-        _put(made.read_bytes(), conformance.FOLDER / name)
+        built = once(BUILDS / f"{digest.hexdigest()[:16]}-{name}", partial(_make, name))
+        _put(built.read_bytes(), conformance.FOLDER / name)
 
 
 def _make(name: str, own: Path) -> None:

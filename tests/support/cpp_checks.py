@@ -78,8 +78,8 @@ def compare_verdicts(
     for code, (rule, offset) in zip(codes, theirs, strict=True):
         ours = python_verdict(code, sensors, actuators, needs)
         # the offset of what is accepted is its length
-        said = (rule, offset if rule else 0)
-        assert ours == said, f"{code.hex(' ')} for {sensors}, {actuators}: {ours}, not {said}"
+        verdict = (rule, offset if rule else 0)
+        assert ours == verdict, f"{code.hex(' ')} for {sensors}, {actuators}: {ours}, not {verdict}"
         if not rule:
             accepted.append(code)
     return accepted
@@ -97,19 +97,19 @@ def compare_runs(machine: Process, code: bytes, kit: Kit, senses: Senses) -> str
 
 
 def check_codes(machine: Process, seed: int, count: int) -> Counter[str]:
-    """Compare random codes, and run what is accepted; return how often each thing happened."""
+    """Compare random codes, and run what is accepted; return how many times each thing happened."""
     rng = random.Random(seed)
     oracle_kit, kit = KITS[seed % 2]
-    seen: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     sizes = len(kit.readings), len(kit.actuators)
     codes = list(random_codes(seed, count))
     accepted = compare_verdicts(machine, codes, *sizes)
     for number, code in enumerate(accepted):
         senses = Senses(programs.senses(rng, oracle_kit), MAX_MS, MAX_STEPS, number + 1)
-        seen[compare_runs(machine, code, kit, senses)] += 1
-    seen["accepted"] = len(accepted)
-    seen.update(str(rule) for rule, _ in machine.verdicts(codes, *sizes))
-    return seen
+        counts[compare_runs(machine, code, kit, senses)] += 1
+    counts["accepted"] = len(accepted)
+    counts.update(str(rule) for rule, _ in machine.verdicts(codes, *sizes))
+    return counts
 
 
 # -- time and a robot that is not ready ---------------------------------------------------------
@@ -322,7 +322,7 @@ def check_way_codes(machine: Process, seed: int, count: int) -> None:
     """The same verdicts, whatever the image needs; what is accepted and has no tasks runs alike."""
     ends: Counter[str] = Counter()
     codes = way_codes(seed, count)
-    codes += [bytes(each) for each in ((ESCAPE,), *((ESCAPE, second) for second in range(256)))]
+    codes += [bytes(code) for code in ((ESCAPE,), *((ESCAPE, second) for second in range(256)))]
     pushed = simple("PUSH_NUM_2") * 2
     codes += [pushed + bytes((ESCAPE, second)) for second in range(256)]
     for needs in (0, TASKS, GO, ALL_NEEDS):
@@ -348,7 +348,7 @@ def check_way_programs(machine: Process, first: int, count: int) -> None:
 
 def some_way_programs(first: int, count: int) -> list[tuple[bytes, Kit, Senses]]:
     """Return images of random programs whose moves go by ways, each second one with tasks."""
-    found = []
+    codes = []
     for seed in range(first, first + count):
         rng = random.Random(seed)
         theirs, kit = KITS[seed // 2 % 2]
@@ -359,8 +359,8 @@ def some_way_programs(first: int, count: int) -> list[tuple[bytes, Kit, Senses]]
             text = programs.program(rng, theirs, ways=True)
             readings, max_ms = programs.senses(rng, theirs), MAX_MS
         image = compile_text(text, kit).image
-        found.append((image, kit, Senses(readings, max_ms, 2000, seed + 1)))
-    return found
+        codes.append((image, kit, Senses(readings, max_ms, 2000, seed + 1)))
+    return codes
 
 
 # -- images -------------------------------------------------------------------------------------
@@ -405,11 +405,11 @@ def check_whole_images(machine: Process, seed: int, count: int) -> None:
     """Programs with a change in them, for robots of which some have other devices."""
     rng = random.Random(seed)
     senses = Senses(max_ms=100, max_steps=20)
-    seen = set()
+    refusals = set()
     for image, kit in images_of_programs(seed, count):
         for robot in (kit, changed_kit(rng, kit)):
             ours = refusal_of(lambda data=image, kit=robot: load_image(data, kit))  # type: ignore[misc]
             theirs = refusal_of(lambda data=image, kit=robot: machine.run(data, kit, senses))  # type: ignore[misc]
             assert ours == theirs, f"{image.hex(' ')}: {ours!r}, not {theirs!r}"
-            seen.add(ours.partition(" ")[2].partition(" ")[0])
-    assert {"", "OTHER_KIT", "NO_SUCH_DEVICE", "OTHER_VERSION", "DAMAGED"} <= seen, seen
+            refusals.add(ours.partition(" ")[2].partition(" ")[0])
+    assert {"", "OTHER_KIT", "NO_SUCH_DEVICE", "OTHER_VERSION", "DAMAGED"} <= refusals, refusals

@@ -47,8 +47,8 @@ def crowd(
 
 @contextmanager
 def _some(port: int, count: int, says: Sequence[bytes], host: str, source: str) -> Iterator[None]:
-    said = ",".join(each.hex() for each in says)
-    words = [sys.executable, "-I", "-S", "-c", CODE, host, str(port), source, str(count), said]
+    packets = ",".join(data.hex() for data in says)
+    words = [sys.executable, "-I", "-S", "-c", CODE, host, str(port), source, str(count), packets]
     with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         try:
             assert process.stdout and process.stdout.readline() == b"here\n"

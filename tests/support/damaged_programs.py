@@ -11,7 +11,7 @@ from tests.support.casefile import ROOT, read
 @cache
 def programs() -> list[str]:
     """Return programs of the examples, and those of cases and documents."""
-    found = [path.read_text(encoding="utf-8") for path in sorted(ROOT.glob("examples/**/*.ts"))]
+    texts = [path.read_text(encoding="utf-8") for path in sorted(ROOT.glob("examples/**/*.ts"))]
     for page in sorted((*ROOT.glob("tests/cases/*.md"), *ROOT.glob("docs/*/lang*.md"))):
-        found += [case.parts["tiniscript"] for case in read(page) if "tiniscript" in case.parts]
-    return [text for text in found if len(text) < 600 and not mistake_count(check(text))]
+        texts += [case.parts["tiniscript"] for case in read(page) if "tiniscript" in case.parts]
+    return [text for text in texts if len(text) < 600 and not mistake_count(check(text))]

@@ -43,7 +43,7 @@ class Debugged:
 
     def go(self, how: int = RESUME_GO) -> bool:
         """Go on; return whether it was halted."""
-        reply = self.robot.done(self.session, self.session.resume(how))
+        reply = self.robot.complete(self.session, self.session.resume(how))
         return bool(reply.was_halted)
 
     def step(self) -> bool:
@@ -51,46 +51,48 @@ class Debugged:
 
     def talk(self, milliseconds: int) -> list[Event]:
         self.robot.talk(self.session, milliseconds)
-        found = self.session.events()
-        self.events += found
-        return found
+        events = self.session.events()
+        self.events += events
+        return events
 
     def halt(self, limit_ms: int = 5000) -> Halt | None:
         """Wait for the next halt; None where the run ends before, or the time is over."""
-        found = self.until(
+        event = self.until(
             lambda event: event.name in ("HALTED", "DONE", "FAULT", "STOPPED"), limit_ms
         )
-        return Halt(found.at, found.task) if isinstance(found, HaltedEvent) else None
+        return Halt(event.at, event.task) if isinstance(event, HaltedEvent) else None
 
     def until(self, is_it: Callable[[Event], bool], limit_ms: int = 5000) -> Event | None:
         end_ms = self.robot.now_ms + limit_ms
-        found: Event | None = None
-        while self.robot.now_ms < end_ms and found is None:
-            found = next(filter(is_it, self.talk(1)), None)
-        return found
+        event: Event | None = None
+        while self.robot.now_ms < end_ms and event is None:
+            event = next(filter(is_it, self.talk(1)), None)
+        return event
 
     def is_halted(self) -> bool:
-        return bool(self.robot.done(self.session, self.session.read_tasks()).is_halted)
+        return bool(self.robot.complete(self.session, self.session.read_tasks()).is_halted)
 
     def variables(self) -> list[int]:
-        found: list[int] = []
-        while len(found) < 32:
-            asked = self.session.read_variables(len(found))
-            piece = [v for (v,) in iter_unpack("<i", self.robot.done(self.session, asked).values)]
+        values: list[int] = []
+        while len(values) < 32:
+            asked = self.session.read_variables(len(values))
+            piece = [
+                v for (v,) in iter_unpack("<i", self.robot.complete(self.session, asked).values)
+            ]
             if not piece:
                 break
-            found += piece
-        return found
+            values += piece
+        return values
 
     def tasks(self) -> list[tuple[int, int, int]]:
         """Return state, place and remaining time of each task."""
-        reply = self.robot.done(self.session, self.session.read_tasks())
+        reply = self.robot.complete(self.session, self.session.read_tasks())
         return list(iter_unpack("<BHI", reply.tasks))
 
 
 def debugged(text: str, *places: int, robot: HostFirmware | None = None) -> Debugged:
     """Return a robot whose program has these places, and has been started."""
-    found = Debugged(text, robot)
-    assert found.places(*places) == OK
-    found.start()
-    return found
+    session = Debugged(text, robot)
+    assert session.places(*places) == OK
+    session.start()
+    return session

@@ -16,11 +16,14 @@ Drawing = list[tuple[str, list[float], str]]
 
 def drawings_of(*wanted: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> list[Drawing]:
     """Return what is drawn of robots, each with its name, its state and what else is seen."""
-    known = {each["name"]: each for each in description()["robots"]}
-    asked = [{"robot": known[name], "state": state, "seen": seen} for name, state, seen in wanted]
-    found: list[Drawing] = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(asked))[0])
-    return found
+    known = {robot["name"]: robot for robot in description()["robots"]}
+    asked = [
+        {"robot": known[name], "state": state, "seen": robot_state}
+        for name, state, robot_state in wanted
+    ]
+    drawings: list[Drawing] = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(asked))[0])
+    return drawings
 
 
 def shapes(drawn: Drawing, how: str, color: str) -> list[list[float]]:
-    return [numbers for kind, numbers, found in drawn if (kind, found) == (how, color)]
+    return [numbers for kind, numbers, fill in drawn if (kind, fill) == (how, color)]

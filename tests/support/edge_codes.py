@@ -38,8 +38,8 @@ def unverified_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
         yield simple(name) + bytes(3), 0
     yield simple("SET_VAR_0"), 0
     yield yes + simple("MOTORS"), 1
-    for each, caught in ((VARIABLES - 1, None), (VARIABLES, 0), (255, 0)):
-        number = bytes([each])
+    for variable, caught in ((VARIABLES - 1, None), (VARIABLES, 0), (255, 0)):
+        number = bytes([variable])
         yield simple("SET_VAR8") + number + b"\x01", caught
         yield simple("ADD_VAR8") + number + b"\x01", caught
         yield simple("ADD_VAR") + b"\x00" + number, caught
@@ -50,8 +50,8 @@ def unverified_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
         yield simple("DEC_VAR") + number, caught
         yield simple("IF_VAR8_NE") + number + b"\x07\x00", caught
         yield simple("IF_VAR16_NE") + number + b"\x07\x00\x00", caught
-    for each, caught in ((sensors - 1, None), (sensors, 0), (255, 0)):
-        number = bytes([each])
+    for variable, caught in ((sensors - 1, None), (sensors, 0), (255, 0)):
+        number = bytes([variable])
         for name in ("READ", "PUSH_SENSOR", "PUSH_READ"):
             yield simple(name) + number, caught
     # a distance that leads beyond all addresses of 16 bits, to the instruction itself

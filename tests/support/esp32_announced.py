@@ -40,8 +40,8 @@ class Announced:
     def _follow(self) -> None:
         before: Any = None
         while not self._is_over.wait(LOOK_S):
-            said, number = self._said()
-            now = _info(said, number) if said.service else None
+            radios, number = self._said()
+            now = _info(radios, number) if radios.service else None
             if now == before:
                 continue
             if before is not None:
@@ -51,22 +51,22 @@ class Announced:
             before = now
 
     def _said(self) -> tuple[Radios, int]:
-        found: list[tuple[Radios, int]] = []
+        packets: list[tuple[Radios, int]] = []
 
         def look(robot: HostFirmware) -> None:
             assert isinstance(robot, Esp32Robot)
-            found.append((radios(robot), port_of(robot)))
+            packets.append((radios(robot), port_of(robot)))
 
         self._robot.ask(look)
-        return found[0]
+        return packets[0]
 
 
-def _info(said: Radios, number: int) -> Any:
+def _info(radios: Radios, number: int) -> Any:
     from zeroconf import ServiceInfo
 
-    kind, port = said.service.split()
+    kind, port = radios.service.split()
     service = f"{kind}.local."
     return ServiceInfo(
-        service, f"{said.instance}.{service}", number if int(port) == PORT else int(port),
-        addresses=[bytes((127, 0, 0, 1))], server=f"{said.host}.local.",
+        service, f"{radios.instance}.{service}", number if int(port) == PORT else int(port),
+        addresses=[bytes((127, 0, 0, 1))], server=f"{radios.host}.local.",
     )  # fmt: skip

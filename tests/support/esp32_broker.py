@@ -11,7 +11,7 @@ from tests.support.esp32_wifi import joined
 from tests.support.mosquitto import Mosquitto
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import ended
-from tests.support.robot_on_host import happened
+from tests.support.robot_on_host import actions_of
 from tiniscript.link import wifi
 from tiniscript.link.messages import AUTHORITY_MS
 from tiniscript.link.session import Session
@@ -59,4 +59,4 @@ def present(robot: Esp32Robot, at: Broker, group: str = "aula") -> list[RobotPre
 
 
 def motors(robot: Esp32Robot) -> str:
-    return [line for line in happened(robot) if "MOTORS" in line][-1]
+    return [line for line in actions_of(robot) if "MOTORS" in line][-1]

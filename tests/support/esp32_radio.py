@@ -25,13 +25,13 @@ class Client(Protocol):
 class Bytes:
     """A client without a session: what it says, and what it has heard."""
 
-    def __init__(self, said: bytes = b"") -> None:
-        self.said = said
+    def __init__(self, line: bytes = b"") -> None:
+        self.to_send = line
         self.heard = b""
 
     def poll(self, now_ms: int) -> bytes:
-        said, self.said = self.said, b""
-        return said
+        data, self.to_send = self.to_send, b""
+        return data
 
     def receive(self, data: bytes, now_ms: int) -> None:
         self.heard += data

@@ -56,8 +56,8 @@ def answers(tries: Sequence[Try], folder: Path) -> list[str]:
         capture_output=True, input=json.dumps(tries), env={**os.environ, **environment},
     )  # fmt: skip
     assert completed.returncode == 0, completed.stderr
-    found: list[str] = json.loads(completed.stdout)
-    return found
+    texts: list[str] = json.loads(completed.stdout)
+    return texts
 
 
 class Plugin:
@@ -68,26 +68,26 @@ class Plugin:
         self.answers: list[str] = []
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
-        found = [
-            [item for item in session.items if item.nodeid.split("[")[0] == each.test]
-            for each in self.tries
+        items_by_test = [
+            [item for item in session.items if item.nodeid.split("[")[0] == tried_test.test]
+            for tried_test in self.tries
         ]
-        quick = [item for each, row in zip(self.tries, found, strict=True) for item in row
-                 if each.file.endswith(".py")]  # fmt: skip
+        quick = [item for tried_test, row in zip(self.tries, items_by_test, strict=True)
+                 for item in row if tried_test.file.endswith(".py")]  # fmt: skip
         assert _in_child(quick, lambda: None) != FAILS, "they fail without a mutant, too"
-        self.answers += map(_tried, self.tries, found)
+        self.answers += map(_tried, self.tries, items_by_test)
         return True
 
 
-def _tried(each: Try, items: Sequence[pytest.Item]) -> str:
-    path = ROOT / each.file
+def _tried(tried_test: Try, items: Sequence[pytest.Item]) -> str:
+    path = ROOT / tried_test.file
     if path.suffix == ".py":
         try:
-            return _in_child(items, _exchange(each))
+            return _in_child(items, _exchange(tried_test))
         except Elsewhere as why:
             return str(why)
     right = path.read_bytes()
-    path.write_text(each.text, encoding="utf-8")
+    path.write_text(tried_test.text, encoding="utf-8")
     try:
         return _in_child(items, lambda: None)
     finally:
@@ -118,28 +118,30 @@ def _in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> str:
     return {0: PASSES, SKIPPED: SKIPS}.get(code, FAILS)
 
 
-def _exchange(each: Try) -> Callable[[], None]:
+def _exchange(tried_test: Try) -> Callable[[], None]:
     """Return what makes the mutant of the module that is imported."""
-    name = each.file.removeprefix("compiler/").removesuffix(".py").replace("/", ".")
+    name = tried_test.file.removeprefix("compiler/").removesuffix(".py").replace("/", ".")
     module = importlib.import_module(name.removesuffix(".__init__"))
-    right = (ROOT / each.file).read_text(encoding="utf-8")
+    right = (ROOT / tried_test.file).read_text(encoding="utf-8")
     function_by_code = {function.__code__: function for function in _functions(module, module)}
-    pairs = list(_pairs(*(compile(text, each.file, "exec") for text in (right, each.text))))
-    if not pairs or any(was not in function_by_code for was, _ in pairs):
+    pairs = list(
+        _pairs(*(compile(text, tried_test.file, "exec") for text in (right, tried_test.text)))
+    )
+    if not pairs or any(old_code not in function_by_code for old_code, _ in pairs):
         raise Elsewhere("a function that differs is not found")
 
     def exchange() -> None:
-        for was, becomes in pairs:
-            function_by_code[was].__code__ = becomes
+        for old_code, becomes in pairs:
+            function_by_code[old_code].__code__ = becomes
 
     return exchange
 
 
-def _pairs(was: CodeType, becomes: CodeType) -> Iterator[Pair]:
+def _pairs(old_code: CodeType, becomes: CodeType) -> Iterator[Pair]:
     """Yield the functions that differ in the code of a module or a class, outermost ones."""
     old, new = ([const for const in code.co_consts if isinstance(const, CodeType)]
-                for code in (was, becomes))  # fmt: skip
-    if _own(was) != _own(becomes) or len(old) != len(new):
+                for code in (old_code, becomes))  # fmt: skip
+    if _own(old_code) != _own(becomes) or len(old) != len(new):
         raise Elsewhere("what differs is in no function")
     for pair in zip(old, new, strict=True):
         if pair[0] != pair[1]:
@@ -158,18 +160,18 @@ def _functions(owner: ModuleType | type, module: ModuleType) -> Iterator[Functio
     """Yield the functions of a module, and of its classes."""
     for value in vars(owner).values():
         for name in ("", "__func__", "fget", "fset", "func", "__wrapped__"):
-            found = getattr(value, name, None) if name else value
-            if isinstance(found, FunctionType):
-                yield found
+            function = getattr(value, name, None) if name else value
+            if isinstance(function, FunctionType):
+                yield function
         if isinstance(value, type) and value.__module__ == module.__name__:
             yield from _functions(value, module)
 
 
 def main() -> int:
-    plugin = Plugin([Try(*each) for each in json.load(sys.stdin)])
+    plugin = Plugin([Try(*values) for values in json.load(sys.stdin)])
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)  # what pytest says
-    tests = dict.fromkeys(each.test for each in plugin.tries)
+    tests = dict.fromkeys(tried_test.test for tried_test in plugin.tries)
     code = pytest.main(["-q", "-p", "no:cacheprovider", "-s", "--whole", *tests], [plugin])
     json.dump(plugin.answers, answers)
     answers.flush()

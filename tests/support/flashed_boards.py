@@ -11,7 +11,7 @@ from pathlib import Path
 from tests.machines.bootloaders import Bootloader
 from tests.machines.uno import built
 from tests.support.casefile import ROOT
-from tests.support.command import Done
+from tests.support.command import CommandResult
 from tests.support.copies import linked
 from tests.support.waiting import HANGS_S
 from tools.uno import Uno
@@ -42,8 +42,8 @@ def command(*words: str) -> list[str]:
     return [*LIMITED, sys.executable, "-m", "tiniscript", "firmware", "--yes", *words]
 
 
-def tsc(package: Path, *words: str, **variables: str) -> Done:
-    done = subprocess.run(
+def tsc(package: Path, *words: str, **variables: str) -> CommandResult:
+    result = subprocess.run(
         command(*words),
         env={**os.environ, "PYTHONPATH": str(package), **variables},
         capture_output=True,
@@ -51,10 +51,10 @@ def tsc(package: Path, *words: str, **variables: str) -> Done:
         timeout=180,
         check=False,
     )
-    return Done(done.returncode, done.stdout, done.stderr)
+    return CommandResult(result.returncode, result.stdout, result.stderr)
 
 
-def interrupted(ready_file: Path, *words: str, **variables: str) -> Done:
+def interrupted(ready_file: Path, *words: str, **variables: str) -> CommandResult:
     """Return what it did where Ctrl-C comes as soon as something is in a file."""
     running = subprocess.Popen(
         command(*words), env={**os.environ, **variables}, stderr=subprocess.PIPE, text=True
@@ -62,8 +62,8 @@ def interrupted(ready_file: Path, *words: str, **variables: str) -> Done:
     while not (ready_file.exists() and ready_file.read_text()):
         assert running.poll() is None
     running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=HANGS_S)
-    return Done(running.returncode, "", said)
+    _, output = running.communicate(timeout=HANGS_S)
+    return CommandResult(running.returncode, "", output)
 
 
 def new_board(of: Bootloader) -> Uno:

@@ -48,7 +48,7 @@ AT_VERSION = (
 )
 FIRMATA_VERSION = b"\xf9\x02\x05"
 FIRMATA_NAME = (
-    b"\xf0\x79\x02\x05" + b"".join(bytes([each, 0]) for each in b"StandardFirmata.ino") + b"\xf7"
+    b"\xf0\x79\x02\x05" + b"".join(bytes([byte, 0]) for byte in b"StandardFirmata.ino") + b"\xf7"
 )
 FIRMATA = FIRMATA_VERSION + FIRMATA_NAME
 MBOT_START = b"Version: 06.01.009\r\n"
@@ -56,11 +56,11 @@ MBOT_VERSION = b"\xff\x55\x01\x04\x0906.01.009\r\n"
 
 
 class Recording(NamedTuple):
-    """What a board has sent, and the row of `link/foreign.py` and the line that are told of it."""
+    """What a board has sent, and which row of `link/foreign.py` and which line are told."""
 
     name: str
     data: bytes
-    said: str
+    shown_text: str
 
 
 RECORDINGS: Mapping[str, Recording] = {
@@ -209,9 +209,9 @@ class PythonBoard(Board):
         if self._is_raw:
             return b""
         if byte in b"\r\n":
-            was, self._line = self._line, b""
-            said = b"Traceback (most recent call last):\r\nSyntaxError: invalid syntax\r\n"
-            return b"\r\n" + said * bool(was) + b">>> "
+            line, self._line = self._line, b""
+            reply = b"Traceback (most recent call last):\r\nSyntaxError: invalid syntax\r\n"
+            return b"\r\n" + reply * bool(line) + b">>> "
         if 0x20 <= byte < 0x7F:
             self._line += bytes([byte])
             return bytes([byte])
@@ -235,10 +235,10 @@ class AtBoard(Board):
         if not self._line.endswith(b"\r\n"):
             return bytes([byte])
         command, self._line = self._line.strip(), b""
-        said = bytes([byte])
+        reply = bytes([byte])
         if command == b"AT":
-            return said + b"\r\nOK\r\n"
-        return said + (AT_VERSION[8:] if command == b"AT+GMR" else b"\r\nERROR\r\n")
+            return reply + b"\r\nOK\r\n"
+        return reply + (AT_VERSION[8:] if command == b"AT+GMR" else b"\r\nERROR\r\n")
 
 
 class Esp32Board(Board):
@@ -277,8 +277,8 @@ class LineEchoSketch(Board):
     def answer(self, data: bytes) -> bytes:
         self._line += data
         self._quiet_ms = 0 if data else self._quiet_ms + 1
-        said = super().answer(b"")
+        reply = super().answer(b"")
         if self._line and self._quiet_ms >= 100:
-            said += b"You said: " + self._line + b"\r\n"
+            reply += b"You said: " + self._line + b"\r\n"
             self._line = b""
-        return said
+        return reply

@@ -15,7 +15,7 @@ FIRST, SECOND, EACH = 128, 576, 31  # where the slots of the program lie, and by
 
 
 def saved(robot: HostFirmware, session: Session) -> str:
-    return SAVED[robot.done(session, session.status()).saved][0]
+    return SAVED[robot.complete(session, session.status()).saved][0]
 
 
 def name_after_power_off(robot: HostFirmware) -> str:

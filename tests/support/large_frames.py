@@ -71,8 +71,8 @@ class AnsweringRobot:
         elif frame.number == DATA:
             (offset,) = struct.unpack("<H", frame.payload[:2])
             self.data.append((frame.seq, offset, len(frame.payload) - 2))
-            found = self.takes(len(self.data), offset, frame.payload[2:])
-            payload = None if found is None else struct.pack("<BH", *found)
+            progress = self.takes(len(self.data), offset, frame.payload[2:])
+            payload = None if progress is None else struct.pack("<BH", *progress)
         elif frame.number == BY_NAME["COMMIT"].number:
             self.has_commit = True
             payload = struct.pack("<BIBBB", OK, IMAGE.checksum, 1, 0, 3)
@@ -86,11 +86,11 @@ class InOrderReceiver:
 
     def __init__(self, lost: tuple[int, ...] = (), unanswered: tuple[int, ...] = ()) -> None:
         self.lost, self.unanswered = lost, unanswered
-        self.found = b""
+        self.received = b""
 
     def __call__(self, number: int, offset: int, data: bytes) -> tuple[int, int] | None:
         if number in self.lost:
             return None
-        if offset == len(self.found):
-            self.found += data
-        return None if number in self.unanswered else (OK, len(self.found))
+        if offset == len(self.received):
+            self.received += data
+        return None if number in self.unanswered else (OK, len(self.received))

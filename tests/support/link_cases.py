@@ -90,8 +90,8 @@ def _read(path: Path) -> list[LinkCase]:
             cases.append(LinkCase(path, number, fence, row, []))
         elif fence in KINDS:
             time, _, name = row.lstrip().partition(" ")
-            found = named.get(name, []) if time.isdigit() else []
-            cases[-1].rows.extend([f"{time:>6} {each}" for each in found] or [row])
+            lines = named.get(name, []) if time.isdigit() else []
+            cases[-1].rows.extend([f"{time:>6} {text}" for text in lines] or [row])
         elif not fence and row.startswith("#"):
             title = row.lstrip("# ")
     return cases
@@ -115,18 +115,18 @@ def accept(case: LinkCase, rows: list[str]) -> None:
 
 def shortened(rows: list[str], named: Mapping[str, list[str]]) -> list[str]:
     """Return rows with names for those that have one."""
-    found = []
+    shortened_rows = []
     while rows:
         time = rows[0][:7]
         for name, value in named.items():
             if rows[: len(value)] == [time + row for row in value]:
-                found.append(time + name)
+                shortened_rows.append(time + name)
                 rows = rows[len(value) :]
                 break
         else:
-            found.append(rows[0])
+            shortened_rows.append(rows[0])
             rows = rows[1:]
-    return found
+    return shortened_rows
 
 
 # -- conversations --------------------------------------------------------------------------------
@@ -136,7 +136,7 @@ class Computer(Protocol):
     def asked(self, words: list[str]) -> None: ...
     def poll(self, now_ms: int) -> bytes: ...
     def receive(self, data: bytes, now_ms: int) -> None: ...
-    def said(self) -> list[str]: ...
+    def outcome_rows(self) -> list[str]: ...
 
 
 class Robot(Protocol):
@@ -146,7 +146,7 @@ class Robot(Protocol):
 
 def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
     """Return the rows of a conversation: what is wanted, and what comes of it."""
-    found = []
+    played_rows = []
     now_ms = 0
     is_late = False
     lost = {">": 0, "<": 0}
@@ -154,7 +154,7 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
         words = row.split()
         if not words or words[0].isdigit():
             continue
-        found.append(row)
+        played_rows.append(row)
         steps = 1
         if words[0] == "host":
             computer.asked(words[1:])
@@ -176,14 +176,14 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
             reply_mark = _mark("<", step.sent, lost)
             computer.receive(b"" if reply_mark == "<x" else step.sent, now_ms)
             if data:
-                found += wire_rows(now_ms, mark, data)
-            found += [f"{now_ms:6} did {row}" for row in step.did]
+                played_rows += wire_rows(now_ms, mark, data)
+            played_rows += [f"{now_ms:6} did {row}" for row in step.did]
             if step.sent:
-                found += wire_rows(now_ms, reply_mark, step.sent)
-            found += [f"{now_ms:6} {row}" for row in computer.said()]
+                played_rows += wire_rows(now_ms, reply_mark, step.sent)
+            played_rows += [f"{now_ms:6} {row}" for row in computer.outcome_rows()]
             now_ms += STEP_MS
             is_late = False
-    return found
+    return played_rows
 
 
 def _mark(side: str, data: bytes, lost: dict[str, int]) -> str:
@@ -284,10 +284,8 @@ class SessionSide:
     def receive(self, data: bytes, now_ms: int) -> None:
         self.session.receive(data, now_ms)
 
-    def said(self) -> list[str]:
-        rows = [
-            _said("tells " + event.name, event_fields(event)) for event in self.session.events()
-        ]
+    def outcome_rows(self) -> list[str]:
+        rows = [_row("tells " + event.name, event_fields(event)) for event in self.session.events()]
         for request in [
             pending_request for pending_request in self.pending if pending_request.outcome
         ]:
@@ -296,12 +294,12 @@ class SessionSide:
             name = name or name_of(request.outcome.status)
             detail = f" {request.outcome.detail}" if request.outcome.detail else ""
             values = request.outcome.values._asdict() if request.outcome.status == OK else {}
-            rows.append(_said(f"outcome {name}{detail}", values))
+            rows.append(_row(f"outcome {name}{detail}", values))
             self.pending.remove(request)
         return rows
 
 
-def _said(head: str, values: Mapping[str, int | bytes]) -> str:
+def _row(head: str, values: Mapping[str, int | bytes]) -> str:
     return " ".join([head, *(f"{name}={shown(value)}" for name, value in values.items())])
 
 
@@ -345,7 +343,7 @@ class HandSender:
         return data
 
     def receive(self, data: bytes, now_ms: int) -> None: ...
-    def said(self) -> list[str]:
+    def outcome_rows(self) -> list[str]:
         return []
 
 
@@ -401,7 +399,7 @@ class Written:
         return self._data(now_ms, ">")
 
     def receive(self, data: bytes, now_ms: int) -> None: ...
-    def said(self) -> list[str]:
+    def outcome_rows(self) -> list[str]:
         return self._rows(self.now_ms, "tells", "outcome")
 
     # as a robot
@@ -465,5 +463,5 @@ def packets_of(
     return [*rows, f"damaged {receiver.damaged % 256}, dropped {receiver.dropped % 256}"]
 
 
-def with_found(case: LinkCase, found: list[str]) -> list[str]:
-    return [*(row for row in case.rows if row[:1] != "="), *(f"= {row}" for row in found)]
+def with_found(case: LinkCase, rows: list[str]) -> list[str]:
+    return [*(row for row in case.rows if row[:1] != "="), *(f"= {row}" for row in rows)]

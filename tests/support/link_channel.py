@@ -108,10 +108,10 @@ class Radio:
         return b"".join(frames)
 
     def arrived(self, now_ms: int) -> bytes:
-        found = bytearray()
+        data = bytearray()
         while self._queue and self._queue[0][0] <= now_ms:
-            found.append(self._queue.popleft()[1])
-        return bytes(found)
+            data.append(self._queue.popleft()[1])
+        return bytes(data)
 
 
 class World:
@@ -146,14 +146,14 @@ class World:
             self.disturb()
             data = self.session.poll(self.now_ms)
             if data:
-                self.heard(data)
+                self.overhear(data)
                 self.to_robot.send(data, self.now_ms)
             came = self.to_robot.arrived(self.now_ms)
             if came or self.now_ms % 50 == 0:
                 step = self.cpp.step(self.now_ms, came)
                 self.did += step.did
                 if step.sent:
-                    self.heard(step.sent)
+                    self.overhear(step.sent)
                     self.to_computer.send(step.sent, self.now_ms)
             self.session.receive(self.to_computer.arrived(self.now_ms), self.now_ms)
             self.now_ms += self.STEP_MS
@@ -161,7 +161,7 @@ class World:
     def disturb(self) -> None:
         """What others do at this time."""
 
-    def heard(self, data: bytes) -> None:
+    def overhear(self, data: bytes) -> None:
         """What others hear."""
 
 

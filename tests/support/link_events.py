@@ -19,4 +19,4 @@ EVENTS: tuple[Event, ...] = (
 
 def event(name: str) -> Event:
     """Return an event of this name."""
-    return next(each for each in EVENTS if each.name == name)
+    return next(event for event in EVENTS if event.name == name)

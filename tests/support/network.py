@@ -79,18 +79,18 @@ class BadNetwork(Network):
 
 
 class CuttingNetwork(Network):
-    """What a server says comes in small pieces. The first connection ends after `left[0]` bytes of
-    it, the second after `left[1]`; later ones stay."""
+    """What a server says comes in small pieces. The first connection ends after `bytes_left[0]`
+    bytes of it, the second after `bytes_left[1]`; later ones stay."""
 
     most = 7
 
     def __init__(self, target: int, left: Sequence[int]) -> None:
-        self.left = list(left)
+        self.bytes_left = list(left)
         super().__init__(target)
 
     def passed(self, data: bytes, is_back: bool, number: int) -> bytes | None:
-        if not is_back or number >= len(self.left):
+        if not is_back or number >= len(self.bytes_left):
             return data
-        data = data[: self.left[number]]
-        self.left[number] -= len(data)
+        data = data[: self.bytes_left[number]]
+        self.bytes_left[number] -= len(data)
         return data or None

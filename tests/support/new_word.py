@@ -30,8 +30,8 @@ CHEEP = Word("CHEEP", Role("cheep", is_instruction=True), (SECONDS, HERTZ))
 def with_texts(folder: Path) -> Path:
     """Return a copy of the languages that say what the word does."""
     shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("*.texts"))
-    for language, said in SAID.items():
+    for language, text in SAID.items():
         with (folder / language / "studio.toml").open("a", encoding="utf-8") as file:
             for word in (HORN, SHAKE, LAMP):
-                file.write(f'"block/{word.text}" = "{{{word.text}}} {said}"\n')
+                file.write(f'"block/{word.text}" = "{{{word.text}}} {text}"\n')
     return folder

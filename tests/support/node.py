@@ -27,11 +27,11 @@ def in_node(script: Path, *words: str, given: str = "") -> list[str]:
     except CannotMake as why:
         need(str(why))
     command = [*node, str(script), str(SOURCES / "src"), *words]
-    done = subprocess.run(
+    result = subprocess.run(
         command, input=given, capture_output=True, text=True, timeout=2 * HANGS_S, check=False
     )
-    assert done.returncode == 0, done.stderr
-    return done.stdout.splitlines()
+    assert result.returncode == 0, result.stderr
+    return result.stdout.splitlines()
 
 
 @pytest.fixture(scope="module")

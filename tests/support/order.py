@@ -58,8 +58,8 @@ def spread_names(names: Sequence[str], count: int) -> list[int]:
     parts: list[list[int]] = [[] for _ in range(count)]
     pages = [name for name in files if name.startswith(PAGES)]
     others = [name for name in LONG if name in files]
-    for found, where in ((pages, parts[:half]), (others, parts[half:])):
-        for k, name in enumerate(found):
+    for part_names, where in ((pages, parts[:half]), (others, parts[half:])):
+        for k, name in enumerate(part_names):
             where[k % len(where)] += files.pop(name)
     quick = [k for row in files.values() for k in row]
     left = len(names)

@@ -106,8 +106,8 @@ class Owned:
     def answer(self, frame: Frame | bytes) -> Frame | None:
         """Return what the robot answers a frame, or bytes of one."""
         data = frame + b"\0" if isinstance(frame, bytes) else encode_frame(frame)
-        found = [part for part in self.robot.wait(20, b"\0" + data).split(b"\0") if part]
-        return decode_frame(found[0]) if found else None
+        frames = [part for part in self.robot.wait(20, b"\0" + data).split(b"\0") if part]
+        return decode_frame(frames[0]) if frames else None
 
     def asked(self, session: Session, name: str, payload: bytes) -> bytes:
         """Return what the robot answers the next frame of a session, which needs no seal."""
@@ -149,7 +149,7 @@ def owner_of(table: Owned, session: Session) -> str:
 
 
 def state_of(table: Owned, session: Session) -> int:
-    return table.robot.done(session, session.status()).state
+    return table.robot.complete(session, session.status()).state
 
 
 def grants_key_request(sent: bytes) -> bool:

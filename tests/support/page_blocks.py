@@ -31,7 +31,7 @@ def text_of(page: Page) -> str:
 
 
 def becomes(page: Page, text: str) -> None:
-    """Wait until the blocks have become this text; the page is told of a change a moment later."""
+    """Wait until the blocks have become this text; the page hears of a change a moment later."""
     for _ in range(PATIENCE_MS // 50):
         if text_of(page) == text:
             return

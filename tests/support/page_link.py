@@ -44,12 +44,12 @@ def robot(first_robot: PtyRobot) -> PtyRobot:
 
 @pytest.fixture(scope="module")
 def first(browser: Browser, server: serving.Server) -> Iterator[tuple[Pages, Page]]:
-    found = Pages(browser, server.address, entrance=server.entrance)
-    yield found, found.open()
-    found.close()
+    opened_pages = Pages(browser, server.address, entrance=server.entrance)
+    yield opened_pages, opened_pages.open()
+    opened_pages.close()
 
 
-def said(page: Page, text: str | re.Pattern[str]) -> None:
+def wait_for_message(page: Page, text: str | re.Pattern[str]) -> None:
     from playwright.sync_api import expect
 
     expect(page.locator("#link_said")).to_contain_text(text, ignore_case=True, timeout=PATIENCE_MS)
@@ -61,25 +61,29 @@ def connect(page: Page, robot: PtyRobot) -> None:
     page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
     for _ in range(10):  # a page that was closed may not have said so: it has left after a while
         page.click("#link_connect")
-        said(page, re.compile("Connected: |Another tab"))
+        wait_for_message(page, re.compile("Connected: |Another tab"))
         if "Connected" in page.locator("#link_said").inner_text():
             return
         page.wait_for_timeout(500)
-    said(page, "Connected: ")
+    wait_for_message(page, "Connected: ")
 
 
 @pytest.fixture
 def page(first: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     """A page that has met its robot; many tests share it, and each connects."""
-    pages, found = first
-    found.set_viewport_size({"width": 1366, "height": 768})
-    speak(found, "en")
-    found.evaluate("for (const each of document.querySelectorAll('details')) each.open = false")
-    connect(found, robot)
-    yield found
-    found.click("#side_real")
-    found.locator("#link_leave").dispatch_event("click")  # seen or not: it may just have left
-    found.locator("html:not([data-robot=connected])").wait_for(state="attached")
+    pages, current_page = first
+    current_page.set_viewport_size({"width": 1366, "height": 768})
+    speak(current_page, "en")
+    current_page.evaluate(
+        "for (const each of document.querySelectorAll('details')) each.open = false"
+    )
+    connect(current_page, robot)
+    yield current_page
+    current_page.click("#side_real")
+    current_page.locator("#link_leave").dispatch_event(
+        "click"
+    )  # seen or not: it may just have left
+    current_page.locator("html:not([data-robot=connected])").wait_for(state="attached")
     wrong, pages.wrong[:] = pages.wrong[:], []
     assert not wrong
 

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 
-def kept(page: Page) -> list[str]:
+def run_names(page: Page) -> list[str]:
     """Open the window of the runs; return what each is called."""
     page.click("#runs_open")
     return page.locator("#runs_list button:first-child").all_inner_texts()

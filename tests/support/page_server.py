@@ -16,14 +16,14 @@ Served = TypeVar("Served", bound=BaseServer)
 
 
 @contextmanager
-def serves(made: Served) -> Iterator[Served]:
-    thread = Thread(target=made.serve_forever, args=(0.02,), daemon=True)
+def serves(served: Served) -> Iterator[Served]:
+    thread = Thread(target=served.serve_forever, args=(0.02,), daemon=True)
     thread.start()
     try:
-        yield made
+        yield served
     finally:
-        made.shutdown()
-        made.server_close()
+        served.shutdown()
+        served.server_close()
         thread.join()
 
 
@@ -32,10 +32,10 @@ def ask(
     headers: Mapping[str, str | None] | None = None,
 ) -> tuple[HTTPResponse, bytes]:  # fmt: skip
     """Ask the server at `own`, a host and its port. A header that is None is left out."""
-    kept = {name: value for name, value in (headers or {}).items() if value is not None}
+    given_headers = {name: value for name, value in (headers or {}).items() if value is not None}
     connection = HTTPConnection(own, timeout=HANGS_S)
     try:
-        connection.request(method, path, body, kept)
+        connection.request(method, path, body, given_headers)
         response = connection.getresponse()
         return response, response.read()
     finally:

@@ -19,7 +19,7 @@ def started_simulation(
     text: str, at: Iterable[int] = (), is_held: bool = False, robot: str = "tinibot"
 ) -> Simulation:
     """Return a simulation of a program with breakpoints in front of those parts of its text."""
-    found = check(text.encode(), robot, "en")
-    parts = tuple(place.offset for place in found.places)
-    marks = Marks(parts, tuple(parts[k] for k in at), len(found.variables), is_held)
-    return Simulation(robot, worlds.load("obstacles"), found.image, marks)
+    result = check(text.encode(), robot, "en")
+    parts = tuple(place.offset for place in result.places)
+    marks = Marks(parts, tuple(parts[k] for k in at), len(result.variables), is_held)
+    return Simulation(robot, worlds.load("obstacles"), result.image, marks)

@@ -45,7 +45,7 @@ def drag(page: Page, way: Sequence[Place]) -> None:
     page.mouse.up()
 
 
-def said(page: Page, text: str) -> None:
+def wait_for_status(page: Page, text: str) -> None:
     page.locator("#doing").filter(has_text=text).wait_for()
 
 

@@ -15,7 +15,7 @@ import pytest
 
 from tests.machines.host import once
 from tests.support.casefile import ROOT
-from tests.support.command import Done
+from tests.support.command import CommandResult
 from tests.support.copies import linked
 from tests.support.needs import need
 
@@ -39,7 +39,7 @@ def copied(folder: Path) -> Path:
     return linked(SKETCH, folder / "vm_arduino", ".pio", "__pycache__", "own.h")
 
 
-def pio(project: Path, *words: str) -> Done:
+def pio(project: Path, *words: str) -> CommandResult:
     """Run `pio`: what it said, as its output."""
     completed = subprocess.run(
         [sys.executable, "-m", "platformio", *words],
@@ -50,7 +50,7 @@ def pio(project: Path, *words: str) -> Done:
         text=True,
         check=False,
     )
-    return Done(completed.returncode, completed.stdout, "")
+    return CommandResult(completed.returncode, completed.stdout, "")
 
 
 def shared(factory: pytest.TempPathFactory) -> Path:

@@ -72,8 +72,8 @@ def say(registration: Registration, data: bytes, chance: Random) -> None:
             peer.sendall(piece)
         if chance.random() < 0.5:
             peer.shutdown(socket.SHUT_WR)
-            said = peer.recv(1000)
-            assert said == b"", "a stranger is answered"
+            reply = peer.recv(1000)
+            assert reply == b"", "a stranger is answered"
 
 
 def say_all(port: str, seed: int, count: int) -> None:

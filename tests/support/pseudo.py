@@ -15,11 +15,11 @@ def pseudo(content: Any) -> Any:
     if isinstance(content, dict):
         return {key: pseudo(value) if key else value for key, value in content.items()}
     if isinstance(content, list):
-        return [pseudo(each) for each in content]
+        return [pseudo(value) for value in content]
     parts = _KEPT.split(content)
-    said = "".join(each if k % 2 else each.translate(_ACCENTS) for k, each in enumerate(parts))
+    text = "".join(part if k % 2 else part.translate(_ACCENTS) for k, part in enumerate(parts))
     size = sum(map(len, parts[::2]))
     if not re.search(r"[A-Za-z]{2}", "".join(parts[::2])):
-        return said
+        return text
     longer = (f"{_WORD} " * size)[: -(-size // 3)].rstrip()
-    return said + longer if size < 10 else f"{said} {longer}"
+    return text + longer if size < 10 else f"{text} {longer}"

@@ -55,15 +55,15 @@ class PtyEnd(PtyPort):
         return _SPEEDS.get(termios.tcgetattr(self.ours)[5], 0) or self.end.baud
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
-        said = b""
+        reply = b""
         with self._lock:
             self.heard += data
             for _ in range(milliseconds):
                 speed = self.end.baud  # an answer has the speed of before the command
                 answer = self.end.step(garbled(data, self._baud(), speed))
-                said += garbled(answer, speed, self._baud())
+                reply += garbled(answer, speed, self._baud())
                 data = b""
-        return said
+        return reply
 
     def _run(self) -> None:
         next_s = time.monotonic()
@@ -71,7 +71,7 @@ class PtyEnd(PtyPort):
             next_s = max(next_s + 0.001, time.monotonic() - BEHIND_S)
             ready, _, _ = select.select([self.ours], [], [], 0)
             if self.simulated is None:
-                said = self.pass_ms(1, os.read(self.ours, 4096) if ready else b"")
-                if said:
-                    os.write(self.ours, said)
+                reply = self.pass_ms(1, os.read(self.ours, 4096) if ready else b"")
+                if reply:
+                    os.write(self.ours, reply)
             time.sleep(max(0.0, next_s - time.monotonic()))

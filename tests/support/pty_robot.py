@@ -17,7 +17,7 @@ from pathlib import Path
 
 from tests.machines.host_firmware import EMPTY, POWER_ON, HostFirmware
 from tests.support import waiting
-from tests.support.command import FOREVER, Command, Done, inside
+from tests.support.command import FOREVER, Command, CommandResult, inside
 from tests.support.simulated_port import STRIDE_MS, PtyPort, simulated
 from tiniscript.base.kit import Kit
 
@@ -191,7 +191,7 @@ class PtyRobot(PtyPort):
                 os.write(self.ours, sent)
 
 
-def on(pty_robot: PtyRobot, *arguments: str | Path, data: bytes = b"") -> Done:
+def on(pty_robot: PtyRobot, *arguments: str | Path, data: bytes = b"") -> CommandResult:
     """Run `tsc` on the robot's port, in this process and in the robot's time.
 
     Beside a command that stays it is the time of the wall: the robot must not miss what that sends.

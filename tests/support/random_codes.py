@@ -23,7 +23,7 @@ _NEAR = (0, 1, 2, 3, 5, 499, 500, 501, 999, 1000, 1001, 1499, 1500, 1501, 2500, 
          65_535, 65_536, 1_465_431, 1_465_432, 2_147_483, 2_147_484, 10**6, 10**7, 5 * 10**7,
          10**8, 10**9, 2**30, 2**31 - 1001, 2**31 - 1000, 2**31 - 501, 2**31 - 500, 2**31 - 499,
          2**31 - 2, 2**31 - 1)  # fmt: skip
-EDGES = sorted({*_NEAR, *(-each for each in _NEAR), -(2**31)})
+EDGES = sorted({*_NEAR, *(-value for value in _NEAR), -(2**31)})
 
 
 def any_number(rng: random.Random) -> int:
@@ -311,14 +311,14 @@ def random_codes(seed: int, count: int) -> Iterator[bytes]:
 @lru_cache(maxsize=1)
 def some_programs() -> tuple[tuple[bytes, Kit, Senses], ...]:
     """Return random programs with their robots."""
-    found = []
+    codes = []
     for seed in range(300):
         rng = random.Random(seed)
         oracle_kit, kit = KITS[seed % 2]
         image = compile_text(programs.program(rng, oracle_kit), kit).image
         senses = Senses(programs.senses(rng, oracle_kit), 20_000, 5000, seed + 1)
-        found.append((image, kit, senses))
-    return tuple(found)
+        codes.append((image, kit, senses))
+    return tuple(codes)
 
 
 def random_images(seed: int, count: int) -> Iterator[bytes]:

@@ -82,9 +82,9 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
 
 def lacks_values(data: bytes, kit: Kit) -> bool:
     """Whether `--text-level` says of a right text that its DEFs have values no robot reads."""
-    found = compile_text(decode(data), kit)
-    assert found.program is not None
-    diagnostics = find_misfits(found.source, found.program, kit, LEVELS["mega"])
+    compilation = compile_text(decode(data), kit)
+    assert compilation.program is not None
+    diagnostics = find_misfits(compilation.source, compilation.program, kit, LEVELS["mega"])
     return any(diagnostic.code is LEVEL_VALUES for diagnostic in diagnostics)
 
 
@@ -132,11 +132,11 @@ def check_program(data: bytes, kit: Kit, senses: Senses) -> None:
     assert answer.is_program, f"{answer}\n{data.decode()}"
     compiled = compile_text(decode(data), kit)
     assert compiled.program is not None and compiled.program.start == answer.start
-    got, want = (trace(code, kit, senses) for code in (answer.code, compiled.code))
-    if any(each[-1].endswith("LIMIT") for each in (got, want)):
-        least = min(len(got), len(want)) - 1  # where steps cut a run is no part of the meaning
-        got, want = got[:least], want[:least]
-    assert got == want, data.decode()
+    actual, want = (trace(code, kit, senses) for code in (answer.code, compiled.code))
+    if any(lines[-1].endswith("LIMIT") for lines in (actual, want)):
+        least = min(len(actual), len(want)) - 1  # where steps cut a run is no part of the meaning
+        actual, want = actual[:least], want[:least]
+    assert actual == want, data.decode()
 
 
 def trace(code: bytes, kit: Kit, senses: Senses) -> list[str]:
@@ -172,10 +172,10 @@ def soup(seed: int) -> tuple[Kit, bytes]:
 
 def some_texts(soups: int, count: int) -> list[bytes]:
     """Return so many lines of any tokens, and random programs with a slip of each."""
-    found = [soup(seed)[1] for seed in range(soups)]
+    texts = [soup(seed)[1] for seed in range(soups)]
     for seed in range(count):
         rng = random.Random(seed)
         text = programs.program(rng, KITS[1][0])
         slip = programs.broken(rng, text).encode("utf-8", "surrogatepass")
-        found += [text.encode(), damaged(rng, slip)]
-    return found
+        texts += [text.encode(), damaged(rng, slip)]
+    return texts

@@ -43,14 +43,14 @@ def outcome(request: PendingRequest[T]) -> Reply[T]:
 
 
 def held(robot: HostFirmware, session: Session) -> bytes:
-    return robot.done(session, session.fetch()).image
+    return robot.complete(session, session.fetch()).image
 
 
 def stored(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int:
     """Wait until the robot says that its program is saved; return how long that took."""
     begun_ms = robot.now_ms
     while robot.now_ms < begun_ms + limit_ms:
-        if robot.done(session, session.status()).saved == SAVED_STORED:
+        if robot.complete(session, session.status()).saved == SAVED_STORED:
             return robot.now_ms - begun_ms
         robot.talk(session, 50)
     raise AssertionError("the program is not saved")
@@ -72,7 +72,7 @@ def broken_upload(robot: HostFirmware, session: Session) -> None:
     robot.wait(3000)
 
 
-def happened(robot: HostFirmware) -> list[str]:
+def actions_of(robot: HostFirmware) -> list[str]:
     return [line.split(" ", 1)[1] for line in robot.did]
 
 
@@ -81,7 +81,7 @@ def pushed(robot: HostFirmware, milliseconds: int = 400) -> list[str]:
     robot.did.clear()
     robot.push()
     robot.wait(milliseconds)
-    return happened(robot)
+    return actions_of(robot)
 
 
 def live(robot: HostFirmware, session: Session, text: str) -> None:

@@ -51,4 +51,4 @@ def send(wired: Wired, text: str, **how: bool) -> None:
 
 def saved(wired: Wired) -> int:
     """Return how the robot's program is kept."""
-    return wired.done(wired.session.status()).saved
+    return wired.complete(wired.session.status()).saved

@@ -24,8 +24,8 @@ def go_through(
         except Exception as why:  # of any kind: the other rows are to be seen, too
             wrong[name(row)] = why
     if wrong:
-        said = (f"{row}: {type(why).__name__}: {why}" for row, why in wrong.items())
-        raise AssertionError("\n\n".join(said)) from next(iter(wrong.values()))
+        failures = (f"{row}: {type(why).__name__}: {why}" for row, why in wrong.items())
+        raise AssertionError("\n\n".join(failures)) from next(iter(wrong.values()))
 
 
 def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
@@ -38,7 +38,7 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
     sets = [pytest.ParameterSet.extract_from(row, force_tuple=len(wanted) == 1) for row in rows]
     assert sets, "no rows"
 
-    def made(test: Test) -> Test:
+    def parametrize(test: Test) -> Test:
         @functools.wraps(test)
         def whole(**given: Any) -> None:
             def one(row: Any) -> None:
@@ -52,4 +52,4 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
         whole.__signature__ = signature.replace(parameters=left)  # type: ignore[attr-defined]
         return whole
 
-    return made
+    return parametrize

@@ -56,8 +56,10 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
         turn = draw.randrange(1000)
         for rows in draw.sample(list(groups.values()), len(groups)):
             turn += not together
-            kept = {rows[(turn + k) % len(rows)] for k in range(_mark(rows).kwargs.get("keep", 1))}
-            left_out |= set(rows) - kept
+            chosen = {
+                rows[(turn + k) % len(rows)] for k in range(_mark(rows).kwargs.get("keep", 1))
+            }
+            left_out |= set(rows) - chosen
     if left_out:
         items[:] = [item for item in items if item not in left_out]
         config.hook.pytest_deselected(items=list(left_out))
@@ -92,7 +94,7 @@ def _files_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pyte
 
 
 def _named(config: pytest.Config) -> set[Path]:
-    return {Path(each).resolve() for each in config.args if each.endswith(".py")}
+    return {Path(arg).resolve() for arg in config.args if arg.endswith(".py")}
 
 
 def _mark_of_rows(item: pytest.Item) -> pytest.Mark | None:
@@ -113,7 +115,7 @@ def some_of(config: pytest.Config, draw: str, rows: Sequence[Row], keep: int = 1
     return [rows[k] for k in sorted(kept)]
 
 
-def said(config: pytest.Config) -> str:
+def how_to_repeat(config: pytest.Config) -> str:
     """Return how the rows of this run are run again, or nothing where it has all."""
     if config.getoption("--whole") or is_narrowed(config):
         return ""
@@ -123,7 +125,7 @@ def said(config: pytest.Config) -> str:
 
 def is_narrowed(config: pytest.Config) -> bool:
     asked = config.option.keyword  # "not this one" asks for none
-    return (asked and not asked.startswith("not ")) or any("::" in each for each in config.args)
+    return (asked and not asked.startswith("not ")) or any("::" in arg for arg in config.args)
 
 
 def seed(config: pytest.Config) -> str:

@@ -25,7 +25,7 @@ MOST_APART_MS = 1  # a byte
 class SensedRun(NamedTuple):
     did: list[Did]
     events: list[Event]
-    seen: list[list[int]]  # what each sensor had, one after the other
+    values: list[list[int]]  # what each sensor had, one after the other
 
     @property
     def readings(self) -> list[ReadingEvent]:
@@ -38,19 +38,19 @@ def sensed_run(
     """Run a program while what its sensors see changes; it is told or not."""
     robot = Debugged(text)
     assert robot.robot.until(robot.session, robot.session.tell_readings(is_told)) == OK
-    rng, seen = random.Random(seed), [[0] for _ in KIT.sensors]
+    rng, readings = random.Random(seed), [[0] for _ in KIT.sensors]
     first = len(robot.robot.did)
     robot.start()
     robot.robot.ask(b"P", bytes([byte_ticks]))
     events, end_ms = list[Event](), robot.robot.now_ms + RUN_MS
     while robot.robot.now_ms < end_ms:
-        for each in seen:
-            each.append(each[-1] if rng.random() < 0.5 else rng.randrange(0, 400_000, 100))
-        values = [each[-1] for each in seen]
+        for row in readings:
+            row.append(row[-1] if rng.random() < 0.5 else rng.randrange(0, 400_000, 100))
+        values = [row[-1] for row in readings]
         robot.robot.ask(b"V", pack(f"<{len(values)}i", *values))
         events += robot.talk(rng.randint(1, most_ms))
     rows = (line.split(" ", 1) for line in robot.robot.did[first:])
-    return SensedRun([(float(ms), what) for ms, what in rows], events, seen)
+    return SensedRun([(float(ms), what) for ms, what in rows], events, readings)
 
 
 def is_steady(text: str, seed: int) -> bool:

@@ -24,11 +24,11 @@ KIT = load("tinibot").kit.fingerprint
 
 
 def reset(name: str) -> int:
-    return [each for each, _ in RESETS].index(name)
+    return [reset_name for reset_name, _ in RESETS].index(name)
 
 
 def state(name: str) -> int:
-    return [each for each, _ in STATES].index(name)
+    return [state_name for state_name, _ in STATES].index(name)
 
 
 class Nobody:
@@ -37,12 +37,12 @@ class Nobody:
     def __init__(self, baud: int = 9600) -> None:
         self.baud = baud
         self.now_ms = 0
-        self.got: list[bytes] = []  # what arrived, byte for byte
+        self.received: list[bytes] = []  # what arrived, byte for byte
 
     def step(self, data: bytes) -> bytes:
         self.now_ms += 1
         if data:
-            self.got.append(data)
+            self.received.append(data)
         return self.answer(data)
 
     def answer(self, data: bytes) -> bytes:
@@ -138,13 +138,13 @@ class Firmware(Nobody):
             self.hello |= {"nonce": nonce + 1, "reset": reset(self.resets)}
             self.hello["state"] = state("IDLE")
         self._line += data
-        said = b""
+        replies = b""
         while b"\0" in self._line:
             packet, _, self._line = self._line.partition(b"\0")
             frame = decode_frame(packet) if packet else None
             if frame is not None and not frame.is_reply:
-                said += self._reply(frame)
-        return said
+                replies += self._reply(frame)
+        return replies
 
     def _reply(self, frame: Frame) -> bytes:
         self.requests.append(frame.number)

@@ -43,15 +43,15 @@ class SimulatedModule:
             return b"" if self.is_asleep else b"OK+WAKE"
         self._line += data
         self._silent_ms = 0 if data else self._silent_ms + 1
-        said = b""
+        replies = b""
         if self.ends_lines:
             while b"\r\n" in self._line:
                 command, _, self._line = self._line.partition(b"\r\n")
-                said += self._take(command)
+                replies += self._take(command)
         elif self._line and self._silent_ms >= SLOW_MS:
             command, self._line = self._line, b""
-            said += self._take(command)
-        return said
+            replies += self._take(command)
+        return replies
 
     def restart(self) -> None:
         """It has no line that a computer could pull."""
@@ -68,10 +68,10 @@ class SimulatedModule:
         return self.answer(text).encode()
 
     def answer(self, command: str) -> str:
-        for pattern, said in self.answers:
+        for pattern, answer in self.answers:
             match = re.fullmatch(pattern, command, re.DOTALL)
             if match and self._keeps(**match.groupdict()):
-                return said.format(end=self)
+                return answer.format(end=self)
         return self.otherwise
 
     def _keeps(

@@ -84,8 +84,8 @@ class SimulatedPort:
             self._back += self._end.pass_ms(stride, data)
             self._now_ms += stride
             left_ms -= stride
-        found, self._back = self._back[:size], self._back[size:]
-        return found
+        taken, self._back = self._back[:size], self._back[size:]
+        return taken
 
     @property
     def in_waiting(self) -> int:

@@ -46,12 +46,12 @@ class SimulatedWire(Wire):
     def receive(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
         if self.is_gone:
             raise OSError("gone")
-        found, left = b"", wait_ms
-        while left > 0 and len(found) < MOST_BYTES:
+        received, wait_left_ms = b"", wait_ms
+        while wait_left_ms > 0 and len(received) < MOST_BYTES:
             data = self._step()
-            found += data
-            left = quiet_ms if data else left - 1
-        return found
+            received += data
+            wait_left_ms = quiet_ms if data else wait_left_ms - 1
+        return received
 
     def _step(self) -> bytes:
         self.now_ms += 1

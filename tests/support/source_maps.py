@@ -10,10 +10,10 @@ KIT = robots.load("tinibot").kit
 
 
 def compiled(text: str) -> Compilation:
-    found = compile_text(text, KIT, "drive.ts")
-    assert found.is_right, [diagnostic.code.number for diagnostic in found.diagnostics]
-    return found
+    compilation = compile_text(text, KIT, "drive.ts")
+    assert compilation.is_right, [diagnostic.code.number for diagnostic in compilation.diagnostics]
+    return compilation
 
 
-def mapped(found: Compilation) -> SourceMap:
-    return source_map.map_of_compiled(found)
+def mapped(compilation: Compilation) -> SourceMap:
+    return source_map.map_of_compiled(compilation)

@@ -63,8 +63,12 @@ def spellings_after(name: str) -> tuple[bytes, ...]:
         return STRICT
     prefix = PREFIXES[name]
     line = re.split(rb"[\r\n\0]|\x1b\[[\d;]*.|\x1bO.", prefix)[-1].lstrip(b" \t\b\x7f")
-    found = tuple(each for each in SPELLINGS if each[-1] != 0 or _is_printable(line))
-    return tuple(each for each in found if prefix[-1:] != b"\0" or _is_printable(each[:-2]))
+    spellings = tuple(
+        spelling for spelling in SPELLINGS if spelling[-1] != 0 or _is_printable(line)
+    )
+    return tuple(
+        spelling for spelling in spellings if prefix[-1:] != b"\0" or _is_printable(spelling[:-2])
+    )
 
 
 def _is_printable(line: bytes) -> bool:

@@ -329,7 +329,7 @@ def finger(page: Page, way: Sequence[tuple[float, float]]) -> None:
 
 def colors_of(page: Page, canvas: str) -> set[str]:
     """Return the colors of the pixels of a canvas that hide what is behind."""
-    found = page.evaluate(
+    colors = page.evaluate(
         "(id) => { const c = document.querySelector(id); const d = c.getContext('2d')"
         ".getImageData(0, 0, c.width, c.height).data; const found = new Set();"
         " for (let k = 0; k < d.length; k += 4)"
@@ -337,7 +337,7 @@ def colors_of(page: Page, canvas: str) -> set[str]:
         " return [...found]; }",
         canvas,
     )
-    return set(found)
+    return set(colors)
 
 
 def turn(page: Page, half: str) -> None:
@@ -432,8 +432,8 @@ def axe(page: Page, *rules: str, within: str = "html") -> list[tuple[str, str]]:
     """
     if not page.evaluate("'axe' in window"):
         page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
-    found: list[tuple[str, str]] = page.evaluate(_AXE, [within, *rules])
-    return [(rule, html) for rule, html in found]
+    problems: list[tuple[str, str]] = page.evaluate(_AXE, [within, *rules])
+    return [(rule, html) for rule, html in problems]
 
 
 # What passes is neither described nor sent to Python.
@@ -479,8 +479,8 @@ _ASK = """async (requests) => {
 
 def asked(page: Page, requests: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the answers of a worker to requests, in their order."""
-    found: list[dict[str, Any]] = page.evaluate(_ASK, requests)
-    return found
+    answers: list[dict[str, Any]] = page.evaluate(_ASK, requests)
+    return answers
 
 
 DANCE = "F(1, 80);R(0.5, 60);BEEP(0.1, 440);SHOW(5);B(0.2, 50)"  # takes no reading

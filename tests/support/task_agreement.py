@@ -33,14 +33,16 @@ def compare_task_program(
         try:
             want = run(text, PAPER_KIT, senses, MAX_MS)
         except Mistake:  # DEFs that are called too deep in all tasks together
-            assert not any(each.is_right for each in both), f"seed {seed}:\n{text}"
+            assert not any(compilation.is_right for compilation in both), f"seed {seed}:\n{text}"
             both = []
             continue
-        assert all(each.is_right for each in both), f"seed {seed}:\n{text}"
-    for image in dict.fromkeys(each.image for each in both):  # often they are the same
+        assert all(compilation.is_right for compilation in both), f"seed {seed}:\n{text}"
+    for image in dict.fromkeys(
+        compilation.image for compilation in both
+    ):  # often they are the same
         for machine in machines:
-            got = machine(image, KIT, Senses(senses, MAX_MS))
-            assert got == want, f"seed {seed}, {image.hex()}:\n{text}"
+            actual = machine(image, KIT, Senses(senses, MAX_MS))
+            assert actual == want, f"seed {seed}, {image.hex()}:\n{text}"
     laid_out = format_source(Source(text))
     assert compile_text(laid_out, KIT).image == both[0].image, f"seed {seed}"
     assert format_source(Source(laid_out)) == laid_out, f"seed {seed}"

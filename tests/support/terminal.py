@@ -42,11 +42,12 @@ class Terminal:
         modes = termios.tcgetattr(theirs)
         modes[3] |= termios.NOFLSH  # after Ctrl-C the system may drop what is written since
         termios.tcsetattr(theirs, termios.TCSANOW, modes)
-        kept = {name: value for name, value in os.environ.items() if name not in HIDDEN}
+        variables = {name: value for name, value in os.environ.items() if name not in HIDDEN}
         with output.open("wb") if output else nullcontext(theirs) as out:
             self.process = subprocess.Popen(
                 [*command, *map(str, words)], stdin=theirs if types else subprocess.DEVNULL,
-                stdout=out, stderr=theirs, env={**kept, "TERM": "xterm-256color", **(env or {})},
+                stdout=out, stderr=theirs,
+                env={**variables, "TERM": "xterm-256color", **(env or {})},
                 start_new_session=True, preexec_fn=_take_terminal,
             )  # fmt: skip
         os.close(theirs)

@@ -157,11 +157,11 @@ class Fuzz:
 
     def moving(self) -> bool:
         """Whether the line of `check_line` has the motors: it stops them here."""
-        seen: list[str] = []
+        lines: list[str] = []
         for _ in range(50):
             self.step(b"\0" * 8)
-            seen += self.robot.did
-        return any(line.endswith("MOTORS 0 0") for line in seen)
+            lines += self.robot.did
+        return any(line.endswith("MOTORS 0 0") for line in lines)
 
     def check_stop(self) -> None:
         """After a stop nothing moves until a line with a SETUP word after a silent second."""
@@ -171,7 +171,7 @@ class Fuzz:
             self.wait(self.rng.choice((1, 100, 900)))
             assert self.robot.is_latched, data
         self.wait(1100)
-        without = [each for each in LINES if not each.lower().startswith(("si", "sb"))]
+        without = [line for line in LINES if not line.lower().startswith(("si", "sb"))]
         self.type("".join(self.rng.choices(without, k=6)).encode())
         assert self.robot.is_latched
 

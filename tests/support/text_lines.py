@@ -19,17 +19,17 @@ def written_out(word: re.Match[str]) -> str:
 
 
 def check_line(text: str, kit: Kit) -> None:
-    found = compile_text(text, kit)
-    line = line_of(found.source)
+    compilation = compile_text(text, kit)
+    line = line_of(compilation.source)
     assert re.fullmatch(r"[ -}]*~[0-9A-F]{8}", line), line
     assert "//" not in line and "  " not in line
     assert line == line.upper()
     longest = re.sub(r"\w+", written_out, text)
     assert len(line) <= len(longest.encode()) + len("SI|~00000000")
     compiled_line = compile_text(line, kit)
-    assert compiled_line.is_right and compiled_line.image == found.image, line
-    assert found.program is not None and compiled_line.program is not None
-    assert plain_code(compiled_line.program).code == plain_code(found.program).code, line
+    assert compiled_line.is_right and compiled_line.image == compilation.image, line
+    assert compilation.program is not None and compiled_line.program is not None
+    assert plain_code(compiled_line.program).code == plain_code(compilation.program).code, line
     # A line has no notes, nor a block with nothing but a note inside.
     text_codes, line_codes = (
         sorted(
@@ -37,7 +37,7 @@ def check_line(text: str, kit: Kit) -> None:
             for diagnostic in one.diagnostics
             if diagnostic.code not in (codes.IN_A_NOTE, codes.EMPTY_BLOCK)
         )
-        for one in (found, compiled_line)
+        for one in (compilation, compiled_line)
     )
     assert text_codes == line_codes
     assert line_of(Source(line)) == line

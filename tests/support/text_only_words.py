@@ -20,9 +20,9 @@ def text_only_words(sentences: str, language: str, *, is_line_on_floor: bool = F
     """Return what in a sentence for blocks is only in a text, code aside."""
     prose = CODE.sub("``", sentences)
     patterns = [WRITING[language], *([] if is_line_on_floor else [LINES[language]])]
-    found = [match[0] for pattern in patterns for match in re.finditer(pattern, prose, re.I)]
-    found += [match[0] for pattern in (ENDS, TEXT_SIGNS) for match in pattern.finditer(prose)]
-    return found + [word for word in CAPITAL_WORDS.findall(prose) if word in WORDS and word != STOP]
+    words = [match[0] for pattern in patterns for match in re.finditer(pattern, prose, re.I)]
+    words += [match[0] for pattern in (ENDS, TEXT_SIGNS) for match in pattern.finditer(prose)]
+    return words + [word for word in CAPITAL_WORDS.findall(prose) if word in WORDS and word != STOP]
 
 
 def has_line_on_floor(number: int) -> bool:

@@ -31,11 +31,11 @@ def holding(text: str = "SB|B(0.2, 60)", saves: bool = True) -> tuple[HostFirmwa
 
 
 def status(robot: HostFirmware, session: Session) -> StatusReply:
-    return robot.done(session, session.status())
+    return robot.complete(session, session.status())
 
 
 def fetched(robot: HostFirmware, session: Session) -> bytes:
-    return robot.done(session, session.fetch()).image
+    return robot.complete(session, session.fetch()).image
 
 
 def read_back(saves: bool = True) -> tuple[HostFirmware, Session, bytes]:

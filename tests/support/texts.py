@@ -12,17 +12,18 @@ LANGUAGES = languages()
 
 
 @cache
-def said(language: str, name: str = "command") -> dict[str, str]:
+def catalogue_texts(language: str, name: str = "command") -> dict[str, str]:
     """Return all texts of a catalogue by key; of one with a plural, its last form."""
-    found = texts(name, language)
+    texts_by_key = texts(name, language)
     return {
-        key: value if isinstance(value, str) else value["other"] for key, value in found.items()
+        key: value if isinstance(value, str) else value["other"]
+        for key, value in texts_by_key.items()
     }
 
 
 def in_all(key: str) -> list[str]:
     """Return a text of the command in each language, English first."""
-    return [said(language)[key] for language in languages()]
+    return [catalogue_texts(language)[key] for language in languages()]
 
 
 def gap_names(code: str) -> set[str]:

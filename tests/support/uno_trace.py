@@ -34,7 +34,7 @@ def program(text: str) -> Case:
     return Case(Path(__file__), 0, text, {"tiniscript": text, "senses": "DISTANCE = 60"})
 
 
-def seen(uno: Uno, since: int) -> list[Setting]:
+def motor_settings(uno: Uno, since: int) -> list[Setting]:
     """Return what the pins have told the motors since a cycle."""
     changes = [
         change
@@ -42,11 +42,11 @@ def seen(uno: Uno, since: int) -> list[Setting]:
         for change in uno.pins.history(name)
         if change.cycle > since
     ]  # fmt: skip
-    found = []
+    settings = []
     for cycle in sorted({change.cycle for change in changes}):
         powers = (power(uno, side, cycle) for side in ("left", "right"))
-        found.append(Setting((cycle - since) / CYCLES_PER_MS, *powers))
-    return lasting(found)
+        settings.append(Setting((cycle - since) / CYCLES_PER_MS, *powers))
+    return lasting(settings)
 
 
 def power(uno: Uno, side: str, cycle: int) -> int:
@@ -77,20 +77,20 @@ def lasting(settings: list[Setting]) -> list[Setting]:
         if before[1:] != setting[1:]
     ]  # fmt: skip
     ends = [setting.ms for setting in settings[1:]] + [float("inf")]
-    found = [Setting(-1.0, 0, 0)]
+    lasting_settings = [Setting(-1.0, 0, 0)]
     for setting, end_ms in zip(settings, ends[: len(settings)], strict=True):
-        if end_ms - setting.ms >= SHORT_MS and setting[1:] != found[-1][1:]:
-            found.append(setting)
-    return found[1:]
+        if end_ms - setting.ms >= SHORT_MS and setting[1:] != lasting_settings[-1][1:]:
+            lasting_settings.append(setting)
+    return lasting_settings[1:]
 
 
 def pinged(distances: list[float]) -> list[float]:
     """Return what each ping hears: three pings make the first reading, and two one that jumps."""
-    found = distances[:1] * 3
+    heard_cm = distances[:1] * 3
     for before, now in pairwise(distances):
         is_far = abs(now - before) > max(3, before / 5)
-        found += [now] * (1 + is_far)
-    return found
+        heard_cm += [now] * (1 + is_far)
+    return heard_cm
 
 
 def check_pins(case: Case, uno: Uno) -> None:
@@ -100,21 +100,21 @@ def check_pins(case: Case, uno: Uno) -> None:
     expected, reads = parsed_trace(trace)
     end_ms = float(trace.splitlines()[-1].split()[0])
     is_over = not trace.endswith("LIMIT\n")
-    distances = [each / 1000 for each in senses.readings.get("DISTANCE", [0])]
+    distances = [value / 1000 for value in senses.readings.get("DISTANCE", [0])]
     for pin, name in (("A0", "LIGHT_R"), ("A1", "LIGHT_L")):
         uno.analog(pin, senses.readings.get(name, [0])[0] // 1000)
     uno.sonar("trigger", "echo", distances[0])
     wired = computer(uno)
     if image.start == "PING":
         assert wired.until(wired.session.hello()) == OK
-        assert seen(uno, 0) == []
+        assert motor_settings(uno, 0) == []
         return
     heard = len(uno.received_bytes)
     assert wired.until(wired.session.upload(image, is_detached=True)) == OK
     began = last_zero(uno, heard)
     if image.start == "SB":
         wired.run(300)
-        assert seen(uno, began) == []
+        assert motor_settings(uno, began) == []
         uno.press("button", 60)
         began = uno.run_until("left forward", "high", limit_ms=500).cycle - 1
     triggers = 0
@@ -129,19 +129,19 @@ def check_pins(case: Case, uno: Uno) -> None:
             triggers = len(pulses)
             wired.run(PING_MS)
             uno.sonar("trigger", "echo", distances[min(triggers, len(distances) - 1)])
-    found = seen(uno, began)
+    settings = motor_settings(uno, began)
     events = wired.session.events()
     if not is_over:
-        found = [setting for setting in found if setting.ms < end_ms]
+        settings = [setting for setting in settings if setting.ms < end_ms]
         expected = [setting for setting in expected if setting.ms < end_ms]
-    assert [setting[1:] for setting in found] == [setting[1:] for setting in expected]
-    for pins, line in zip(found, expected, strict=True):
+    assert [setting[1:] for setting in settings] == [setting[1:] for setting in expected]
+    for pins, line in zip(settings, expected, strict=True):
         before = sum(read_ms <= line.ms for read_ms in reads)
         late_ms = OFF_MS + READING_MS * before + (FIRST_MS - READING_MS) * bool(before)
         assert -OFF_MS <= pins.ms - line.ms <= late_ms, (pins, line)
     if is_over:
-        said = [line.split(" ", 1)[1] for line in trace.splitlines()]
-        shown = [line for line in said if line.startswith("SHOW") or line == "DONE"]
+        lines = [line.split(" ", 1)[1] for line in trace.splitlines()]
+        shown = [line for line in lines if line.startswith("SHOW") or line == "DONE"]
         names = [event.name for event in events]
         assert [name for name in names if name in ("SHOW", "DONE")] == [
             line.split()[0] for line in shown

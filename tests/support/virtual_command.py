@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from tests.support.command import Command, Done
+from tests.support.command import Command, CommandResult
 
 FOREVER = "SI|LOOP(FOREVER);L(1, 30);END_LOOP"
 
@@ -24,18 +24,18 @@ class Robot:
         assert self.command.process.stdout
         return self.command.process.stdout.readline().decode().removesuffix("\n")
 
-    def until(self, said: str) -> list[str]:
+    def until(self, text: str) -> list[str]:
         """Return the lines up to one that ends so."""
         lines: list[str] = []
-        while not lines or not lines[-1].endswith(said):
+        while not lines or not lines[-1].endswith(text):
             lines.append(self.line())
-            assert lines[-1], f"it ends without {said}: {lines}"
+            assert lines[-1], f"it ends without {text}: {lines}"
         return lines
 
     def kill(self) -> None:
         self.command.kill()
 
-    def end(self, number: int = signal.SIGINT) -> Done:
+    def end(self, number: int = signal.SIGINT) -> CommandResult:
         if self.command.process.poll() is None:
             self.command.signal(number)
         return self.command.ended()
@@ -43,11 +43,11 @@ class Robot:
 
 @contextmanager
 def robot(*arguments: str | Path) -> Iterator[Robot]:
-    found = Robot(*arguments)
+    running_robot = Robot(*arguments)
     try:
-        yield found
+        yield running_robot
     finally:
-        found.end(signal.SIGTERM)
+        running_robot.end(signal.SIGTERM)
 
 
 def visitor(port: str) -> socket.socket:

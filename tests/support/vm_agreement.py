@@ -5,11 +5,11 @@ from __future__ import annotations
 from tests.support.random_programs import MAX_MS
 
 
-def same(want: str, got: str) -> bool:
+def same(want: str, actual: str) -> bool:
     """Whether two traces mean the same: where `max-steps` cuts is not part of the meaning."""
-    if want == got:
+    if want == actual:
         return True
-    ours, theirs = got.splitlines(), want.splitlines()
+    ours, theirs = actual.splitlines(), want.splitlines()
     if not any(_is_cut(lines[-1]) for lines in (ours, theirs)):
         return False
     shorter = min(len(ours), len(theirs)) - 1

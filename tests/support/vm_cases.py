@@ -10,7 +10,7 @@ CASES = all_cases()
 
 
 def having(*parts: str) -> list[pytest.ParameterSet]:
-    return [pytest.param(each, id=each.id) for each in CASES if all(p in each.parts for p in parts)]
+    return [pytest.param(case, id=case.id) for case in CASES if all(p in case.parts for p in parts)]
 
 
 def disassemblies_alone() -> list[pytest.ParameterSet]:

@@ -59,25 +59,25 @@ def robot_with(motors: str, devices: list[Driver], chip_name: str = "mega", is_w
     chip, tinibot = CHIPS[chip_name], robots.load("tinibot")
     taken = {0, 1, 2, 11, 13}
     motors_wiring = wired(DRIVERS["motors", motors], chip, taken, is_whole)
-    made: dict[str, list[tuple[Device, Wiring]]] = {"sensors": [], "actuators": []}
+    parts: dict[str, list[tuple[Device, Wiring]]] = {"sensors": [], "actuators": []}
     for number, driver in enumerate(devices):
         table, kind = driver.used_by.split()
         device = Device(f"D{number}", kind, "", 0, 5 * ONE if kind == NUMBER else 1)
-        made[table].append((device, wired(driver, chip, taken)))
+        parts[table].append((device, wired(driver, chip, taken)))
     kit = Kit(
-        tuple(device for device, _ in made["sensors"]),
-        tuple(device for device, _ in made["actuators"]),
+        tuple(device for device, _ in parts["sensors"]),
+        tuple(device for device, _ in parts["actuators"]),
     )
     board = tinibot.board._replace(
         chip=chip_name,
         motors=motors_wiring,
-        sensors=tuple(wiring for _, wiring in made["sensors"]),
-        actuators=tuple(wiring for _, wiring in made["actuators"]),
+        sensors=tuple(wiring for _, wiring in parts["sensors"]),
+        actuators=tuple(wiring for _, wiring in parts["actuators"]),
         bluetooth_state=None,
         status_led=13,
     )
     names = list(kit.names)
-    labels = {each: {"robot": label, **dict.fromkeys(names, label)} for each in LANGUAGES}
+    labels = {language: {"robot": label, **dict.fromkeys(names, label)} for language in LANGUAGES}
     body = tinibot.body._replace(places={"D0": Place(0, 0, 0, "light")})
     return Robot("many", kit, board, body, labels)
 

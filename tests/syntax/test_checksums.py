@@ -17,15 +17,15 @@ LINE = "SI|F(2, 80)"
 CHECKED = f"{LINE}~B77E7BD9"
 
 
-def found(text: str) -> Compilation:
+def compiled(text: str) -> Compilation:
     return compile_text(text, TINIBOT.kit)
 
 
-def said(text: str) -> list[tuple[str, str]]:
+def messages(text: str) -> list[tuple[str, str]]:
     """Return the code of each diagnostic, and what it points at."""
     return [
         (diagnostic.code.number, text[slice(*diagnostic.span)])
-        for diagnostic in found(text).diagnostics
+        for diagnostic in compiled(text).diagnostics
     ]
 
 
@@ -48,8 +48,8 @@ def test_the_checksum_is_the_crc_32_of_the_bytes_of_the_line() -> None:
     ],
 )
 def test_a_line_with_its_checksum_is_the_line(text: str) -> None:
-    assert said(text) == []
-    assert found(text).image == found(LINE).image
+    assert messages(text) == []
+    assert compiled(text).image == compiled(LINE).image
 
 
 def test_a_byte_order_mark_of_a_file_does_not_count() -> None:
@@ -59,30 +59,30 @@ def test_a_byte_order_mark_of_a_file_does_not_count() -> None:
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_each_line_has_a_checksum_of_its_own_or_none(end: str) -> None:
     lines = ["LOOP(2)", "  F(1, 50)  ", "END_LOOP // twice", "", "S"]
-    want = found("\n".join(lines)).image
+    want = compiled("\n".join(lines)).image
     for which in range(2 ** len(lines)):
         rows = [with_checksum(row) if which >> k & 1 else row for k, row in enumerate(lines)]
-        assert found(end.join(rows)).image == want, rows
-        assert said(end.join([*rows[:-1], "R~00000000"])) != []
+        assert compiled(end.join(rows)).image == want, rows
+        assert messages(end.join([*rows[:-1], "R~00000000"])) != []
 
 
 @pytest.mark.parametrize("at", range(len(LINE)))
 def test_a_line_that_has_changed_is_a_mistake(at: int) -> None:
     changed = LINE[:at] + chr(ord(LINE[at]) ^ 1) + LINE[at + 1 :]
-    assert ("TS058", "~B77E7BD9") in said(f"{changed}~B77E7BD9")
-    assert not found(f"{changed}~B77E7BD9").image
+    assert ("TS058", "~B77E7BD9") in messages(f"{changed}~B77E7BD9")
+    assert not compiled(f"{changed}~B77E7BD9").image
 
 
 def test_spaces_before_the_sign_count() -> None:
-    assert said(f"{LINE} ~B77E7BD9") == [("TS058", "~B77E7BD9")]
-    assert said(with_checksum(f"{LINE} ")) == []
+    assert messages(f"{LINE} ~B77E7BD9") == [("TS058", "~B77E7BD9")]
+    assert messages(with_checksum(f"{LINE} ")) == []
 
 
 def test_a_line_of_comment_has_a_checksum_too() -> None:
     """So a line in which two signs became `//` does not pass for a comment."""
-    assert said(with_checksum("// a square")) == []
-    assert said("// a square~00000000") == [("TS058", "~00000000")]
-    assert said(with_checksum("S // stop")) == []
+    assert messages(with_checksum("// a square")) == []
+    assert messages("// a square~00000000") == [("TS058", "~00000000")]
+    assert messages(with_checksum("S // stop")) == []
 
 
 @pytest.mark.parametrize(
@@ -98,12 +98,12 @@ def test_a_line_of_comment_has_a_checksum_too() -> None:
     ],
 )
 def test_a_sign_that_is_no_checksum_is_a_mistake(text: str, place: str) -> None:
-    assert ("TS059", place) in said(text)
+    assert ("TS059", place) in messages(text)
 
 
 def test_in_a_comment_it_is_a_sign_like_others() -> None:
-    assert said("S // ~5 cm, ~12345678 or so") == []
-    assert said("S // ~5 cm ~12345678") == []  # the first one counts
+    assert messages("S // ~5 cm, ~12345678 or so") == []
+    assert messages("S // ~5 cm ~12345678") == []  # the first one counts
 
 
 def test_a_formatted_text_has_no_checksums_for_it_is_another_text() -> None:

@@ -176,9 +176,10 @@ def code_of(text: str) -> list[tuple[str, str]]:
 
 def comments_of(text: str) -> str:
     """The comments with one space at least after their `//`, all in one."""
-    found = [comment.text.rstrip() for comment in scan(text).comments]
+    comments = [comment.text.rstrip() for comment in scan(text).comments]
     return " ".join(
-        each if each[2:3] in ("", "/") or each[2].isspace() else f"// {each[2:]}" for each in found
+        comment if comment[2:3] in ("", "/") or comment[2].isspace() else f"// {comment[2:]}"
+        for comment in comments
     )
 
 
@@ -263,18 +264,18 @@ def test_every_program_stays_the_same_program(chunk: int) -> None:
 def test_one_line_stays_one_line_and_several_stay_several() -> None:
     """However much stands on it. Several lines have one instruction on each."""
     rng = random.Random("lines")
-    seen = {True: 0, False: 0}
+    counts = {True: 0, False: 0}
     for _ in range(500):
         text = program(rng, WIDE_KIT).removeprefix("\ufeff").strip()
         instructions = code_of(text).count((";", ";"))
         is_one_line = "\n" not in text
         if instructions < 2 or (not is_one_line and ";" in text):
             continue
-        seen[is_one_line] += 1
+        counts[is_one_line] += 1
         lines = [line.strip() for line in after(text).split("\n")]
         code_lines = [line for line in lines if line not in ("", "SI|", "SB|") and line[:2] != "//"]
         assert len(code_lines) == (1 if is_one_line else instructions)
-    assert min(seen.values()) > 50
+    assert min(counts.values()) > 50
 
 
 def test_texts_with_other_mistakes_are_formatted_too() -> None:

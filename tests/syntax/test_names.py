@@ -24,8 +24,10 @@ NO_KIT = Kit((), ())
 
 
 def is_right(text: str, kit: Kit = NO_KIT) -> bool:
-    found = compile_text(text, kit)
-    return not [diagnostic.code.number for diagnostic in found.diagnostics if diagnostic.is_mistake]
+    compilation = compile_text(text, kit)
+    return not [
+        diagnostic.code.number for diagnostic in compilation.diagnostics if diagnostic.is_mistake
+    ]
 
 
 def test_a_variable_may_be_called_so() -> None:
@@ -65,4 +67,4 @@ def test_an_actuator_may_be_called_so(kind: str) -> None:
 def test_a_word_says_one_word_of_the_language() -> None:
     assert len(FOREIGN) > 300
     for word in FOREIGN:
-        assert len({each.kind for each in lexicon()[word]} & {*WORDS}) == 1, word
+        assert len({entry.kind for entry in lexicon()[word]} & {*WORDS}) == 1, word

@@ -309,7 +309,7 @@ def spans(body: tuple[ast.Instruction, ...]) -> Iterator[tuple[Span, tuple[ast.I
         span, inside = node.span, getattr(node, "body", ())
         if isinstance(node, ast.If):  # its span begins with its last arm
             span = Span(node.arms[0].span.start, span.end)
-            inside = (*(each for arm in node.arms for each in arm.body), *node.else_body)
+            inside = (*(task for arm in node.arms for task in arm.body), *node.else_body)
         yield span, inside
         yield from spans(inside)
 
@@ -325,9 +325,9 @@ def test_nodes_of_any_text_follow_one_another_inside_their_blocks() -> None:
 
 
 def test_diagnostics_of_any_text_point_into_it() -> None:
-    found = [(text, parse(Source(text)).diagnostics) for text in broken_programs()]
-    assert sum(bool(diagnostics) for _, diagnostics in found) > len(found) // 2
-    for text, diagnostics in found:
+    parsed = [(text, parse(Source(text)).diagnostics) for text in broken_programs()]
+    assert sum(bool(diagnostics) for _, diagnostics in parsed) > len(parsed) // 2
+    for text, diagnostics in parsed:
         for diagnostic in diagnostics:
             assert 0 <= diagnostic.span.start <= diagnostic.span.end <= len(text), text
 

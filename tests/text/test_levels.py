@@ -26,19 +26,19 @@ UNO = LEVELS["uno"]
 
 
 def lacking(text: str, level: Level = UNO) -> list[Diagnostic]:
-    found = compile_text(text, TINIBOT)
-    assert found.program is not None and found.is_right, found.diagnostics
-    return find_misfits(found.source, found.program, TINIBOT, level)
+    compilation = compile_text(text, TINIBOT)
+    assert compilation.program is not None and compilation.is_right, compilation.diagnostics
+    return find_misfits(compilation.source, compilation.program, TINIBOT, level)
 
 
 def problems_of(text: str, level: Level = UNO) -> list[tuple[str, str, dict[str, str]]]:
     """Return the code of each diagnostic, what it points at, and its values without the level."""
-    said = []
+    problems = []
     for diagnostic in lacking(text, level):
         values = dict(diagnostic.values)
         assert values.pop("level") == level.name
-        said.append((diagnostic.code.number, text[slice(*diagnostic.span)], values))
-    return said
+        problems.append((diagnostic.code.number, text[slice(*diagnostic.span)], values))
+    return problems
 
 
 def test_a_level_has_the_memory_of_its_board() -> None:
@@ -89,12 +89,12 @@ VALUES = "DEF A(X); SHOW(X); END_DEF; DEF C; A({}); END_DEF; {}"
 @pytest.mark.parametrize("level", ["mega", "esp32"])
 def test_which_values_of_defs_a_reader_takes(level: str) -> None:
     both = "TASK; C; END_TASK; C; A({})"
-    said = {"name": "A"}
+    values = {"name": "A"}
     assert problems_of(VALUES.format(1, "C; A(2); TASK; S; END_TASK"), LEVELS[level]) == []
     assert problems_of(VALUES.format(1, "C; A(2)"), UNO) == [
         ("TS308", word, {"word": word}) for word in ("DEF",) * 2
     ]
-    several, yes_no = {**said, "count": "2"}, {**said, "yes_no": "X"}
+    several, yes_no = {**values, "count": "2"}, {**values, "yes_no": "X"}
     assert problems_of(VALUES.format(1, both.format(2)), LEVELS[level]) == [
         ("TS318", "DEF", several)
     ]
@@ -175,27 +175,29 @@ def test_a_set_of_sensors_is_wider_where_there_may_be_more() -> None:
 def test_the_reader_and_the_compiler_count_the_same_code(first: int) -> None:
     for seed in range(first, first + 500):
         oracle_kit, kit = KITS[seed % len(KITS)]
-        found = compile_text(programs.program(random.Random(seed), oracle_kit), kit)
-        tokens = scan(found.source.text).tokens
+        compilation = compile_text(programs.program(random.Random(seed), oracle_kit), kit)
+        tokens = scan(compilation.source.text).tokens
         if UNREAD_WORDS & {token.text for token in tokens}:
             continue
         reader = Reader(tokens, kit, 2)
         reader.program()
-        assert found.program is not None
-        assert reader.code_bytes == plain_code(found.program).short_length, found.source.text
-        own = (name for procedure in found.program.procedures for name in procedure.values)
+        assert compilation.program is not None
+        assert reader.code_bytes == plain_code(compilation.program).short_length, (
+            compilation.source.text
+        )
+        own = (name for procedure in compilation.program.procedures for name in procedure.values)
         names = [*reader.variables, *(name + 8 * "?" for name in reader.defs)]
-        names += (found.program.variables[k] for k in own)
-        assert reader.used_bytes == sum(1 + len(name) for name in names), found.source.text
+        names += (compilation.program.variables[k] for k in own)
+        assert reader.used_bytes == sum(1 + len(name) for name in names), compilation.source.text
 
 
 @pytest.mark.parametrize("end", ["ENDIF", "ELSE;DISTANCE;ENDIF"])
 def test_what_each_arm_has_read_is_not_read_again(end: str) -> None:
-    found = compile_text(f"IF(TRUE);DISTANCE;{end};SHOW(DISTANCE)", TINIBOT)
-    assert found.program is not None
-    reader = Reader(scan(found.source.text).tokens, TINIBOT, 2)
+    compilation = compile_text(f"IF(TRUE);DISTANCE;{end};SHOW(DISTANCE)", TINIBOT)
+    assert compilation.program is not None
+    reader = Reader(scan(compilation.source.text).tokens, TINIBOT, 2)
     reader.program()
-    assert reader.code_bytes == plain_code(found.program).short_length
+    assert reader.code_bytes == plain_code(compilation.program).short_length
 
 
 def test_names_take_room_too() -> None:

@@ -18,16 +18,16 @@ from tools.generate.remark_tables import rows
 @pytest.mark.parametrize("is_small", [False, True])
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_what_a_robot_says_comes_back(language: str, is_small: bool) -> None:
-    said = rows(language, is_small)
-    data = pack_texts(said)
-    assert unpack_texts(data) == said
-    assert data.size < 0.75 * sum(len(text) + 1 for text in said)
+    texts = rows(language, is_small)
+    data = pack_texts(texts)
+    assert unpack_texts(data) == texts
+    assert data.size < 0.75 * sum(len(text) + 1 for text in texts)
 
 
 def test_what_a_small_robot_never_says() -> None:
     """All that it says keeps its number."""
     every, few = rows("en"), rows("en", is_small=True)
-    unsaid = [text for text, kept in zip(every, few, strict=True) if text != kept]
+    unsaid = [text for text, packed_text in zip(every, few, strict=True) if text != packed_text]
     assert unsaid == [
         "Not in a block", "Only one task may call this DEF", ", text mega", ", text esp32",
         "No program reads keys", "STUCK", "STUCK_LEFT", "STUCK_RIGHT",

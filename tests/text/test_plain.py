@@ -39,9 +39,9 @@ ENOUGH = 4 * 500  # random programs
 
 
 def plain_of(text: str, kit: Kit = TINIBOT) -> PlainCode:
-    found = compile_text(text, kit)
-    assert found.is_right and found.program is not None, text
-    return plain_code(found.program)
+    compilation = compile_text(text, kit)
+    assert compilation.is_right and compilation.program is not None, text
+    return plain_code(compilation.program)
 
 
 def names(text: str, kit: Kit = TINIBOT) -> str:
@@ -125,8 +125,8 @@ def test_a_number_has_the_first_push_that_says_it(number: str, code: str) -> Non
 
 
 def test_operands_to_7_are_part_of_the_code() -> None:
-    made = plain_of("; ".join(f"V{k} = 0" for k in range(9))).code
-    assert made == b"".join(bytes((0xB0, 0xA0 + k)) for k in range(8)) + b"\xb0\x30\x08"
+    code = plain_of("; ".join(f"V{k} = 0" for k in range(9))).code
+    assert code == b"".join(bytes((0xB0, 0xA0 + k)) for k in range(8)) + b"\xb0\x30\x08"
 
 
 def test_variables_have_their_numbers_in_the_order_of_the_text() -> None:
@@ -166,18 +166,18 @@ def test_the_page_names_every_instruction_of_plain_code_and_no_other() -> None:
     assert named & known <= PLAIN | {"AND", "OR"}  # which are words of the language, too
 
 
-def check_same(found: Compilation, kit: Kit, senses: Senses) -> None:
+def check_same(compilation: Compilation, kit: Kit, senses: Senses) -> None:
     """The plain code of a program passes the verifier and does what its other code does."""
-    assert found.program is not None
-    code = plain_code(found.program)
+    assert compilation.program is not None
+    code = plain_code(compilation.program)
     verify(code.code, len(kit.readings), len(kit.actuators))
     short = "_FAR" not in disassemble(code.code)
     assert (code.short_length == len(code.code)) == short
     if short:
         used = {row[25:].split()[0] for row in disassemble(code.code).splitlines()}
         assert not [name for name in used if FUSED.match(name)], used
-    trace = run_python(image_for(code.code, kit, found.program.start), kit, senses)
-    assert same(run_python(found.image, kit, senses), trace), found.source.text
+    trace = run_python(image_for(code.code, kit, compilation.program.start), kit, senses)
+    assert same(run_python(compilation.image, kit, senses), trace), compilation.source.text
 
 
 @pytest.mark.sampled("first")
@@ -186,9 +186,9 @@ def test_random_programs_do_the_same_in_plain_code(first: int) -> None:
     for seed in range(first, first + 500):
         rng = random.Random(seed)
         oracle_kit, kit = KITS[seed % len(KITS)]
-        found = compile_text(programs.program(rng, oracle_kit), kit)
+        compilation = compile_text(programs.program(rng, oracle_kit), kit)
         readings = programs.senses(rng, oracle_kit)
-        check_same(found, kit, Senses(readings, MAX_MS, MAX_STEPS, seed + 1))
+        check_same(compilation, kit, Senses(readings, MAX_MS, MAX_STEPS, seed + 1))
 
 
 def test_programs_of_all_documents_do_the_same_in_plain_code() -> None:
@@ -196,9 +196,9 @@ def test_programs_of_all_documents_do_the_same_in_plain_code() -> None:
     assert len(run) > 80 and len(run) == len(having("tiniscript", "robot"))
     for case in run:
         robot, senses = robot_and_senses(case)
-        found = compiled(case)
-        assert found.program is not None
+        compilation = compiled(case)
+        assert compilation.program is not None
         if (
-            copy_defs_per_task(found.program) == found.program
+            copy_defs_per_task(compilation.program) == compilation.program
         ):  # no robot that reads text has copies of DEFs
-            check_same(found, robot.kit, senses)
+            check_same(compilation, robot.kit, senses)

@@ -11,7 +11,7 @@ from tests.support.casefile import all_cases
 from tests.support.number_codes import NUMBER_CODES
 from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES
-from tests.support.texts import said as all_said
+from tests.support.texts import catalogue_texts as all_said
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.codegen.text.problems import MOST_CHARACTERS, PROBLEMS
@@ -247,8 +247,8 @@ def test_columns_from_255_on_are_255() -> None:
 
 
 def test_every_problem_has_its_test() -> None:
-    said = {problem for problem, _ in WRONG.values()} | {"CHECKSUM", "LIMIT", "FULL", "LACKS"}
-    assert said == set(PROBLEMS)
+    problems = {problem for problem, _ in WRONG.values()} | {"CHECKSUM", "LIMIT", "FULL", "LACKS"}
+    assert problems == set(PROBLEMS)
 
 
 def test_a_reader_without_defs_reads_all_else() -> None:

@@ -146,9 +146,9 @@ def test_characters_of_unicode(point: int) -> None:
 def test_little_room_is_full_and_nothing_else(room: int) -> None:
     for seed in range(100):
         kit, data, _, slips = texts_of(seed, 1)
-        for each in (data, *slips):
-            check_bytes(each, kit, room)
-            want, answer = reader_of(kit).read(each), reader_of(kit, room).read(each)
+        for data_line in (data, *slips):
+            check_bytes(data_line, kit, room)
+            want, answer = reader_of(kit).read(data_line), reader_of(kit, room).read(data_line)
             assert answer.problem == "FULL" or answer == want
 
 
@@ -166,8 +166,8 @@ def check_seed(seed: int) -> None:
     else:
         check_program(data, kit, senses)
     soups = [soup(10 * seed + k) for k in range(10)]
-    for each_kit, each in [(kit, slip) for slip in slips] + soups:
-        answer = check_bytes(each, each_kit)
+    for each_kit, line in [(kit, slip) for slip in slips] + soups:
+        answer = check_bytes(line, each_kit)
         FOUND["full" if answer is None else "program" if answer.is_program else "refused"] += 1
 
 

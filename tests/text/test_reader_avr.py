@@ -31,7 +31,7 @@ NUMBERS = (
 )  # fmt: skip
 
 
-def said(answer: Answer) -> list[int]:
+def chip_numbers(answer: Answer) -> list[int]:
     """Return what the chip says: kind, start or problem, length or column, and a checksum."""
     numbers = {name: number for number, name in PROBLEM_NAMES.items()}
     if answer.problem:
@@ -42,13 +42,13 @@ def said(answer: Answer) -> list[int]:
 
 
 def texts() -> list[bytes]:
-    found = some_texts(400, 150)
-    found += [
+    codes = some_texts(400, 150)
+    codes += [
         f"{sign}{number}".join(("F(1, ABS(", "))")).encode()
         for number in NUMBERS
         for sign in ("", "-")
     ]
-    return [each + b"\n" for each in found if each.strip() and len(each) < 800]
+    return [text + b"\n" for text in codes if text.strip() and len(text) < 800]
 
 
 @pytest.mark.skipif(bool(REASON), reason=REASON or "there is a chip")
@@ -62,13 +62,15 @@ def test_the_chip_says_the_same() -> None:
         if not text or len(request) + len(more) + 2 > avr_bench.REQUEST_BYTES:
             lines = avr_bench.run(program, request + b"\0\0")
             numbers = [int(line.split()[-1]) for line in lines]
-            got = [numbers[k : k + 4] for k in range(0, len(numbers), 4)]
-            got = [[3 if each[0] == 1 else each[0], *each[1:]] for each in got]  # no program: 1
-            assert got == expected
-            request, expected, compared = head, [], compared + len(got)
+            answers = [numbers[k : k + 4] for k in range(0, len(numbers), 4)]
+            answers = [
+                [3 if answer[0] == 1 else answer[0], *answer[1:]] for answer in answers
+            ]  # no program: 1
+            assert answers == expected
+            request, expected, compared = head, [], compared + len(answers)
         answer = reader.read(text)
         if answer.is_program or answer.problem:  # else a block is open
             request += more
-            expected.append(said(answer))
+            expected.append(chip_numbers(answer))
     reader.close()
     assert compared > 500

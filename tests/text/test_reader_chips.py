@@ -23,10 +23,10 @@ EACH = [
 
 
 def texts() -> list[bytes]:
-    found = [
+    codes = [
         case.parts["tiniscript"].encode() for case in all_cases() if "tiniscript" in case.parts
     ]
-    return [each for each in found + some_texts(3000, 1000) if each.strip()]
+    return [text for text in codes + some_texts(3000, 1000) if text.strip()]
 
 
 @pytest.mark.sampled("name")

@@ -67,8 +67,8 @@ class Pupil:
         self.page.give_up()
 
     def _own(self, text: str) -> str:
-        said = text if text.startswith("//") else instruction_text(scan(text).tokens[:-1])
-        self.typed.add(said)
+        own_text = text if text.startswith("//") else instruction_text(scan(text).tokens[:-1])
+        self.typed.add(own_text)
         return text
 
     def _simple(self) -> str:
@@ -131,7 +131,7 @@ class Pupil:
         run = self._run(view, one, 3)
         arms = tuple(id for id in run if view[id].kind == ARM and view.ids_of_arm(id)
                      and set(view.ids_of_arm(id)) <= set(run))  # fmt: skip
-        return [Delete(tuple(each for id in run for each in view.subtree_ids(id)), arms)]
+        return [Delete(tuple(child_id for id in run for child_id in view.subtree_ids(id)), arms)]
 
     def _move(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
         run = self._run(view, one, 3, has_arms=False)

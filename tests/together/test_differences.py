@@ -64,22 +64,26 @@ CASES = [
 PROGRAMS = 150
 
 
-def said(made: list[Operation]) -> str:
-    found = []
-    for each in made:
-        size = len(each.nodes) if isinstance(each, Insert) else len(getattr(each, "ids", ()))
-        found.append(f"{data_of(each)['do']}{f' {size}' if size else ''}")
-    return ", ".join(found)
+def described(operations: list[Operation]) -> str:
+    rows = []
+    for operation in operations:
+        size = (
+            len(operation.nodes)
+            if isinstance(operation, Insert)
+            else len(getattr(operation, "ids", ()))
+        )
+        rows.append(f"{data_of(operation)['do']}{f' {size}' if size else ''}")
+    return ", ".join(rows)
 
 
 @each_row("what, before, after, wanted, stay", CASES)
 def test_what_is_the_same_stays(what: str, before: str, after: str, wanted: str, stay: int) -> None:
     numbers, new_numbers = count(1), count(1)
     old = parse_tree(before, lambda: f"o.{next(numbers)}")
-    made = find_operations(old, after, lambda: f"n.{next(new_numbers)}")
-    new = apply_change(old, Change("n:1", tuple(made))).tree
+    operations = find_operations(old, after, lambda: f"n.{next(new_numbers)}")
+    new = apply_change(old, Change("n:1", tuple(operations))).tree
     assert new.shape() == parse_tree(after).shape()
-    assert wanted in ("*", said(made))
+    assert wanted in ("*", described(operations))
     assert sum(id.startswith("o.") for id in new.subtree_ids()) == stay
 
 
@@ -143,13 +147,13 @@ def test_operations_make_the_new_program_and_are_taken_back(seed: int) -> None:
             new = parse_tree("\n".join(after))
         except Unparsed:
             continue
-        made = find_operations(old, "\n".join(after), lambda: f"n.{next(new_numbers)}")  # noqa: B023
-        assert [operation_of(data_of(each)) for each in made] == made
-        found = apply_change(old, Change("n:1", tuple(made)))
-        assert found.tree.shape() == new.shape()
-        assert text_of(found.tree) == text_of(new)
-        restored = apply_change(found.tree, Change("n:2", found.inverse)).tree
+        operations = find_operations(old, "\n".join(after), lambda: f"n.{next(new_numbers)}")  # noqa: B023
+        assert [operation_of(data_of(operation)) for operation in operations] == operations
+        outcome = apply_change(old, Change("n:1", tuple(operations)))
+        assert outcome.tree.shape() == new.shape()
+        assert text_of(outcome.tree) == text_of(new)
+        restored = apply_change(outcome.tree, Change("n:2", outcome.inverse)).tree
         assert text_of(restored) == text_of(old)
         assert restored.subtree_ids() == old.subtree_ids()
-        tried.update(type(each).__name__ for each in made or [Delete(())])
+        tried.update(type(operation).__name__ for operation in operations or [Delete(())])
     assert {Insert.__name__, Move.__name__, "Wrap", "Unwrap", "Replace"} <= set(tried)

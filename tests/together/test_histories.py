@@ -28,15 +28,15 @@ MOST_REFUSED = 0.01
 def history(seed: int, deeds: int, pages: int) -> World:
     """Play so many deeds; all that must be true is asserted."""
     world = World(pages, seed)
-    chance, done = world.chance, 0
+    chance, change_count = world.chance, 0
 
     def act(name: str) -> None:
-        nonlocal done
+        nonlocal change_count
         pupil = world.pupils[name]
         pupil.acts()
         if not pupil.stages:
-            done += 1
-            if done % LOOK == 0:
+            change_count += 1
+            if change_count % LOOK == 0:
                 world.check()
         drafts = len(pupil.page.drafts)
         if drafts > 2 or (drafts and not pupil.stages and chance.random() < 0.1):
@@ -46,10 +46,10 @@ def history(seed: int, deeds: int, pages: int) -> World:
     def trouble(name: str) -> None:
         if chance.random() < 0.6:
             world.off_until_s[name] = world.now_s + chance.uniform(5, 60)
-            world.happened["breaks"] += 1
+            world.counts["breaks"] += 1
         else:
             world.reload(name)
-            world.happened["reloads"] += 1
+            world.counts["reloads"] += 1
         world.at(chance.uniform(20, 200), trouble, name)
 
     def crash() -> None:
@@ -61,12 +61,12 @@ def history(seed: int, deeds: int, pages: int) -> World:
         world.at(chance.uniform(20, 200), trouble, name)
         world.ask(name, 0)
     world.at(chance.uniform(30, 300), crash)
-    world.run(lambda: done >= deeds)
+    world.run(lambda: change_count >= deeds)
     world.settle()
     world.check()
     world.check_pages()
     world.check_nothing_is_lost()
-    assert not world.happened["astray"]
+    assert not world.counts["astray"]
     return world
 
 
@@ -112,22 +112,25 @@ def test_all_pages_end_with_the_same_program(seed: int) -> None:
 
 @pytest.mark.long
 def test_pupils_of_ordinary_speed_are_seldom_refused() -> None:
-    made, refused = _counts([lesson(seed, 3) for seed in range(3)])
-    assert made > 300
-    assert refused <= MOST_REFUSED * made, f"{refused} of {made}"
+    change_count, refused = _counts([lesson(seed, 3) for seed in range(3)])
+    assert change_count > 300
+    assert refused <= MOST_REFUSED * change_count, f"{refused} of {change_count}"
 
 
 def _counts(worlds: list[World]) -> tuple[int, int]:
-    made = sum(pupil.page.change_count for world in worlds for pupil in world.pupils.values())
-    return made, sum(sum(world.why.values()) for world in worlds)
+    change_count = sum(
+        pupil.page.change_count for world in worlds for pupil in world.pupils.values()
+    )
+    return change_count, sum(sum(world.why.values()) for world in worlds)
 
 
 def _tell(worlds: list[World]) -> None:
-    made, refused = _counts(worlds)
+    change_count, refused = _counts(worlds)
     unseen = sum(world.replaced_unseen for world in worlds)
     why = sum((world.why for world in worlds), Counter[str]())
-    happened = sum((world.happened for world in worlds), Counter[str]())
-    print(f"{made} changes, refused {refused} ({100 * refused / made:.2f} %) {dict(why)}, "
+    happened = sum((world.counts for world in worlds), Counter[str]())
+    percent = 100 * refused / change_count
+    print(f"{change_count} changes, refused {refused} ({percent:.2f} %) {dict(why)}, "
           f"values replaced that their page had not seen: {unseen}")  # fmt: skip
     print(dict(happened))
 
@@ -138,6 +141,6 @@ if __name__ == "__main__":
         for pages in (2, 3, 4):
             _tell([lesson(seed, pages, 600) for seed in range(given.seed, given.seed + 3)])
     else:
-        each = 1000
-        _tell([history(given.seed + k, min(each, given.count - k * each), 4)
-               for k in range(-(-given.count // each))])  # fmt: skip
+        per_part = 1000
+        _tell([history(given.seed + k, min(per_part, given.count - k * per_part), 4)
+               for k in range(-(-given.count // per_part))])  # fmt: skip

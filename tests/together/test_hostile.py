@@ -54,13 +54,13 @@ FIELDS = ("id", "ids", "at", "nodes", "node", "text", "note", "apart", "end", "a
 
 
 def an_operation(chance: Random) -> Any:
-    found: Any = {"do": chance.choice(list(NEEDED))}
-    for field in NEEDED[found["do"]]:
-        found[field] = chance.choice(LIKELY[field])
+    operation: Any = {"do": chance.choice(list(NEEDED))}
+    for field in NEEDED[operation["do"]]:
+        operation[field] = chance.choice(LIKELY[field])
     for field in FIELDS:
         if chance.random() < 0.07:
-            found[field] = chance.choice(VALUES)
-    return found
+            operation[field] = chance.choice(VALUES)
+    return operation
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -124,7 +124,7 @@ def test_of_what_has_gone_a_limited_number_is_known_everywhere() -> None:
     page = Page.of("z", program.news("z", -1, ""))
     for k in range(1, 2 * MOST_FORMER_PLACES // 100 + 2):
         nodes = [{"id": f"m.{k}{j:03}", "text": "W(1)"} for j in range(100)]
-        ids = [each["id"] for each in nodes]
+        ids = [node["id"] for node in nodes]
         changes = [
             {"do": "insert", "at": ["root", ""], "nodes": nodes},
             {"do": "delete", "ids": ids},

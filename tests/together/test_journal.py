@@ -48,18 +48,18 @@ def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, see
     path, chance = tmp_path / "journal", Random(seed)
     journal, program = begun(path)
     sizes = [path.stat().st_size]
-    seen = [(program.number, dict(program.last_count_by_page))]
+    states = [(program.number, dict(program.last_count_by_page))]
     for k in range(12):
         changed(program, chance.choice((0, 1000 + k)), chance.choice("ab"))
         sizes.append(path.stat().st_size)
-        seen.append((program.number, dict(program.last_count_by_page)))
+        states.append((program.number, dict(program.last_count_by_page)))
     journal.close()
     cut = chance.randint(sizes[0], sizes[-1])
     os.truncate(path, cut)
     resumed = Journal(path).resume("e2")
     assert resumed is not None
     last = max(k for k, size in enumerate(sizes) if size <= cut)
-    assert (resumed.number, resumed.last_count_by_page) == seen[last]
+    assert (resumed.number, resumed.last_count_by_page) == states[last]
     assert resumed.epoch == "e2"
     changed(resumed, 2000)
     whole = Journal(path).resume("e3")
@@ -99,7 +99,7 @@ def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_a_crash_at_any_moment_of_a_disk_that_fills_up_costs_nothing_that_was_kept(
+def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     path, chance, is_full, kept_number = tmp_path / "journal", Random(seed), False, 0
@@ -113,13 +113,13 @@ def test_a_crash_at_any_moment_of_a_disk_that_fills_up_costs_nothing_that_was_ke
         assert resumed is not None and resumed.number >= kept_number
 
     def on_disk(call: Callable[..., Any]) -> Callable[..., Any]:
-        def made(*arguments: Any, **more: Any) -> Any:
+        def write_before(*arguments: Any, **more: Any) -> Any:
             look()
             if is_full:
                 raise OSError(errno.ENOSPC, "full")
             return call(*arguments, **more)
 
-        return made
+        return write_before
 
     monkeypatch.setattr(os, "write", on_disk(os.write))
     monkeypatch.setattr(journals, "replace", on_disk(files.replace))
@@ -131,9 +131,13 @@ def test_a_crash_at_any_moment_of_a_disk_that_fills_up_costs_nothing_that_was_ke
         if chance.random() < 0.2:  # it crashes, and goes on with what there is
             journal.close()
             journal = Journal(path)
+            if chance.random() < 0.5 and path.with_name(path.name + OLD_ENDING).exists():
+                path.write_bytes(chance.randbytes(chance.randrange(3000)))  # it is damaged
+                kept_number = 0
             resumed = journal.resume(f"e{value}")
             assert resumed is not None
             program = resumed
+            kept_number = max(kept_number, program.number)
     is_full = False
     assert changed(program, 99) and not journal.is_incomplete
     final = Journal(path).resume("e3")

@@ -268,10 +268,13 @@ def test_a_page_that_gets_another_name_loses_nothing_and_doubles_nothing(two: Tw
     two.inserts(two.ana, ROOT, two.find("L(1, 60)"))
     two.program.submit(two.ana.pending_changes)  # and the answer is lost
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
-    kept = json.loads(json.dumps(two.ana.store_data()))
-    two.ana = Page.of("z", two.program.news("z", -1, ""), kept)
+    for time_s, name in enumerate("zyx", 2):
+        kept = json.loads(json.dumps(two.ana.store_data()))
+        two.ana = Page.of(name, two.program.news(name, -1, ""), kept)
+        two.types(two.ana, f"L({time_s - 1}, 60)", f"L({time_s}, 60)")  # before the rest is sent
+        two.types(two.ana, f"W({time_s - 1})", f"W({time_s})")
     assert two.meet().count("BEEP(1, 440)") == 1
-    assert "F(2, 80)" in two.meet()
+    assert all(change in two.meet() for change in ("F(2, 80)", "L(4, 60)", "W(4)"))
 
 
 def test_a_copy_of_a_page_goes_its_own_way(two: Two) -> None:

@@ -69,7 +69,7 @@ class World:
     ) -> None:  # fmt: skip
         self.chance = Random(seed)
         self.now_s = 0.0
-        self.happened: Counter[str] = Counter()
+        self.counts: Counter[str] = Counter()
         self.why: Counter[str] = Counter()  # changes were refused
         self.replaced_unseen = 0
         self._queue: list[tuple[float, int, Callable[..., None], tuple[Any, ...]]] = []
@@ -82,11 +82,11 @@ class World:
         self._snapshot = self._travelled(self.program.snapshot())
         self.first = set(self.program.tree.node_by_id)
         tree = self.program.tree
-        self.typed = {said for id in self.first for said in (tree[id].text, tree[id].note)}
+        self.typed = {text for id in self.first for text in (tree[id].text, tree[id].note)}
         names = "abcd"[:pages]
         self.pupils = {
             name: Pupil(Page.of(name, self.program.news(name, -1, "")), self.chance, numbers,
-                        self.typed, self.happened, spread)
+                        self.typed, self.counts, spread)
             for name in names
         }  # fmt: skip
         self.off_until_s = dict.fromkeys(names, 0.0)
@@ -101,8 +101,8 @@ class World:
             do(*what)
 
     def _travelled(self, data: Json) -> Json:
-        found: Json = json.loads(json.dumps(data))
-        return found
+        copy: Json = json.loads(json.dumps(data))
+        return copy
 
     def _keep(self, row: Json) -> None:
         self._rows.append(self._travelled(row))
@@ -120,7 +120,7 @@ class World:
         self.at(SILENT_S, self._ask_again, name, turn)
         if self.chance.random() >= self._lost:
             sent = self._travelled(
-                {"sent": [data_of_change(each) for each in page.pending_changes]}
+                {"sent": [data_of_change(change) for change in page.pending_changes]}
             )
             since = -1 if page.is_astray else page.number
             self.at(self._delay(self.chance), self._reach, name, turn, sent, since, page.epoch)
@@ -149,9 +149,9 @@ class World:
 
     def _count_unseen(self, before: Tree, page: str, since: int) -> None:
         """Count values of others that this page had not seen and has replaced."""
-        for each in self.all_taken[-1].operations:
-            if isinstance(each, Replace) and each.id in before:
-                by = before[each.id].mark(each.fields[0][0])
+        for operation in self.all_taken[-1].operations:
+            if isinstance(operation, Replace) and operation.id in before:
+                by = before[operation.id].mark(operation.fields[0][0])
                 self.replaced_unseen += bool(by) and page_and_count(by)[0] != page and any(
                     taken.uid == by and taken.number > since for taken in self.all_taken[-50:]
                 )  # fmt: skip
@@ -161,7 +161,7 @@ class World:
             return
         page = self.pupils[name].page
         page.receive(news)
-        self.happened["astray"] += page.is_astray and page.epoch == self.program.epoch
+        self.counts["astray"] += page.is_astray and page.epoch == self.program.epoch
         if turn == self.turn[name]:
             self.turn[name] += 1
             self.at(self._asks_s, self.ask, name, self.turn[name])
@@ -186,8 +186,8 @@ class World:
             before.number,
             before.last_count_by_page,
         )
-        self.happened["crashes"] += 1
-        self.program.epoch = f"e{self.happened['crashes']}"
+        self.counts["crashes"] += 1
+        self.program.epoch = f"e{self.counts['crashes']}"
 
     # -- what must be true ------------------------------------------------------------------------
 
@@ -209,7 +209,7 @@ class World:
         tree = self.program.tree
         text = text_of(tree)
         parsed = parse(Source(text))
-        assert not [each for each in parsed.diagnostics if each.is_mistake], text
+        assert not [diagnostic for diagnostic in parsed.diagnostics if diagnostic.is_mistake], text
         assert format_source(Source(text)) == text
         self._check_instructions(tree, text, parsed.program.body)
         assert parse_tree(text).shape() == tree.shape()
@@ -224,7 +224,7 @@ class World:
         ids = tree.subtree_ids()
         assert len(ids) == len(set(ids)) == len(tree.node_by_id)
         numbered = Counter(tree[id].text for id in ids if re.search("[0-9]", tree[id].text))
-        twice = [said for said, times in numbered.items() if times > 1]
+        twice = [text for text, times in numbered.items() if times > 1]
         assert not twice, twice
 
     def _check_instructions(self, tree: Tree, text: str, body: Sequence[Instruction]) -> None:
@@ -251,18 +251,18 @@ class World:
         """What was ever there is there, or a delete or an unwrap has taken it."""
         alive = set(self.first)
         for taken in self.all_taken:
-            for each in taken.operations:
-                alive |= _added(each)
-                if isinstance(each, Delete):
-                    alive -= set(each.ids)
-                elif isinstance(each, Unwrap):
-                    alive.discard(each.id)
+            for operation in taken.operations:
+                alive |= _added(operation)
+                if isinstance(operation, Delete):
+                    alive -= set(operation.ids)
+                elif isinstance(operation, Unwrap):
+                    alive.discard(operation.id)
         assert alive == set(self.program.tree.node_by_id)
 
 
 def _added(operation: Operation) -> set[str]:
     if isinstance(operation, Insert):
-        return {id for each in operation.nodes for id in each.ids()}
+        return {id for node in operation.nodes for id in node.ids()}
     return {operation.node.id} if isinstance(operation, Wrap) else set()
 
 
@@ -273,14 +273,14 @@ def _whole(text: str) -> str:
 
 
 def _walk(body: Sequence[Instruction]) -> Iterator[tuple[Instruction, str]]:
-    for each in body:
-        if isinstance(each, If):
-            yield each, BLOCK
-            for arm in each.arms:
+    for instruction in body:
+        if isinstance(instruction, If):
+            yield instruction, BLOCK
+            for arm in instruction.arms:
                 yield from _walk(arm.body)
-            yield from _walk(each.else_body)
-        elif isinstance(each, Loop | While | Def | Task):
-            yield each, BLOCK
-            yield from _walk(each.body)
+            yield from _walk(instruction.else_body)
+        elif isinstance(instruction, Loop | While | Def | Task):
+            yield instruction, BLOCK
+            yield from _walk(instruction.body)
         else:
-            yield each, INSTRUCTION
+            yield instruction, INSTRUCTION

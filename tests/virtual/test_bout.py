@@ -41,9 +41,9 @@ ASLEEP = HEAD_ON.format(0)
 
 
 def bout(text: str, robot: str = "sumo") -> Bout:
-    found = driving_in(robots.load(robot).body, read(text, "ring"))
-    assert isinstance(found, Bout)
-    return found
+    made_bout = driving_in(robots.load(robot).body, read(text, "ring"))
+    assert isinstance(made_bout, Bout)
+    return made_bout
 
 
 def crowded(draw: random.Random) -> World:
@@ -131,7 +131,7 @@ def test_no_body_is_ever_inside_another(seed: int) -> None:
                     touched += gap < 0.1
                 contact = hull.contact(pose, driving.obstacles)
                 assert contact is None or contact.gap_cm > -1e-3, f"{at} ms"
-    assert touched or not any(each.power_percent for each in world.rivals)
+    assert touched or not any(rival.power_percent for rival in world.rivals)
 
 
 @pytest.mark.parametrize("power", [20, 60, 100])
@@ -212,7 +212,7 @@ def test_a_rival_stays_in_a_ring_where_nobody_pushes_it() -> None:
 
 def test_a_distance_sensor_sees_where_a_rival_is() -> None:
     draw = random.Random(6)
-    seen = 0
+    count = 0
     for _ in range(200):
         x, y = draw.uniform(40, 160), draw.uniform(40, 160)
         text = RING + f"[[rivals]]\nx_cm = {x:.3f}\ny_cm = {y:.3f}\n"
@@ -228,11 +228,11 @@ def test_a_distance_sensor_sees_where_a_rival_is() -> None:
         off = math.atan2(y - eye[1], x - eye[0]) - along
         off = abs((off + math.pi) % (2 * math.pi) - math.pi)
         if off < math.radians(15) and far > 3:
-            seen += 1
+            count += 1
             assert reading == pytest.approx(far, abs=0.3)
         elif off > math.radians(60) and far > 10:
             assert reading == 400
-    assert seen > 8
+    assert count > 8
 
 
 def test_what_is_black_and_what_is_white() -> None:
@@ -285,8 +285,8 @@ def test_the_edge_is_seen_before_the_robot_is_out(power: int) -> None:
 def ended(program: str, text: str, ms: int = 9000) -> dict[str, int]:
     simulation = Simulation("sumo", read(text, "own"), compile(program, "sumo").image)
     simulation.go(ms)
-    found: dict[str, int] = simulation.state()["score"]
-    return found
+    score: dict[str, int] = simulation.state()["score"]
+    return score
 
 
 def test_who_is_pushed_out_and_who_falls() -> None:
@@ -301,7 +301,9 @@ def test_who_is_pushed_out_and_who_falls() -> None:
     flag = "[[flags]]\nx_cm = 0\ny_cm = 100\nreach_cm = 10\n"  # beyond the edge
     assert ended("B(9, 80)", text + flag)["taken"] == 0
     both = ended("B(2, 80);F(20, 80)", text, 25_000)
-    assert (both["pushed"], both["stars"], both["has_fallen"]) == (0, 0, True), "it counts no more"
+    assert (both["pushed"], both["stars"], both["has_fallen"]) == (0, 0, True), (
+        "it no longer counts"
+    )
 
 
 def test_the_example_pushes_the_rival_of_the_world_out() -> None:
@@ -316,7 +318,7 @@ def test_a_world_says_what_is_wrong_with_its_rivals(tmp_path: Path) -> None:
     from tiniscript.robots.refusals import describe
     from tiniscript.virtual.world import WorldRefused
 
-    for wrong, said in (
+    for wrong, message in (
         (ASLEEP * 4, "rivals has 4 parts. Keep at most 3"),
         ("[[rivals]]\nx_cm = 5\n", "rivals[1].y_cm is missing"),
         (ASLEEP + "lenght_cm = 7\n", "Did you mean length_cm?"),
@@ -324,7 +326,7 @@ def test_a_world_says_what_is_wrong_with_its_rivals(tmp_path: Path) -> None:
     ):
         with pytest.raises(WorldRefused) as caught:
             read(RING + wrong, "wrong")
-        assert any(said in line for line in describe(caught.value, "en")), describe(
+        assert any(message in line for line in describe(caught.value, "en")), describe(
             caught.value, "en"
         )
 

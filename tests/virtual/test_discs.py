@@ -54,7 +54,7 @@ def started_robot(
     return robot, talk
 
 
-def gone(robot: VirtualRobot) -> tuple[float, float, float]:
+def displacement(robot: VirtualRobot) -> tuple[float, float, float]:
     """Return how far it is ahead and to the left of where it began, and how it has turned."""
     pose = robot.pose
     return pose.x_cm - 250, pose.y_cm - 250, pose.heading
@@ -65,7 +65,7 @@ def wheel(robot: VirtualRobot, number: int) -> Wheel:
     return robot.wheels.wheels[number]
 
 
-def is_still(robot: VirtualRobot) -> bool:
+def stands_for_a_while(robot: VirtualRobot) -> bool:
     before = robot.pose
     robot.step(robot.now_ms + 300)
     return math.dist(before[:2], robot.pose[:2]) < 0.01
@@ -76,7 +76,7 @@ def is_still(robot: VirtualRobot) -> bool:
 def test_it_goes_as_far_as_was_said_and_straight(profile: Robot, seed: int) -> None:
     robot, talk = started_robot("F(100 CM, 60)", seed, profile)
     talk.wait(9000)
-    ahead, aside, _ = gone(robot)
+    ahead, aside, _ = displacement(robot)
     assert abs(ahead - 100) <= 1.5 and abs(aside) <= 3.2
     lines = trace(robot.take_events())
     assert lines[0] == "0 MOTORS 60 60" and len(lines) == 3
@@ -88,7 +88,7 @@ def test_it_goes_as_far_as_was_said_and_straight(profile: Robot, seed: int) -> N
 def test_it_turns_as_far_as_was_said(profile: Robot, text: str, turn: int) -> None:
     robot, talk = started_robot(text, 2, profile)
     talk.wait(6000)
-    assert abs(gone(robot)[2] - turn) <= 6
+    assert abs(displacement(robot)[2] - turn) <= 6
 
 
 def test_it_learns_how_its_wheels_roll(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -104,7 +104,7 @@ def test_it_learns_how_its_wheels_roll(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_back_and_short_ways_and_no_way() -> None:
     robot, talk = started_robot("B(30 CM, 100); F(2 CM, 40); F(0 CM, 0)")
     talk.wait(6000)
-    assert abs(gone(robot)[0] + 28) < 1.5 and robot.fault == ""
+    assert abs(displacement(robot)[0] + 28) < 1.5 and robot.fault == ""
     assert [line.split(" ", 1)[1] for line in trace(robot.take_events())] == [
         "MOTORS -100 -100", "MOTORS 0 0", "MOTORS 40 40", "MOTORS 0 0", "MOTORS 0 0", "MOTORS 0 0",
         "DONE",
@@ -127,8 +127,8 @@ def test_what_ends_a_move_early_ends_it_at_once(text: str) -> None:
     talk.wait(540)
     assert "MOTORS 0 0" in " ".join(trace(robot.take_events()))
     talk.wait(500)
-    ahead = gone(robot)[0]
-    assert 4 < ahead < 20 and is_still(robot)
+    ahead = displacement(robot)[0]
+    assert 4 < ahead < 20 and stands_for_a_while(robot)
 
 
 @pytest.mark.parametrize("after_ms", [0, 5, 60, 700, 2400, 2500, 2560, 2620, 2700])
@@ -147,14 +147,14 @@ def test_a_stop_in_any_phase_is_one(after_ms: int, how: str) -> None:
     for _ in range(30):
         assert not any(wheel(robot, number).wanted_speed for number in (0, 1))
         talk.wait(20)
-    assert is_still(robot)
+    assert stands_for_a_while(robot)
 
 
 def test_a_lost_link_ends_it() -> None:
     robot, talk = started_robot("F(200 CM, 20)")
     talk.wait(300)
     robot.step(robot.now_ms + 1200)
-    assert robot.fault == "LINK_LOST" and is_still(robot)
+    assert robot.fault == "LINK_LOST" and stands_for_a_while(robot)
 
 
 def test_a_task_that_takes_the_motors_gives_them_back_and_the_way_goes_on() -> None:
@@ -165,7 +165,7 @@ def test_a_task_that_takes_the_motors_gives_them_back_and_the_way_goes_on() -> N
     talk.wait(6000)
     talk.session.stop(robot.now_ms)
     talk.wait(100)
-    ahead, aside, turned = gone(robot)
+    ahead, aside, turned = displacement(robot)
     assert 8 < ahead < 25 and abs(ahead - aside - 60) < 8 and abs(turned + 90) < 6
 
 
@@ -195,10 +195,10 @@ def test_a_way_that_is_interrupted_is_as_long_and_as_straight(
     for seed in (2, 3, 5):
         robot, talk = started_robot(interrupted(way, times, body), seed, profile)
         talk.wait(13_000)
-        said = [line.split(" ", 1)[1] for line in trace(robot.take_events())]
-        assert said[-1] == "SHOW 1"
-        assert sum(line == said[0] for line in said) == times + 1, "it has gone on so often"
-        ahead, aside, turned = gone(robot)
+        lines = [line.split(" ", 1)[1] for line in trace(robot.take_events())]
+        assert lines[-1] == "SHOW 1"
+        assert sum(line == lines[0] for line in lines) == times + 1, "it has gone on so often"
+        ahead, aside, turned = displacement(robot)
         if way[0] == "F":
             assert abs(ahead - 100) <= 1.5 and abs(aside) <= 3.2
         else:
@@ -218,7 +218,7 @@ def test_what_an_interruption_drives_is_not_a_part_of_the_way(
     for seed in (1, 2, 3):
         robot, talk = started_robot(interrupted("F(100 CM, 60)", 3, body), seed)
         talk.wait(13_000)
-        ahead, _, _ = gone(robot)
+        ahead, _, _ = displacement(robot)
         assert abs(ahead - 100 - 3 * more_cm) <= 1.5 + 3 * off_cm
 
 
@@ -229,9 +229,9 @@ WHEN(X = 1 AND TIME > 1); X = 2; M(0, 0); W(0.4); SHOW(1); END_WHEN
 WHEN(X = 0 AND TIME > 0.6); X = 1; F(40 CM, 60); SHOW(2); END_WHEN"""
     robot, talk = started_robot(text, 2)
     talk.wait(9000)
-    ahead, _, _ = gone(robot)
-    said = [line.partition("SHOW ")[2] for line in trace(robot.take_events())]
-    assert [each for each in said if each] == ["1", "2", "3"]
+    ahead, _, _ = displacement(robot)
+    values = [line.partition("SHOW ")[2] for line in trace(robot.take_events())]
+    assert [text for text in values if text] == ["1", "2", "3"]
     assert abs(ahead - 100) <= 2
 
 
@@ -241,9 +241,9 @@ def test_a_way_after_one_that_was_ended_is_whole() -> None:
 TASK; W(0.5); S; W(60); END_TASK"""
     robot, talk = started_robot(text, 2)
     talk.wait(500)
-    before, _, _ = gone(robot)
+    before, _, _ = displacement(robot)
     talk.wait(5000)
-    assert abs(gone(robot)[0] - before - 30) <= 2
+    assert abs(displacement(robot)[0] - before - 30) <= 2
 
 
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
@@ -274,7 +274,7 @@ def test_edges_of_a_disc_that_flickers_are_no_part_of_a_way(number: int) -> None
     Flicker(robot, number, 40)
     talk.wait(16_000)
     assert trace(robot.take_events())[-1].endswith("SHOW 1")
-    assert abs(gone(robot)[0] - 100) <= 1.5 + 2 * 2
+    assert abs(displacement(robot)[0] - 100) <= 1.5 + 2 * 2
 
 
 @pytest.mark.parametrize("number", [0, 1])
@@ -295,11 +295,11 @@ def test_a_disc_that_tells_nothing_is_the_fault_stuck(
     assert sentence.startswith(f"fault {robot.fault}: the {side} wheel does not turn: free it")
     at = status.fault_at
     code = unpack(compile_text(text, TWO.kit).image).code
-    found = BY_CODE[code[at]]
-    assert found.control_role == "until" if found else code[at] == ESCAPE, "the GO, or the UNTIL"
-    assert (found is not None) == ("UNTIL" in text)
+    op = BY_CODE[code[at]]
+    assert op.control_role == "until" if op else code[at] == ESCAPE, "the GO, or the UNTIL"
+    assert (op is not None) == ("UNTIL" in text)
     talk.wait(300)
-    assert is_still(robot)
+    assert stands_for_a_while(robot)
 
 
 def test_wheels_that_both_stand_are_stuck_whoever_stood_first(
@@ -334,7 +334,7 @@ def test_a_disc_whose_channels_are_exchanged_ends_the_move(
     talk.wait(600)
     assert robot.fault == ("STUCK_LEFT", "STUCK_RIGHT")[number]
     talk.wait(300)
-    assert is_still(robot)
+    assert stands_for_a_while(robot)
 
 
 @pytest.mark.parametrize(("profile", "sees"), [(TWO, False), (TWO_CHANNELS, True)])
@@ -442,7 +442,7 @@ def test_a_wheel_that_is_held_for_a_moment_bends_no_later_way(
             hold(wheel(robot, number), held)
             talk.wait(450)
         talk.wait(3000)
-        assert is_still(robot) and robot.is_running
+        assert stands_for_a_while(robot) and robot.is_running
         before = robot.pose
         talk.wait(7000)
         assert robot.fault == "" and not robot.is_running
@@ -469,18 +469,18 @@ def test_counts_that_wrap_around() -> None:
     for number in (0, 1):
         wheel(robot, number).counted_edges = (1 << 16) - 7
     talk.wait(4000)
-    assert abs(gone(robot)[0] - 30) < 1.5
+    assert abs(displacement(robot)[0] - 30) < 1.5
 
 
 def test_the_same_seed_gives_the_same_run_however_often_it_is_looked_at() -> None:
-    def went(look: Callable[[VirtualRobot], object], step_ms: int) -> object:
+    def run_way(look: Callable[[VirtualRobot], object], step_ms: int) -> object:
         robot, talk = started_robot(WAY, seed=5)
         for _ in range(4000 // step_ms):
             talk.wait(step_ms)
             look(robot)
         return robot.pose, trace(robot.take_events())
 
-    assert went(lambda robot: None, 1000) == went(lambda robot: robot.pose, 8)
+    assert run_way(lambda robot: None, 1000) == run_way(lambda robot: robot.pose, 8)
 
 
 def test_an_uno_with_discs_reads_no_text_but_a_typed_stop() -> None:

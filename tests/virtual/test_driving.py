@@ -50,7 +50,7 @@ def test_segments_cross_or_have_a_distance() -> None:
 
 
 @pytest.mark.parametrize(
-    ("heading", "half", "found"),
+    ("heading", "half", "distance_cm"),
     [
         (0, 15, 10.0),
         (20, 15, 10 / math.cos(math.radians(5))),  # its border is 5 degrees off
@@ -60,9 +60,11 @@ def test_segments_cross_or_have_a_distance() -> None:
         (45, 20, math.hypot(10, 10 * math.tan(math.radians(25)))),
     ],
 )
-def test_a_cone_sees_the_nearest_point_inside(heading: float, half: float, found: float) -> None:
+def test_a_cone_sees_the_nearest_point_inside(
+    heading: float, half: float, distance_cm: float
+) -> None:
     least = nearest_seen([ACROSS], Point(0, 0), math.radians(heading), math.radians(half))
-    assert least == pytest.approx(found)
+    assert least == pytest.approx(distance_cm)
     for y in (-5, 5):  # what ends on the border
         assert nearest_seen([Segment(Point(10, 0), Point(10, y))], Point(0, 0), 0, 0) == 10
 
@@ -75,37 +77,37 @@ def driving(world: World, start: Pose | None = None, robot: Robot = TINIBOT) -> 
 
 
 def test_where_nothing_is_in_the_way_the_way_is_that_of_the_wheels() -> None:
-    found = driving(floor(size=2000, start="x_cm = 1000\ny_cm = 1000"))
+    drive = driving(floor(size=2000, start="x_cm = 1000\ny_cm = 1000"))
     pose = Pose(1000, 1000, 0)
     now_ms = 0.0
     ways = ((80, 80, 1000), (60, -60, 500), (100, 30, 2500), (-50, 20, 700))
     for left, right, duration_ms in ways:
-        found.set_motors(now_ms, left, right)
+        drive.set_motors(now_ms, left, right)
         now_ms += duration_ms
         pose = move_pose(TINIBOT.body, pose, left, right, duration_ms)
-        assert found.advance_to(now_ms) == pytest.approx(pose, abs=1e-6)
-    assert found.bumps == 0
+        assert drive.advance_to(now_ms) == pytest.approx(pose, abs=1e-6)
+    assert drive.bumps == 0
 
 
 def test_a_robot_stops_at_a_wall_that_it_drives_into() -> None:
-    found = driving(floor())
-    found.set_motors(0, 100, 100)
-    pose = found.advance_to(10_000)
+    drive = driving(floor())
+    drive.set_motors(0, 100, 100)
+    pose = drive.advance_to(10_000)
     assert pose == pytest.approx((200 - NOSE_CM, 100, 0), abs=0.01)
-    assert found.bumps == 1
-    assert found.driven_cm == pytest.approx(100 - NOSE_CM, abs=0.1)
-    found.set_motors(10_000, -100, -100)
-    assert found.advance_to(11_000).x_cm == pytest.approx(200 - NOSE_CM - 45, abs=0.01)
+    assert drive.bumps == 1
+    assert drive.driven_cm == pytest.approx(100 - NOSE_CM, abs=0.1)
+    drive.set_motors(10_000, -100, -100)
+    assert drive.advance_to(11_000).x_cm == pytest.approx(200 - NOSE_CM - 45, abs=0.01)
 
 
 @pytest.mark.parametrize("heading", [30, -30, 2])
 def test_a_robot_turns_along_a_wall_that_it_drives_into(heading: float) -> None:
     """Its nose is pushed aside, though both motors get the same."""
-    found = driving(floor(start=f"x_cm = 150\ny_cm = 100\nheading = {heading}"))
-    found.set_motors(0, 100, 100)
-    pose = found.advance_to(2400)
+    drive = driving(floor(start=f"x_cm = 150\ny_cm = 100\nheading = {heading}"))
+    drive.set_motors(0, 100, 100)
+    pose = drive.advance_to(2400)
     assert pose.heading == pytest.approx(math.copysign(90, heading), abs=2)
-    assert pose.x_cm == pytest.approx(200 - found.hull.radius_cm, abs=0.1)
+    assert pose.x_cm == pytest.approx(200 - drive.hull.radius_cm, abs=0.1)
     assert 15 < abs(pose.y_cm - 100) < 90
 
 
@@ -113,9 +115,9 @@ def test_a_robot_turns_along_a_wall_that_it_drives_into(heading: float) -> None:
 def test_no_wheel_slips_aside_while_a_wall_turns_a_robot(turn_s: float) -> None:
     """Its turns may be slower and faster than the distance of its wheels says."""
     robot = TINIBOT._replace(body=TINIBOT.body._replace(turn_s=turn_s))
-    found = driving(floor(start="x_cm = 150\ny_cm = 100\nheading = 30"), robot=robot)
-    found.set_motors(0, 100, 100)
-    poses = [found.advance_to(now_ms) for now_ms in range(0, 2400, 10)]
+    drive = driving(floor(start="x_cm = 150\ny_cm = 100\nheading = 30"), robot=robot)
+    drive.set_motors(0, 100, 100)
+    poses = [drive.advance_to(now_ms) for now_ms in range(0, 2400, 10)]
     aside_cm = 0.0
     for (x, y, heading), (next_x, next_y, next_heading) in pairwise(poses):
         along = math.radians(heading + next_heading) / 2
@@ -127,10 +129,10 @@ def test_no_wheel_slips_aside_while_a_wall_turns_a_robot(turn_s: float) -> None:
 @pytest.mark.parametrize("aside", [2, 5, -7])
 def test_the_end_of_a_wall_that_catches_a_side_of_it_does_not_hold_it(aside: float) -> None:
     end = 100 + aside
-    found = driving(floor(f"[[walls]]\npoints = [[120, {end}], [140, {end}]]\n"))
-    found.set_motors(0, 60, 60)
-    assert found.advance_to(4000).x_cm > 150
-    assert found.bumps >= 1
+    drive = driving(floor(f"[[walls]]\npoints = [[120, {end}], [140, {end}]]\n"))
+    drive.set_motors(0, 60, 60)
+    assert drive.advance_to(4000).x_cm > 150
+    assert drive.bumps >= 1
 
 
 @pytest.mark.sampled("robot")
@@ -140,16 +142,16 @@ def test_nothing_is_driven_through(robot: Robot, powers: tuple[int, int]) -> Non
     """Not in a corner, not past the end of a wall, however long it pushes."""
     world = floor("[[walls]]\npoints = [[20, 140], [120, 140], [120, 160]]\n")
     for heading in range(0, 360, 40):
-        found = driving(world, Pose(60, 100, heading), robot)
-        found.set_motors(0, *powers)
-        before = found.advance_to(0)
+        drive = driving(world, Pose(60, 100, heading), robot)
+        drive.set_motors(0, *powers)
+        before = drive.advance_to(0)
         for now_ms in range(250, 15_000, 250):
-            pose = found.advance_to(now_ms)
-            contact = found.hull.contact(pose, found.obstacles)
+            pose = drive.advance_to(now_ms)
+            contact = drive.hull.contact(pose, drive.obstacles)
             assert contact and contact.gap_cm > -0.01
             assert not any(
                 crosses(Segment(Point(*before[:2]), Point(*pose[:2])), obstacle)
-                for obstacle in found.obstacles
+                for obstacle in drive.obstacles
             )
             before = pose
 
@@ -158,26 +160,26 @@ def test_looking_changes_nothing() -> None:
     """A picture of it may be drawn whenever one likes."""
     ends = []
     for looks in ([], [1, 99, 100, 101, 5432, 7000], list(range(0, 8000, 7))):
-        found = driving(
+        drive = driving(
             floor("[[boxes]]\nx_cm=150\ny_cm=95\nlength_cm=20\nwidth_cm=20\nheading=20")
         )
-        found.set_motors(0, 90, 80)
+        drive.set_motors(0, 90, 80)
         for now_ms in looks:
-            found.pose_at(now_ms)
-        ends.append(found.advance_to(8000))
+            drive.pose_at(now_ms)
+        ends.append(drive.advance_to(8000))
     assert ends[0] == ends[1] == ends[2]
 
 
 def test_the_way_has_no_gaps_and_few_corners() -> None:
-    found = driving(floor())
-    found.set_motors(0, 50, 50)
-    found.set_motors(3000, 30, -30)
-    found.set_motors(4000, 50, 50)
-    found.advance_to(20_000)
-    assert len(found.corners) < 300
-    length_cm = sum(math.dist(a[:2], b[:2]) for a, b in pairwise(found.corners))
-    assert length_cm == pytest.approx(found.driven_cm, rel=1e-6)
-    assert found.corners[-1][:2] == found.advance_to(20_000)[:2]
+    drive = driving(floor())
+    drive.set_motors(0, 50, 50)
+    drive.set_motors(3000, 30, -30)
+    drive.set_motors(4000, 50, 50)
+    drive.advance_to(20_000)
+    assert len(drive.corners) < 300
+    length_cm = sum(math.dist(a[:2], b[:2]) for a, b in pairwise(drive.corners))
+    assert length_cm == pytest.approx(drive.driven_cm, rel=1e-6)
+    assert drive.corners[-1][:2] == drive.advance_to(20_000)[:2]
 
 
 def test_the_hull_reaches_to_the_sensors() -> None:

@@ -43,8 +43,8 @@ def program() -> bytes:
     kit = robots.load("tinibot").kit
     versions = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR}
     hello = b"\0" + frame("HELLO", **versions, kit=kit.fingerprint, nonce=9)
-    said = robot_in(floor()).step(500, hello)
-    epochs = {each.epoch for each in map(decode_frame, said.split(b"\0")) if each is not None}
+    reply = robot_in(floor()).step(500, hello)
+    epochs = {frame.epoch for frame in map(decode_frame, reply.split(b"\0")) if frame is not None}
     code = unpack(compile_text("SI|F(5,80)", kit).image).code
     return hello + frame("LIVE", epochs.pop(), 2, mode=RUN, code=code)
 
@@ -53,9 +53,9 @@ def program() -> bytes:
 def test_no_beginning_of_a_browser_is_for_a_robot(name: str) -> None:
     """However slowly it comes, byte by byte."""
     data = FOREIGN_GREETINGS[name]
-    found = verdicts(data)
-    assert True not in found
-    assert found[-1] is False
+    answers = verdicts(data)
+    assert True not in answers
+    assert answers[-1] is False
 
 
 def test_all_frames_of_a_computer_are_for_a_robot() -> None:
@@ -87,10 +87,10 @@ def test_all_frames_of_a_computer_are_for_a_robot() -> None:
     ('SHOW("GET / HTTP/1.1")\n', 5),
 ])  # fmt: skip
 def test_a_line_of_text_is_for_a_robot_as_soon_as_it_can_be_told(text: str, after: int) -> None:
-    found = verdicts(text.encode())
-    assert False not in found
-    assert found.index(True) == after
-    assert None not in found[after:]
+    answers = verdicts(text.encode())
+    assert False not in answers
+    assert answers.index(True) == after
+    assert None not in answers[after:]
 
 
 def test_a_first_line_has_an_end() -> None:
@@ -105,19 +105,19 @@ def test_a_first_line_has_an_end() -> None:
 def until_let_go(simulator: Simulator, client: socket.socket) -> None:
     """Wait until it is hung up on without a word."""
 
-    def is_let_go() -> bool:
-        said = b"?"
+    def try_to_send() -> bool:
+        reply = b"?"
         with contextlib.suppress(BlockingIOError, ConnectionError):
-            said = client.recv(1000)
-            assert said == b""
+            reply = client.recv(1000)
+            assert reply == b""
         with contextlib.suppress(BlockingIOError):
             try:
                 client.send(b"x")
             except ConnectionError:
                 return True
-        return said == b""
+        return reply == b""
 
-    until(simulator, is_let_go)
+    until(simulator, try_to_send)
 
 
 def _has_moved(simulator: Simulator) -> bool:
@@ -185,7 +185,7 @@ def test_many_who_say_nothing_keep_nobody_out(simulator: Simulator, says: bytes)
     [client] = crowd(simulator, 1)
     is_said, most, heard = False, 0, bytearray()
 
-    def is_answered() -> bool:
+    def ask_and_look() -> bool:
         nonlocal is_said, most
         most = max(most, len(simulator.transports._callers))
         with contextlib.suppress(BlockingIOError, BrokenPipeError):  # it does not stand yet
@@ -193,7 +193,7 @@ def test_many_who_say_nothing_keep_nobody_out(simulator: Simulator, says: bytes)
                 is_said = client.send(PING) > 0
         return is_said and b"\0" in received(client, heard)
 
-    until(simulator, is_answered)
+    until(simulator, ask_and_look)
     assert MOST_CALLERS / 2 < most <= MOST_CALLERS
     for connection in (client, *idle):
         connection.close()

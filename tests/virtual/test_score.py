@@ -34,15 +34,15 @@ def scored(text: str, program: str, ms: int = 9000) -> dict[str, int] | None:
     simulation = Simulation("tinibot", read(text, "own"), compile(program).image)
     for part in (ms // 3, ms // 3, ms // 3):
         simulation.go(part)
-    found: dict[str, int] | None = simulation.state()["score"]
-    return found
+    score: dict[str, int] | None = simulation.state()["score"]
+    return score
 
 
 def counted(text: str, program: str, ms: int = 9000) -> tuple[int, int]:
     """Return how many flags are taken, and the stars."""
-    found = scored(text, program, ms)
-    assert found is not None
-    return found["taken"], found["stars"]
+    score = scored(text, program, ms)
+    assert score is not None
+    return score["taken"], score["stars"]
 
 
 def test_a_world_without_flags_has_no_score() -> None:
@@ -55,8 +55,8 @@ def test_flags_are_taken_in_their_order_and_give_points_as_seconds_that_are_left
     later = scored(TWO, "W(2);F(100 CM, 80)") or {}
     assert at_once["points"] == later["points"] + 10
     turned = TWO.replace("x_cm = 90", "x_cm = 200").replace("x_cm = 140", "x_cm = 90")
-    found = scored(turned.replace("x_cm = 200", "x_cm = 140"), "F(100 CM, 80)") or {}
-    assert (found["taken"], found["stars"], found["points"]) == (1, 0, 100)
+    score = scored(turned.replace("x_cm = 200", "x_cm = 140"), "F(100 CM, 80)") or {}
+    assert (score["taken"], score["stars"], score["points"]) == (1, 0, 100)
 
 
 def test_a_collision_and_a_late_end_cost_a_star_each() -> None:
@@ -66,7 +66,7 @@ def test_a_collision_and_a_late_end_cost_a_star_each() -> None:
     assert counted(crashed, "B(1, 80);F(4, 80)") == (2, 2)
     late = TWO.replace("seconds = 6", "seconds = 4") + wall
     assert counted(late, "B(1, 80);W(3);F(4, 80)") == (2, 1)
-    # What happens after the last flag counts no more.
+    # What happens after the last flag no longer counts.
     assert counted(TWO, "F(9, 80)", 12_000) == (2, 3)
 
 

@@ -104,22 +104,24 @@ def check(seed: int) -> str:
     other = robot_in(floor(WALL)._replace(start=pose), name, baud=0)
     other.step(1500)
     did, want = does(Talk(robot, 7), text), does(Talk(other, 7), text)
-    said = f"seed {seed} {ends} {name} {text}\n{did}\nnot\n{want}"
-    assert did[:2] == want[:2], said
+    explanation = f"seed {seed} {ends} {name} {text}\n{did}\nnot\n{want}"
+    assert did[:2] == want[:2], explanation
     did_pose, want_pose = did.pose, want.pose
-    assert hypot(did_pose.x_cm - want_pose.x_cm, did_pose.y_cm - want_pose.y_cm) < NEAR_CM, said
-    assert abs(did_pose.heading - want_pose.heading) < NEAR_DEGREES, said
+    assert hypot(did_pose.x_cm - want_pose.x_cm, did_pose.y_cm - want_pose.y_cm) < NEAR_CM, (
+        explanation
+    )
+    assert abs(did_pose.heading - want_pose.heading) < NEAR_DEGREES, explanation
     left = {k: value for k, value in did.actuators.items() if k not in want.actuators}
-    assert {**want.actuators, **left} == did.actuators, said
-    assert is_done or not any(left.values()), said  # what a program's own end leaves on
+    assert {**want.actuators, **left} == did.actuators, explanation
+    assert is_done or not any(left.values()), explanation  # what a program's own end leaves on
     return ends if len(want.trace) > 3 else "little"
 
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
 def test_a_second_run_is_as_on_a_robot_that_was_switched_on_there(part: int) -> None:
-    found = Counter(check(seed) for seed in range(part * 15, (part + 1) * 15))
-    assert found["little"] < 8, found
+    counts = Counter(check(seed) for seed in range(part * 15, (part + 1) * 15))
+    assert counts["little"] < 8, counts
 
 
 if __name__ == "__main__":

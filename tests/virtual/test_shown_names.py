@@ -38,24 +38,24 @@ class Desk:
         self.finder = ShowFinder(self.maps)
 
     def send(self, text: str) -> None:
-        found = compile_text(text, robots.load(self.robot.profile.name).kit)
-        assert found.is_right and found.image
-        self.maps[checksum(found.image)] = mapped(found)
-        request = self.computer.session.upload(unpack(found.image), runs=True)
+        compilation = compile_text(text, robots.load(self.robot.profile.name).kit)
+        assert compilation.is_right and compilation.image
+        self.maps[checksum(compilation.image)] = mapped(compilation)
+        request = self.computer.session.upload(unpack(compilation.image), runs=True)
         assert self.computer.wait_for(request).status == OK
 
     def shown(self, limit_ms: int) -> list[tuple[int, str]]:
         """Return values and their names, until a program ends or for so long."""
-        found: list[tuple[int, str]] = []
+        values: list[tuple[int, str]] = []
         for _ in range(limit_ms):
             self.computer.wait(1)
             for event in self.computer.session.events():
                 if event.name == "DONE":
-                    return found
+                    return values
                 if isinstance(event, ShownEvent):
                     show = self.finder.show_of(event)
-                    found.append((event.value // 1000, "" if show is None else show.text))
-        return found
+                    values.append((event.value // 1000, "" if show is None else show.text))
+        return values
 
 
 @each_row("kind", KINDS)
@@ -73,10 +73,10 @@ def test_values_of_tasks_that_wait_for_the_line_have_the_names_of_their_shows(
 ) -> None:
     desk = Desk(kind, baud)
     desk.send(SEVERAL)
-    found = desk.shown(60_000)
-    assert dict(found) == NAMES
-    assert all(NAMES[value] == name for value, name in found)
-    assert [value for value, _ in found].count(3) == 5
+    values = desk.shown(60_000)
+    assert dict(values) == NAMES
+    assert all(NAMES[value] == name for value, name in values)
+    assert [value for value, _ in values].count(3) == 5
 
 
 @each_row("kind", KINDS)
@@ -100,9 +100,9 @@ def test_what_follows_a_program_that_waits_to_show_has_names_of_its_own(
         desk.computer.session.stop(desk.robot.now_ms)
         before += desk.shown(1500)
     desk.send("SI|FAR = 2; LOOP(3); SHOW(FAR); END_LOOP")
-    found = desk.shown(10_000)
-    assert [each for each in found if each[0] == 2] == [(2, "FAR")] * 3
-    assert {*before, *found} == {(1, "NEAR"), (2, "FAR")}
+    values = desk.shown(10_000)
+    assert [row for row in values if row[0] == 2] == [(2, "FAR")] * 3
+    assert {*before, *values} == {(1, "NEAR"), (2, "FAR")}
 
 
 @each_row("kind", KINDS)

@@ -13,7 +13,7 @@ from tests.support.waiting import HANGS_S
 SILENT_S = 3  # longer than the second that a robot waits for, whose clock may go slower
 
 
-def heard(client: socket.socket, end: str) -> list[str]:
+def lines_until(client: socket.socket, end: str) -> list[str]:
     """Return what is answered, up to a line that ends so."""
     client.settimeout(HANGS_S)
     data = b""
@@ -25,26 +25,29 @@ def heard(client: socket.socket, end: str) -> list[str]:
 
 
 def test_lines_are_answered_and_the_robot_drives() -> None:
-    with robot("--listen", "0", "--name", "KAT") as found, visitor(found.port) as client:
+    with (
+        robot("--listen", "0", "--name", "KAT") as running_robot,
+        visitor(running_robot.port) as client,
+    ):
         client.sendall(b"PING|CHECK_CONNECTION\r\n")
-        [hello] = heard(client, "text uno")
+        [hello] = lines_until(client, "text uno")
         assert hello.startswith("// KAT, kit ")
         client.sendall(b"SI|F(0.2,50);SHOW(1.5)\n")
-        assert heard(client, "DONE") == ["// OK", "// 1.5", "// DONE"]
-        assert found.until("DONE")[1:3] == ["0 MOTORS 50 50", "200 MOTORS 0 0"]
+        assert lines_until(client, "DONE") == ["// OK", "// 1.5", "// DONE"]
+        assert running_robot.until("DONE")[1:3] == ["0 MOTORS 50 50", "200 MOTORS 0 0"]
         client.sendall(b"SI|FOO(1)\n")
-        assert heard(client, "word") == ["// 4: Unknown word"]
+        assert lines_until(client, "word") == ["// 4: Unknown word"]
         for line in FOREVER.replace(";", ";\n").encode().splitlines(keepends=True):
             client.sendall(line)
         client.sendall(b"\n")
-        assert heard(client, "OK") == ["// OK"]
+        assert lines_until(client, "OK") == ["// OK"]
         client.sendall(b"s\n")
-        assert heard(client, "STOPPED") == ["// STOPPED"]
+        assert lines_until(client, "STOPPED") == ["// STOPPED"]
         time.sleep(SILENT_S)  # what comes sooner is not done
         client.sendall(b"F(1,50)\n")
-        assert heard(client, "SI|") == ["// It was stopped. Begin with SI|"]
+        assert lines_until(client, "SI|") == ["// It was stopped. Begin with SI|"]
         client.sendall(b"SI|F(0.1,50)\n")
-        assert heard(client, "DONE") == ["// OK", "// DONE"]
+        assert lines_until(client, "DONE") == ["// OK", "// DONE"]
 
 
 def test_it_speaks_the_language_of_the_command_unless_its_profile_has_one(tmp_path: Path) -> None:
@@ -52,6 +55,9 @@ def test_it_speaks_the_language_of_the_command_unless_its_profile_has_one(tmp_pa
     profile.write_text(TEXTS["tinibot"].replace("[board]\n", '[board]\nlanguage = "en"\n'))
     own: list[str | Path] = ["--robot", profile]
     for words, answers in (([], ["// OK", "// FIN"]), (own, ["// OK", "// DONE"])):
-        with robot("--listen", "0", "--lang", "es", *words) as found, visitor(found.port) as client:
+        with (
+            robot("--listen", "0", "--lang", "es", *words) as running_robot,
+            visitor(running_robot.port) as client,
+        ):
             client.sendall(b"SI|F(0.1,50)\n")
-            assert heard(client, answers[-1][3:]) == answers
+            assert lines_until(client, answers[-1][3:]) == answers

@@ -30,7 +30,7 @@ def test_it_reads_what_a_sensor_reads_that_looks_there(low: int, high: int) -> N
     """Anywhere in a world, and whatever its range is called: the middle is where it looks ahead."""
     necked, world = with_neck(low, high), worlds.load("obstacles")
     draw = random.Random(3)
-    seen = set()
+    readings = set()
     for _ in range(60):
         pose = Pose(draw.uniform(20, 200), draw.uniform(20, 180), draw.uniform(0, 360))
         value = draw.randint(low, high)
@@ -40,8 +40,8 @@ def test_it_reads_what_a_sensor_reads_that_looks_there(low: int, high: int) -> N
         turned, looks = Sensing(necked, world), Sensing(necked._replace(body=body), world)
         turned.turn(0, value * 1000)
         assert turned.peek(0, pose) == looks.peek(0, pose)
-        seen.add((turned.peek(0, pose), Sensing(necked, world).peek(0, pose)))
-    assert sum(a != b for a, b in seen) > 30, "it turns, and sees something else"
+        readings.add((turned.peek(0, pose), Sensing(necked, world).peek(0, pose)))
+    assert sum(a != b for a, b in readings) > 30, "it turns, and sees something else"
 
 
 def test_it_stays_as_it_is_when_its_servo_is_released() -> None:

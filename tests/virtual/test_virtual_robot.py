@@ -58,7 +58,7 @@ def test_it_does_what_tsc_run_says(name: str) -> None:
     talk.wait(20_000)
     assert robot.offset is None  # nothing runs
     events = robot.take_events()
-    said = trace(events)
+    lines = trace(events)
     readings: dict[int, list[int]] = {}
     for event in events:
         if event.kind == "READ":
@@ -66,21 +66,21 @@ def test_it_does_what_tsc_run_says(name: str) -> None:
     code = unpack(compile_text(PROGRAMS[name], KIT).image).code
     expected = [str(event) for event in run(code, KIT, Senses(KIT, readings))
                 if not isinstance(event, Ending)]  # fmt: skip
-    assert said == expected
+    assert lines == expected
 
 
 @pytest.mark.parametrize("name", ["drive", "until", "obstacle"])
 def test_a_run_repeats_with_its_seed(name: str) -> None:
-    def went(seed: int, noise: float) -> tuple[list[str], list[tuple[float, ...]]]:
+    def run_with(seed: int, noise: float) -> tuple[list[str], list[tuple[float, ...]]]:
         robot = robot_in(worlds.load("obstacles"), seed=seed, noise=noise)
         talk = Talk(robot)
         talk.upload(PROGRAMS[name], is_detached=True)
         robot.step(robot.now_ms + 20_000)
         return trace(robot.take_events()), [tuple(corner) for corner in robot.driving.corners]
 
-    assert went(1, 0.03) == went(1, 0.03)
-    assert went(1, 0.03)[1] != went(2, 0.03)[1]
-    assert went(1, 0.0)[1] == went(2, 0.0)[1]
+    assert run_with(1, 0.03) == run_with(1, 0.03)
+    assert run_with(1, 0.03)[1] != run_with(2, 0.03)[1]
+    assert run_with(1, 0.0)[1] == run_with(2, 0.0)[1]
 
 
 def test_unequal_motors_drive_a_curve_and_their_trim_makes_it_straight() -> None:
@@ -261,9 +261,9 @@ def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
     for _ in range(3000):
         wait()
     assert to_robot.fault_count + to_computer.fault_count > 1
-    said = trace(robot.take_events())
-    assert [each.split(" ", 1)[1] for each in said][-1] == "DONE"
-    assert [each.split()[2] for each in said if " MOTORS " in each][:3] == ["1", "2", "3"]
+    lines = trace(robot.take_events())
+    assert [line.split(" ", 1)[1] for line in lines][-1] == "DONE"
+    assert [line.split()[2] for line in lines if " MOTORS " in line][:3] == ["1", "2", "3"]
 
 
 def test_a_bad_line_is_the_same_with_the_same_seed_and_loses_nothing_in_order() -> None:
@@ -378,7 +378,7 @@ def test_it_is_seen_and_heard_which_one_it_is() -> None:
     for _ in range(35):
         talk.wait(100)
         lights.append(robot.is_lit)
-    assert sum(was != now for was, now in pairwise(lights)) >= 10
+    assert sum(before != now for before, now in pairwise(lights)) >= 10
     assert [event.kind for event in robot.take_events()] == ["BEEP"] * 3
 
 

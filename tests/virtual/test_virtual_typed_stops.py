@@ -58,7 +58,7 @@ def test_silence_ends_the_stop_of_who_may_be_a_web_page(simulator: Simulator, wo
 
 
 def test_the_host_knows_such_lines_as_a_robot_does() -> None:
-    chance, robot, found = Random(4), robot_in(), set()
+    chance, robot, kinds = Random(4), robot_in(), set()
     parts = [
         b"S", b"sTOP", b"T", b" ", b"\t;", b"\x1b", b"\x1b[", b"O", b"1", b"A", b"\x7f", b"\1",
         b".", b"NOW", b"alto", b"PARA", b"R",
@@ -71,6 +71,6 @@ def test_the_host_knows_such_lines_as_a_robot_does() -> None:
         assert robot.is_running
         wait(robot, SILENCE_MS + 100, b"\n" + word)
         assert robot.is_running is not is_at_stop(word), word
-        found.add(robot.is_running)
+        kinds.add(robot.is_running)
         wait(robot, 10, bytes(STOP_BYTES))
-    assert len(found) == 2
+    assert len(kinds) == 2

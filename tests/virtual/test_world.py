@@ -73,7 +73,7 @@ def test_a_world_is_read() -> None:
     assert corners == [(95, 60), (95, 40), (105, 40), (105, 60)]
     assert world.lines == ((((0, 0), (9, 9)), 1.5),)
     assert world.lamps == (((7, 8), 100),)
-    assert {world.labels[each] for each in LANGUAGES} == {"mine"}
+    assert {world.labels[language] for language in LANGUAGES} == {"mine"}
     obstacles = world.obstacles()
     assert len(obstacles) == 2 + 4 + 4
     assert Segment(Point(200, 0), Point(200, 100)) in obstacles
@@ -98,7 +98,7 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
 
 
 @each_row(
-    "text, said",
+    "text, message",
     [
         ("", "floor is missing. Add it, for example: [floor]"),
         (RIGHT + "[[wall]]\n", "A world file has no key wall. Did you mean walls?"),
@@ -143,8 +143,8 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
         ),
     ],
 )
-def test_what_is_wrong_in_a_world_is_said_with_its_place(text: str, said: str) -> None:
-    assert any(said in line for line in refused(text)), refused(text)
+def test_what_is_wrong_in_a_world_is_said_with_its_place(text: str, message: str) -> None:
+    assert any(message in line for line in refused(text)), refused(text)
 
 
 def test_all_that_is_wrong_is_said_at_once() -> None:
@@ -155,8 +155,8 @@ def test_all_that_is_wrong_is_said_at_once() -> None:
 def test_a_robot_that_does_not_fit_is_refused() -> None:
     with pytest.raises(WorldRefused) as exception_info:
         robot_in(floor(start="x_cm = 5\ny_cm = 50"))
-    [said] = describe(exception_info.value, "en")
-    assert said.startswith(
+    [sentence] = describe(exception_info.value, "en")
+    assert sentence.startswith(
         "The robot does not fit at its starting point, x_cm = 5, y_cm = 50. Move"
     )
 
@@ -167,7 +167,7 @@ def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> 
     binary.write_bytes(bytes(range(256)))
     large.write_bytes(b"#" * 70_000)
     wrong.write_text(RIGHT + "[[lamps]]\n", encoding="utf-8")
-    for name, said in (
+    for name, expected in (
         ("obstacle", "Did you mean obstacles?"),
         ("nowhere", f"Choose one of these: {', '.join(worlds.names())}"),
         ("", "There is no world"),
@@ -179,8 +179,8 @@ def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> 
         ("a\0b.toml", "cannot be read"),
     ):
         for language in ("en", "es"):
-            done = tsc(*verb, "--world", name, "--lang", language).gives(2)
-            assert (said in done.err) == (language == "en"), done.err
+            result = tsc(*verb, "--world", name, "--lang", language).gives(2)
+            assert (expected in result.err) == (language == "en"), result.err
 
 
 def test_a_picture_has_the_longer_side_that_it_may_have() -> None:

@@ -37,8 +37,10 @@ def expect(case: Case, part: str, actual: str, request: pytest.FixtureRequest) -
 @each_row("case", having("tiniscript"))
 def test_program_compiles_or_its_mistake_is_stated(case: Case) -> None:
     """A program without a `mistake` fence has none; nothing in a document is wrong by accident."""
-    found = compiled(case)
-    assert found.is_right == ("mistake" not in case.parts), [p.code for p in found.diagnostics]
+    compilation = compiled(case)
+    assert compilation.is_right == ("mistake" not in case.parts), [
+        p.code for p in compilation.diagnostics
+    ]
 
 
 @pytest.mark.parametrize("machine", MACHINES)
@@ -66,17 +68,19 @@ def test_line_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
 
 @each_row("case", [*having("tiniscript", "mistake"), *having("tiniscript", "warning")])
 def test_what_is_said(case: Case, request: pytest.FixtureRequest) -> None:
-    found = compiled(case)
+    compilation = compiled(case)
     for part, is_mistake in (("mistake", True), ("warning", False)):
         if part in case.parts:
-            said = [
+            sentences = [
                 as_text(
-                    message(diagnostic, found.source, case.language), found.source, case.language
+                    message(diagnostic, compilation.source, case.language),
+                    compilation.source,
+                    case.language,
                 )
-                for diagnostic in found.diagnostics
+                for diagnostic in compilation.diagnostics
                 if diagnostic.is_mistake == is_mistake
             ]
-            expect(case, part, "\n\n".join(said) + "\n", request)
+            expect(case, part, "\n\n".join(sentences) + "\n", request)
 
 
 @pytest.mark.parametrize("case", having("tiniscript", "formatted"))

@@ -95,7 +95,9 @@ def check_and_run(codes: Sequence[bytes]) -> None:
 
 
 def test_all_codes_of_up_to_two_bytes() -> None:
-    check_and_run([bytes(each) for size in range(3) for each in product(range(256), repeat=size)])
+    check_and_run(
+        [bytes(values) for size in range(3) for values in product(range(256), repeat=size)]
+    )
 
 
 @pytest.mark.sampled("few_at")
@@ -105,7 +107,7 @@ def test_codes_of_three_bytes_with_two_opcodes(few_at: int) -> None:
     opcodes = [op.code for op in OPS if op.needs != NEEDS_GO]
     sets = [opcodes, opcodes, opcodes]
     sets[few_at] = [0, 1, 2, 3, 31, 32, 100, 101, 127, 128, 156, 255]
-    check_and_run([bytes(each) for each in product(*sets)])
+    check_and_run([bytes(values) for values in product(*sets)])
 
 
 @pytest.mark.parametrize("first", range(0, 256, 16), ids=lambda first: f"from {first:02x}")
@@ -144,12 +146,12 @@ def test_codes_of_three_bytes_that_begin_alike(name: str) -> None:
 @pytest.mark.parametrize("seed", range(BATCHES))
 def test_random_codes(seed: int) -> None:
     """A million in all, an eightieth of it on a commit: they break every rule, end in every way."""
-    seen = check_codes(host(), seed, BATCH)
+    counts = check_codes(host(), seed, BATCH)
     others = ("CODE_LENGTH", "TOO_MANY_TASKS")  # these codes have no tasks
     rules = {str(number) for name, (number, _) in RULES.items() if name not in others}
-    assert rules <= set(seen), sorted(rules - set(seen))
-    assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(seen), seen
-    assert "BAD_CODE" not in seen, seen
+    assert rules <= set(counts), sorted(rules - set(counts))
+    assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(counts), counts
+    assert "BAD_CODE" not in counts, counts
 
 
 def test_whatever_the_code_the_machine_keeps_to_its_memory() -> None:
@@ -315,10 +317,10 @@ def test_long_images() -> None:
             head[5], head[8:10] = header_length, struct_pack("<H", length)
             image = with_checksum(bytes(head) + bytes(header_length - HEADER_BYTES + length))
             images = [image, image[:-1], image + b"x"]
-            said = host().refusals(images)
-            assert said == [cpp_checks.python_refusal(image) for image in images]
+            refusals = host().refusals(images)
+            assert refusals == [cpp_checks.python_refusal(image) for image in images]
             names = ["", "TRUNCATED", "TRAILING"] if length == CODE_BYTES else ["BAD_HEADER"] * 3
-            assert said == [REFUSALS[name][0] if name else 0 for name in names], length
+            assert refusals == [REFUSALS[name][0] if name else 0 for name in names], length
 
 
 @pytest.mark.sampled("name", keep=7)
@@ -334,11 +336,14 @@ def test_arithmetic(name: str) -> None:
 def campaign(count: int, first: int) -> None:
     begun = time.monotonic()
     total: Counter[str] = Counter()
-    done = 0
+    judged_count = 0
     for seed in range(first, first + -(-count // BATCH)):
         total += check_codes(host(), seed, BATCH)
-        done += BATCH
-        print(f"{done} codes agree, {done / (time.monotonic() - begun):.0f} a second", flush=True)
+        judged_count += BATCH
+        print(
+            f"{judged_count} codes agree, {judged_count / (time.monotonic() - begun):.0f} a second",
+            flush=True,
+        )
     print(", ".join(f"{what}: {times}" for what, times in sorted(total.items())))
 
 

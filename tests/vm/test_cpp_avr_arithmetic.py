@@ -57,9 +57,9 @@ def numbers(state: int) -> Iterator[int]:
 
 
 def operations(seed: int, blocks: int) -> list[Operation]:
-    made = numbers(seed)
+    numbers_made = numbers(seed)
     names = islice(cycle(OPERATIONS), BLOCK * blocks)
-    return [Operation(name, next(made), second(name, next(made))) for name in names]
+    return [Operation(name, next(numbers_made), second(name, next(numbers_made))) for name in names]
 
 
 def second(name: str, b: int) -> int:
@@ -82,9 +82,9 @@ def checksum(block: Sequence[Operation]) -> int:
 def compare(seed: int, blocks: int = BLOCKS) -> None:
     """Assert that the chip calculates what Python does; name the operation where it does not."""
     every = operations(seed, blocks)
-    said = [int(line) for line in chip(seed, blocks)]
-    assert len(said) == blocks
-    for number, theirs in enumerate(said):
+    results = [int(line) for line in chip(seed, blocks)]
+    assert len(results) == blocks
+    for number, theirs in enumerate(results):
         block = every[number * BLOCK : (number + 1) * BLOCK]
         if checksum(block) == theirs:
             continue

@@ -84,19 +84,19 @@ def has(chip: str) -> int:
 def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
     """Assert that the chip says and does the same as Python; return the last line."""
     want: Ran | str
-    got: Ran | str
+    actual: Ran | str
     try:
         want = ran_python(image, kit, senses, has=has(chip))
     except (Refused, ImageRefused) as refused:
         want = repr(refused)
     try:
-        got = CHIPS[chip].run(image, kit, senses)
+        actual = CHIPS[chip].run(image, kit, senses)
     except (Refused, ImageRefused) as refused:
-        got = repr(refused)
-    if isinstance(got, str) or isinstance(want, str):
-        assert got == want, image.hex(" ")
+        actual = repr(refused)
+    if isinstance(actual, str) or isinstance(want, str):
+        assert actual == want, image.hex(" ")
         return str(want)
-    assert agrees(got, want, senses.max_ms), f"{image.hex(' ')}\n{got}\n{want}"
+    assert agrees(actual, want, senses.max_ms), f"{image.hex(' ')}\n{actual}\n{want}"
     return want.trace.splitlines()[-1]
 
 
@@ -162,8 +162,8 @@ def test_code_that_changed_after_it_was_verified(chip: str) -> None:
     for code, caught in unverified_code(len(kit.readings)):
         if code not in LENIENT:
             want = "DONE" if caught is None else "BAD_CODE"
-            said = avr.answer(chip, b"U" + run_request(code, kit, senses))
-            assert ran(said).trace.split()[-1] == want, f"{code.hex()}: {said}"
+            answer = avr.answer(chip, b"U" + run_request(code, kit, senses))
+            assert ran(answer).trace.split()[-1] == want, f"{code.hex()}: {answer}"
             endings.add(want)
     assert endings == {"DONE", "BAD_CODE"}
 
@@ -177,8 +177,8 @@ def test_loops_count_beyond_65535(chip: str) -> None:
         text = f"X = 0; Y = 0; LOOP(70000); X = X + 1; {body} END_LOOP; SHOW(Y)"
         image = compile_text(text, kit).image
         same_on_the_chip(chip, image, kit, Senses())
-        got = avr.ran_on(chip, image, kit, Senses(), not_ready=2)
-        assert got.trace == ran_python(image, kit, Senses()).trace, body
+        ran = avr.ran_on(chip, image, kit, Senses(), not_ready=2)
+        assert ran.trace == ran_python(image, kit, Senses()).trace, body
 
 
 @some_chips(avr.MEGA)
@@ -214,9 +214,9 @@ def test_a_robot_that_is_not_ready_is_asked_again(chip: str) -> None:
 @pytest.mark.parametrize("seed", range(2))
 def test_random_codes(chip: str, seed: int) -> None:
     """Rules and offsets of random and mutated codes; those that are accepted run."""
-    seen = cpp_checks.check_codes(emulated(chip), seed, 8000)
-    assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(seen)
-    assert seen["accepted"] > 500
+    counts = cpp_checks.check_codes(emulated(chip), seed, 8000)
+    assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(counts)
+    assert counts["accepted"] > 500
 
 
 @one_chip
@@ -244,8 +244,8 @@ def test_assembly_and_its_twin_do_the_same(chip: str, first: int) -> None:
         not_ready, pace = (0, 2, 3)[number % 3], Pace(every_ms=(1, 8, 37, 2)[number % 4])
         begin_ms = (0, 2**31 - 100, 2**32 - 100)[number // 3 % 3]
         of_assembly, of_twin = (
-            avr.ran_on(each, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
-            for each in (chip, avr.PORTABLE)
+            avr.ran_on(chip_name, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
+            for chip_name in (chip, avr.PORTABLE)
         )
         assert of_assembly == of_twin, image.hex(" ")
 

@@ -62,8 +62,8 @@ def check(text: str) -> bool:
         return False
     for image in (compiled.image, compile_text(text, KIT, optimize=False).image):
         for run in (run_python, run_host):
-            got = run(image, KIT, SENSES)
-            assert same(want, got), f"{text}\n{got}not\n{want}"
+            actual = run(image, KIT, SENSES)
+            assert same(want, actual), f"{text}\n{actual}not\n{want}"
     assert compile_text(format_source(Source(text)), KIT).image == compiled.image, text
     check_blocks(text, KIT)
     check_line(text, KIT)
@@ -103,7 +103,7 @@ def frames() -> Iterator[str]:
         yield from (nested(head, end, times) for times in (BLOCKS - 1, BLOCKS, BLOCKS + 1))
     yield from loops
     for task in ("TASK;{};END_TASK", "WHEN(DISTANCE < 10);{};END_WHEN"):
-        yield from (task.format(each) for each in ("{}", *loops[:-1]))
+        yield from (task.format(frame) for frame in ("{}", *loops[:-1]))
         yield task.format("W(0.1)") + ";W(FOREVER) UNTIL(TIME > 0.05);{}"
     for depth in (1, BLOCKS - 2):  # all tasks together have as many blocks open as one
         busy = nested("LOOP(1)", "END_LOOP", depth).format("S")
@@ -111,8 +111,8 @@ def frames() -> Iterator[str]:
             its = nested("LOOP(1)", "END_LOOP", rest)
             yield f"TASK;{its};END_TASK;{busy}"
             yield f"TASK;{busy};END_TASK;{its}"
-    for each in ("{}", *loops):
-        yield f"DEF A;{each};END_DEF;A"
+    for frame in ("{}", *loops):
+        yield f"DEF A;{frame};END_DEF;A"
     yield from (f"DEF A;{{}};END_DEF;{loop.format('A')}" for loop in loops)
     yield from map(in_defs, (CALLS, CALLS + 1))
     yield from ("W(FOREVER) UNTIL(TRUE);{}", "F(2, 80) UNTIL(TIME > 0.1)\n{}")
@@ -129,8 +129,8 @@ def uses_of(word: Word) -> list[str]:
     return {
         "setup": lambda: [text, f"{text}|S", f"PING|{text}", f"{text}|CHECK_CONNECTION"],
         "start": lambda: [text],
-        "until": lambda: [f"{each} {UNTIL}" for each in ("W(1)", "F(2, 80)", "S", "BEEP(1, 440)")],
-        "forever": lambda: [f"LOOP({text});{each};END_LOOP" for each in ("W(1)", "BREAK")],
+        "until": lambda: [f"{text} {UNTIL}" for text in ("W(1)", "F(2, 80)", "S", "BEEP(1, 440)")],
+        "forever": lambda: [f"LOOP({text});{body};END_LOOP" for body in ("W(1)", "BREAK")],
         "block": lambda: [f"{header(text)};{BLOCK_ENDS[text]}"],
         "arm": lambda: [f"IF(FALSE);{word.example};SHOW(1);ENDIF"],
         "end": lambda: [f"{begin_of(text)};{text}"],
@@ -139,7 +139,7 @@ def uses_of(word: Word) -> list[str]:
         "value": lambda: [f"SHOW({text})", text],
         "operator": lambda: [f"SHOW(TRUE {text} (FALSE))", f"SHOW({text} TRUE)"],
         "function": lambda: [f"SHOW({word.example})", f"X = {word.example}"],
-        "unit": lambda: [f"{each}(20 {text}, 60)" for each in MOVES],
+        "unit": lambda: [f"{move}(20 {text}, 60)" for move in MOVES],
         "later": lambda: [text, f"{text}(1)"],
     }[word.role.name]()
 
@@ -187,9 +187,9 @@ def test_every_word_in_every_frame(request: pytest.FixtureRequest) -> None:
 
 
 def test_every_word_is_a_program_somewhere() -> None:
-    found = {name for name, use in USES if check(use)}
+    words = {name for name, use in USES if check(use)}
     later = {name for name, word in WORDS.items() if word.role.name == "later"}
-    assert {name for name, _ in USES} - found == later
+    assert {name for name, _ in USES} - words == later
 
 
 # -- arguments ------------------------------------------------------------------------------------

@@ -131,10 +131,10 @@ def test_random_is_xorshift32() -> None:
 
 
 def test_random_reaches_both_ends_and_nothing_else() -> None:
-    state, seen = 1, set()
+    state, values = 1, set()
     for _ in range(1000):
         state = t.next_random(state)
-        seen.add(t.random_between(6400, 600, state))
-    assert seen == {1000 * n for n in range(1, 7)}
+        values.add(t.random_between(6400, 600, state))
+    assert values == {1000 * n for n in range(1, 7)}
     assert outcome(lambda: t.random_between(HIGHEST, HIGHEST, 1)) == "OVERFLOW"
     assert outcome(lambda: t.random_between(LOWEST, LOWEST, 1)) == "OVERFLOW"

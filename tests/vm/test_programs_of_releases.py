@@ -99,11 +99,11 @@ def test_they_compile_still_and_do_the_same(version: str) -> None:
     changed = []
     for old in olds:
         try:
-            found = trace_of(old)
+            trace = trace_of(old)
         except ProgramError as error:
-            found = str(error)
-        if found != old.trace:
-            changed.append((old.text, old.trace, found))
+            trace = str(error)
+        if trace != old.trace:
+            changed.append((old.text, old.trace, trace))
     assert not changed, f"{len(changed)}, the first: {changed[0]}"
 
 
@@ -134,8 +134,8 @@ def test_of_those_with_a_newer_word_as_a_name_it_is_told_since_when() -> None:
 
 @pytest.mark.parametrize("path", ["CHANGELOG.md", "docs/en/versions.md"])
 def test_the_documents_name_the_newer_words(path: str) -> None:
-    said = (ROOT / path).read_text(encoding="utf-8")
-    breaking = next(part for part in re.split(r"\n(?=- |\n)", said)
+    document = (ROOT / path).read_text(encoding="utf-8")
+    breaking = next(part for part in re.split(r"\n(?=- |\n)", document)
                     if "`CM`" in part and "0.3" in part)  # fmt: skip
     assert all(f"`{word}`" in breaking for word in VERSION_OF_WORD)
     assert set(VERSION_OF_WORD) <= set(WORDS)

@@ -75,7 +75,7 @@ def test_a_look_that_waits_for_an_echo_is_over_when_the_motors_are_taken(machine
     """The echo that comes at 150 ms is of a look at 120: the task has the motors back at 260."""
     image = compile_text(TAKEN_AGAIN.format("F(FOREVER, 40) UNTIL(DISTANCE < 10)"), KIT).image
     pace = Pace(slow=ECHO, period_ms=1000, from_ms=100, to_ms=150)
-    got = machine(pace, image, Senses(LIGHTS, 300))
+    actual = machine(pace, image, Senses(LIGHTS, 300))
     want = """\
 0 READ LIGHT_R 9
 0 MOTORS -50 -50
@@ -91,7 +91,7 @@ def test_a_look_that_waits_for_an_echo_is_over_when_the_motors_are_taken(machine
 300 READ LIGHT_R 0
 300 LIMIT
 """
-    assert got == want
+    assert actual == want
 
 
 @each_machine
@@ -104,7 +104,7 @@ TASK;M(20, 30);F(FOREVER, 40) UNTIL(LIGHT_L > 5 AND DISTANCE < 10);SHOW(1);END_T
         KIT,
     ).image
     pace = Pace(slow=ECHO, period_ms=1000, from_ms=0, to_ms=70)
-    got = machine(pace, image, Senses({"LIGHT_L": [9000], "DISTANCE": [5000]}, 300))
+    actual = machine(pace, image, Senses({"LIGHT_L": [9000], "DISTANCE": [5000]}, 300))
     want = """\
 0 MOTORS 20 30
 0 READ LIGHT_L 9
@@ -115,7 +115,7 @@ TASK;M(20, 30);F(FOREVER, 40) UNTIL(LIGHT_L > 5 AND DISTANCE < 10);SHOW(1);END_T
 120 SHOW 1
 120 DONE
 """
-    assert got == want
+    assert actual == want
 
 
 @each_machine
@@ -128,7 +128,7 @@ F(0.01, 20);X = DISTANCE;SHOW(2);W(1)""",
         KIT,
     ).image
     pace = Pace(slow=ECHO, period_ms=1000, from_ms=0, to_ms=70)
-    got = machine(pace, image, Senses({"DISTANCE": [5000]}, 100))
+    actual = machine(pace, image, Senses({"DISTANCE": [5000]}, 100))
     want = """\
 0 MOTORS 20 20
 10 MOTORS 0 0
@@ -139,7 +139,7 @@ F(0.01, 20);X = DISTANCE;SHOW(2);W(1)""",
 70 SHOW 2
 100 LIMIT
 """
-    assert got == want
+    assert actual == want
 
 
 def check_program(seed: int, machines: Sequence[Run]) -> None:
@@ -153,8 +153,8 @@ def check_program(seed: int, machines: Sequence[Run]) -> None:
     )  # fmt: skip
     image = compile_text(text, KIT).image
     for machine in machines:
-        got = machine(pace, image, Senses(readings, MAX_MS, seed=seed + 1))
-        assert got == want, f"seed {seed}, {pace}:\n{text}"
+        actual = machine(pace, image, Senses(readings, MAX_MS, seed=seed + 1))
+        assert actual == want, f"seed {seed}, {pace}:\n{text}"
 
 
 @pytest.mark.sampled("first", keep=2)

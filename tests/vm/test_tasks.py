@@ -117,13 +117,13 @@ def test_a_late_task_goes_by_its_own_clock_for_20_ms() -> None:
     senses = Senses({}, 1000)
     robot = TracedRobot(KIT, lists_of(KIT, senses))
     machine = machine_for(text, robot, senses)
-    found = []
+    rows = []
     for now_ms in (0, 25, 25, 25, 60, 125, 200, 350, 360, 450):
         robot.now_ms = now_ms
         machine.tick(now_ms, 1000)
-        found.append("".join(str(event).split()[-1] for event in robot.events))
+        rows.append("".join(str(event).split()[-1] for event in robot.events))
         robot.events.clear()
-    assert found == ["", "1", "1", "", "1", "2", "", "2", "", "2"]
+    assert rows == ["", "1", "1", "", "1", "2", "", "2", "", "2"]
 
 
 def test_a_show_that_finds_no_room_is_sent_once_and_lets_the_others_go_on() -> None:

@@ -133,10 +133,10 @@ def test_without_wasmtime_the_next_step_is_said(tsc: Tsc, monkeypatch: pytest.Mo
     monkeypatch.setitem(sys.modules, "wasmtime", None)
     for module in ("vm.wasm_store", "vm.wasm"):
         monkeypatch.delitem(sys.modules, f"tiniscript.{module}", raising=False)
-    done = tsc("run", "-e", "F(1, 50)", "--machine", "cpp", "--lang", "es")
-    assert (done.code, done.out) == (2, "")
-    assert install_advice.command("virtual") in done.err
-    assert "--machine python" in done.err
+    result = tsc("run", "-e", "F(1, 50)", "--machine", "cpp", "--lang", "es")
+    assert (result.code, result.out) == (2, "")
+    assert install_advice.command("virtual") in result.err
+    assert "--machine python" in result.err
 
 
 def test_python_runs_without_wasmtime() -> None:
@@ -220,17 +220,17 @@ class Slow:
 
     def __init__(self) -> None:
         self.asked = 0
-        self.said: list[object] = []
+        self.calls: list[object] = []
 
     def is_ready(self) -> bool:
         self.asked += 1
         return self.asked % 3 == 0
 
     def motors(self, left: int, right: int) -> None:
-        self.said.append((left, right))
+        self.calls.append((left, right))
 
     def off(self) -> None:
-        self.said.append("off")
+        self.calls.append("off")
 
     def read(self, sensor: int) -> int | None:
         return (sensor % 3 - 1) * 2_147_483_000 if self.is_ready() else None
@@ -239,16 +239,16 @@ class Slow:
         raise AssertionError
 
     def beep(self, hertz: int, duration_ms: int) -> None:
-        self.said.append(("beep", hertz, duration_ms))
+        self.calls.append(("beep", hertz, duration_ms))
 
     def show(self, value: int, is_yes_no: bool) -> bool:
         if self.is_ready():
-            self.said.append((value, is_yes_no))
+            self.calls.append((value, is_yes_no))
             return True
         return False
 
     def set(self, actuator: int, value: int) -> None:
-        self.said.append(("set", actuator, value))
+        self.calls.append(("set", actuator, value))
 
 
 PROGRAM = "B(0.3, 80); BEEP(0.2, 440); GRIPPER(90); SHOW(DISTANCE); SHOW(DISTANCE < 0); F(1, 50)"
@@ -264,20 +264,20 @@ def test_a_slow_robot_and_any_beginning(begin_ms: int, budget: int) -> None:
     compiled = compile_text(PROGRAM, kit)
     assert compiled.is_right, compiled.diagnostics
     loaded = WasmImage(compiled.image, kit)
-    found = []
+    runs = []
     for make in (Machine, loaded.machine):
         robot = Slow()
         machine: AnyMachine = make(compiled.code, robot, len(kit.readings), 1, begin_ms)
-        now_ms, seen = begin_ms, []
+        now_ms, calls = begin_ms, []
         for _ in range(200):
             status = machine.tick(now_ms, budget)
-            seen.append((status, now_ms, machine.wake_ms, machine.steps, machine.at))
+            calls.append((status, now_ms, machine.wake_ms, machine.steps, machine.at))
             if status == WAITING:
                 machine.tick(machine.wake_ms - 1, budget)  # too early: that changes nothing
                 now_ms = machine.wake_ms
-        found.append((seen, robot.said, machine.fault))
-    assert found[0] == found[1]
-    assert found[0][1][-1] == "off"
+        runs.append((calls, robot.calls, machine.fault))
+    assert runs[0] == runs[1]
+    assert runs[0][1][-1] == "off"
 
 
 def test_a_watched_move_may_last_longer_than_the_clock() -> None:
@@ -326,16 +326,16 @@ def test_both_machines_say_which_show_a_value_is_of() -> None:
 
     kit, waited = KITS[0][1], 0
     for image, senses in some_task_programs(0, 60):
-        code, found = unpack(image).code, []
+        code, traces = unpack(image).code, []
         for make in (machine_of, WasmImage(image, kit).machine):
             robot = Narrow()
             machine = robot.machine = make(code, robot, len(kit.readings), senses.seed)
             now_ms = 0
             while now_ms < senses.max_ms and machine.tick(now_ms, 1000) not in (DONE, FAULT):
                 now_ms += 1
-            found.append((robot.said, robot.shown))
-        assert found[0] == found[1], image.hex()
-        shown = found[0][1]
+            traces.append((robot.calls, robot.shown))
+        assert traces[0] == traces[1], image.hex()
+        shown = traces[0][1]
         assert all(code[at] in SHOWS for at, _ in shown), image.hex()
         waited += sum(not is_taken for _, is_taken in shown)
     assert waited > 100

@@ -37,17 +37,17 @@ def limited(code: str) -> str:
     return completed.stdout
 
 
-@pytest.mark.sampled("each", keep=2)
-@pytest.mark.parametrize("each", [
+@pytest.mark.sampled("what", keep=2)
+@pytest.mark.parametrize("what", [
     "loaded()",
     "loaded().machine(image, None)",
     "with closing(loaded()) as one: one.machine(image, None)",
     "try: loaded(image[:-1])\n    except ImageRefused: pass",
     "one = loaded(); one.myself = one; one.close()",
 ])  # fmt: skip
-def test_two_thousand_machines_after_each_other(each: str) -> None:
+def test_two_thousand_machines_after_each_other(what: str) -> None:
     """However one ends: forgotten, refused, or closed while something still knows it."""
-    code = f"{MACHINES}\nfor k in range(2000):\n    {each}\nprint(k + 1)"
+    code = f"{MACHINES}\nfor k in range(2000):\n    {what}\nprint(k + 1)"
     assert limited(code) == "2000\n"
 
 

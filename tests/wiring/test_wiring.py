@@ -157,17 +157,17 @@ def test_both_languages_have_the_same_rows(robot: Robot) -> None:
 
 
 def test_what_a_robot_does_not_have_is_not_said() -> None:
-    said = {name: " ".join(_sentences(name)) for name in robots.names()}
-    assert "jumpers on ENA" in said["tinibot"]
-    assert "jumpers on ENA" not in said["liner"]
-    assert "S+" not in said["tinibot"]
-    assert "S+" in said["grabber"]
-    assert "tsc doctor --module --port P --baud 57600" in said["grabber"]
-    assert "tsc doctor --module" not in said["tinibot"]
-    assert "STATE tells" in said["tinibot"]
-    assert "STATE stays unconnected" in said["liner"]
-    assert "10 kΩ resistors on STBY" in said["liner"]
-    assert "Unplug the HC-05" in said["liner"]
+    texts_by_robot = {name: " ".join(_sentences(name)) for name in robots.names()}
+    assert "jumpers on ENA" in texts_by_robot["tinibot"]
+    assert "jumpers on ENA" not in texts_by_robot["liner"]
+    assert "S+" not in texts_by_robot["tinibot"]
+    assert "S+" in texts_by_robot["grabber"]
+    assert "tsc doctor --module --port P --baud 57600" in texts_by_robot["grabber"]
+    assert "tsc doctor --module" not in texts_by_robot["tinibot"]
+    assert "STATE tells" in texts_by_robot["tinibot"]
+    assert "STATE stays unconnected" in texts_by_robot["liner"]
+    assert "10 kΩ resistors on STBY" in texts_by_robot["liner"]
+    assert "Unplug the HC-05" in texts_by_robot["liner"]
 
 
 def _sentences(name: str) -> list[str]:
@@ -192,10 +192,10 @@ def test_no_pin_gets_more_than_it_takes(name: str) -> None:
     """
     plan = plan_of(robots.load(name), "en")
     is_3v3 = robots.load(name).board.chip.startswith("esp32")
-    for echo in [each for part in plan.parts for each in part.ends if each.name == "ECHO"]:
+    for echo in [end for part in plan.parts for end in part.ends if end.name == "ECHO"]:
         ohms = [
-            float(each.removesuffix(" kΩ") or 0)
-            for each in (echo.ground_resistor, echo.far_resistor)
+            float(resistor.removesuffix(" kΩ") or 0)
+            for resistor in (echo.ground_resistor, echo.far_resistor)
         ]
         volts = 5.0 * ohms[0] / sum(ohms) if all(ohms) else 5.0
         assert volts <= (3.4 if is_3v3 else 5.0)
@@ -262,13 +262,13 @@ class Elements(HTMLParser):
 
     def __init__(self, page: str) -> None:
         super().__init__()
-        self.found: list[str] = []
+        self.tags: list[str] = []
         self.referred: list[str] = []
         self.feed(page)
         self.close()
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.found.append(tag)
+        self.tags.append(tag)
         self.referred += [value or "" for name, value in attrs
                           if name in ("src", "href", "xlink:href", "style", "onload")]  # fmt: skip
 
@@ -288,10 +288,10 @@ def test_a_hostile_label_is_only_text() -> None:
         plan = plan_of(robot, language)
         whole = html_of(plan)
         elements = Elements(whole)
-        assert "script" not in elements.found
-        assert elements.found.count("svg") == 2
+        assert "script" not in elements.tags
+        assert elements.tags.count("svg") == 2
         assert elements.referred == []
-        assert Elements(html_of(plain)).found.count("tr") == elements.found.count("tr")
+        assert Elements(html_of(plain)).tags.count("tr") == elements.tags.count("tr")
         assert Tree.fromstring(drawing_of(plan)).tag == f"{SVG}svg"
     assert "http" not in html_of(plain).replace("http://www.w3.org/2000/svg", "")
 
@@ -319,9 +319,9 @@ def test_a_profile_full_of_devices_is_drawn() -> None:
 
 
 def test_the_command_lists_the_wires(tsc: Tsc) -> None:
-    done = tsc("firmware", "--wiring", "--robot", "liner", "--lang", "es")
-    assert (done.code, done.err) == (0, "")
-    rows = done.out.splitlines()
+    result = tsc("firmware", "--wiring", "--robot", "liner", "--lang", "es")
+    assert (result.code, result.err) == (0, "")
+    rows = result.out.splitlines()
     assert " ".join(rows[0].split()) == "cable pin de la placa pieza su terminal en el camino"
     assert " ".join(rows[4].split()) == "4 violeta 4 TB6612 STBY 10 kΩ del terminal a GND"
     assert rows[-1] == "Como página con un dibujo:  tsc firmware --wiring -o conexiones.html"
@@ -344,9 +344,9 @@ def test_on_a_narrow_terminal_the_last_column_is_broken(
 
 def test_the_command_writes_a_page(tsc: Tsc, tmp_path: Path) -> None:
     page = tmp_path / "page.html"
-    done = tsc("firmware", "--wiring", "-o", page)
-    assert (done.code, done.err) == (0, "")
-    assert done.out == f"{page}: how TiniBot is wired. Open it in a browser, or print it.\n"
+    result = tsc("firmware", "--wiring", "-o", page)
+    assert (result.code, result.err) == (0, "")
+    assert result.out == f"{page}: how TiniBot is wired. Open it in a browser, or print it.\n"
     assert page.read_text(encoding="utf-8") == html_of(plan_of(robots.load("tinibot"), "en"))
     assert tsc("firmware", "--wiring", "-o", "-").out == page.read_text(encoding="utf-8")
 
@@ -357,9 +357,9 @@ def test_what_cannot_be_written_is_said(tsc: Tsc, tmp_path: Path) -> None:
         (("--robot", "tinybot"), "Did you mean tinibot?"),
         (("--robot", tmp_path / "missing.toml"), "There is no file"),
     ):
-        done = tsc("firmware", "--wiring", *arguments)
-        assert done.code == 2
-        assert sentence in done.err
+        result = tsc("firmware", "--wiring", *arguments)
+        assert result.code == 2
+        assert sentence in result.err
 
 
 # -- the finished robot
@@ -428,12 +428,12 @@ def test_two_servos_share_the_front_edge() -> None:
     bare = plan._replace(body=plan.body._replace(places={}), parts=(*plan.parts, servo))
     middle, half = _FinishedDrawing(bare).x, _FinishedDrawing(bare).breadth / 2
     boxes = [element.attrib for element in Tree.fromstring(finished_of(bare)).iter(f"{SVG}rect")]
-    found = [
+    centers = [
         float(box["x"]) + 26 - middle
         for box in boxes
         if (box["width"], box["height"]) == ("52", "30")
     ]
-    assert found == pytest.approx([-half / 2, half / 2], abs=0.1)
+    assert centers == pytest.approx([-half / 2, half / 2], abs=0.1)
 
 
 def test_the_longest_names_stay_in_the_finished_drawing() -> None:

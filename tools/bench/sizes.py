@@ -98,7 +98,7 @@ bool port_may_write_ahead() { return sink; }
 uint8_t* port_memory(uint16_t length, bool) { return length > 400 ? nullptr : (uint8_t*)0x200; }
 void port_forget() { sink = 0; }
 void port_take(uint8_t mode, bool) { sink = mode; }
-void port_has_checksum(const uint8_t* image) { sink = *image; }
+void port_take_checksum(const uint8_t* image) { sink = *image; }
 void port_start(bool is_live) { sink = is_live; }
 void port_stop(uint8_t fault) { sink = fault; }
 void port_release() { sink = 0; }
@@ -128,7 +128,7 @@ PORT_USED = """port_identity(); port_status(); port_device_info(); sink = port_r
   port_may_write_ahead(); port_prepare_upload(sink); port_memory(sink, 0); port_forget();
   port_take(sink, 0);
   port_undo();
-  port_has_checksum(bytes); port_start(sink); port_stop(sink);
+  port_take_checksum(bytes); port_start(sink); port_stop(sink);
   port_release(); sink = port_image_length(); port_image_byte(sink, bytes); port_rename(bytes, 1);
   port_key(1, bytes); port_keep_key(1, bytes); port_identify();
 """

@@ -29,7 +29,7 @@ def looked_for(language: str) -> dict[str, str]:
 
     The key is a word of the text, or `turn` for those of them that turn.
     """
-    wanted = {"turn", *WORDS, *(each for name in names() for each in load(name).kit.names)}
+    wanted = {"turn", *WORDS, *(kit_name for name in names() for kit_name in load(name).kit.names)}
     result: dict[str, str] = {}
     for row in read_language_file(language, "lexicon.txt").split("\n"):
         meaning, bar, words = (part.strip() for part in row.partition("|"))

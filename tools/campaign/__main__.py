@@ -84,7 +84,7 @@ def is_reached(goal: Goal, result: Result | None, commit: str) -> bool:
 def run_piece(goal: Goal, last_result: Result | None, commit: str) -> Result:
     """Run a piece of a goal; return what is reached with it.
 
-    A piece that was wrong is run again. What other code has reached counts no more.
+    A piece that failed is run again. Results of other code no longer count.
     """
     if last_result is None or not results.is_same_code(goal, last_result.commit, commit):
         last_result = Result(0, 0, FIRST_SEED, FIRST_SEED, "", commit)
@@ -109,6 +109,6 @@ def run_piece(goal: Goal, last_result: Result | None, commit: str) -> Result:
 
 
 if __name__ == "__main__":
-    # A shell has Ctrl-C ignored by what runs in its background, and so by each command under test.
+    # What a shell runs in its background ignores Ctrl-C, and so would each command under test.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.exit(main())

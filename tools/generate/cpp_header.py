@@ -121,7 +121,10 @@ def cpp_file(
         rows += ["", "#pragma once", "", "#include <stdint.h>"]
     rows += [
         "",
-        *(f'#include "{each}"' if each and not each.startswith("#") else each for each in includes),
+        *(
+            f'#include "{include}"' if include and not include.startswith("#") else include
+            for include in includes
+        ),
     ]
     rows += ["", "// clang-format off", "", "namespace tiniscript {", "", body]
     rows += ["}  // namespace tiniscript", ""]

@@ -169,7 +169,7 @@ def small_source(source: bytes) -> bytes:
     for node in ast.walk(tree):
         if isinstance(node, documented) and ast.get_docstring(node):
             node.body = node.body[1:] or [ast.Pass()]
-    return INDENT.sub(lambda found: "\t" * (len(found[0]) // 4), ast.unparse(tree)).encode()
+    return INDENT.sub(lambda match: "\t" * (len(match[0]) // 4), ast.unparse(tree)).encode()
 
 
 def write_archive(path: str, files: Files) -> None:

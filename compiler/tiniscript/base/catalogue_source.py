@@ -212,7 +212,7 @@ def _parse_block(block: str) -> tuple[dict[str, Any], tuple[int, str] | None]:
 
 
 def _toml_problems(text: str) -> list[Problem]:
-    """Return what is no TOML of a file each of whose rows is."""
+    """Return what is no TOML in a file in which each row alone is."""
     _, parse_error = _parse_block(text)
     return [(parse_error[0] + 1, parse_error[1])] if parse_error else []
 

@@ -93,7 +93,7 @@ def clamp(value: int, low: int, high: int) -> int:
 def read_literal(text: str) -> tuple[int, bool]:
     """Return the thousandths of `5`, `0.5` or `.5`, and whether they are exact.
 
-    The result is not limited to 32 bits: whether a minus belongs to it is the parser's to say.
+    The result is not limited to 32 bits: the parser decides whether a minus belongs to it.
     More than ten digits before the point are far out of range, whatever they are.
     """
     digits, _, decimals = text.partition(".")

@@ -47,11 +47,8 @@ class Device(NamedTuple):
 
 # What a remote control says to every robot with a link.
 REMOTE = (
-    *(
-        Device(f"KEY_{each}", YES_NO, "", 0, 1)
-        for each in ("UP", "DOWN", "LEFT", "RIGHT", "A", "B")
-    ),
-    *(Device(f"PAD_{each}", NUMBER, "", -100_000, 100_000) for each in ("X", "Y")),
+    *(Device(f"KEY_{key}", YES_NO, "", 0, 1) for key in ("UP", "DOWN", "LEFT", "RIGHT", "A", "B")),
+    *(Device(f"PAD_{axis}", NUMBER, "", -100_000, 100_000) for axis in ("X", "Y")),
 )
 # What stands on its keys, in every language.
 REMOTE_SIGNS = dict(zip((device.name for device in REMOTE), "↑↓←→AB↔↕", strict=True))

@@ -368,7 +368,7 @@ def time8_ms(time: int) -> int:
     return (time - 90) * 100 if time < 200 else (time - 189) * 1000
 
 
-_TIME8 = {time8_ms(each): each for each in range(256)}
+_TIME8 = {time8_ms(operand): operand for operand in range(256)}
 
 
 def time8(time_ms: int) -> int | None:

@@ -79,7 +79,7 @@ def _row(file: ProgramFile, options: Namespace, robot: Robot, language: str) -> 
     messages = [
         message(diagnostic, compilation.source, language) for diagnostic in compilation.diagnostics
     ]
-    messages.sort(key=lambda each: each.severity != "mistake")
+    messages.sort(key=lambda message: message.severity != "mistake")
     return Row(file.name, messages, repair_count, "")
 
 

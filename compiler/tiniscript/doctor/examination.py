@@ -59,7 +59,7 @@ class Expectations(NamedTuple):
     `has_key` says whether this computer has a key of the robot with this id. `doubt_of` returns the
     cause why what answers on `port` may be another robot than that of a key, or nothing. `on_facts`
     gets what a robot has told of itself, whatever is wrong with it, and `on_answers` the answers.
-    `ping_count`: how often it is asked whether it hears.
+    `ping_count`: how many times it is asked whether it hears.
     """
 
     kit: int | None
@@ -68,8 +68,8 @@ class Expectations(NamedTuple):
     has_key: Callable[[int], bool] = lambda robot: False
     doubt_of: Callable[[str, HelloReply], str] = lambda port, hello: ""
     port: str = ""
-    on_facts: Callable[[Mapping[str, str]], None] = lambda told: None
-    on_answers: Callable[[RobotAnswers], None] = lambda heard: None
+    on_facts: Callable[[Mapping[str, str]], None] = lambda facts: None
+    on_answers: Callable[[RobotAnswers], None] = lambda answers: None
     ping_count: int = PING_COUNT
 
 
@@ -138,7 +138,7 @@ def examine(
 
 
 def _report_fields(hello: HelloReply, expectations: Expectations) -> dict[str, str]:
-    """Return what a report tells of a robot: not whose it is."""
+    """Return what a report says about a robot: not whose it is."""
     features = [name for bit, name, _ in FEATURES if hello.features & bit]
     return {
         "kit": expectations.name_of_kit(hello.kit) or f"{hello.kit:04x}",

@@ -1,4 +1,4 @@
-"""What Linux tells of a computer: `/sys`, `/proc`, `/etc/group`, and bluetoothctl."""
+"""What Linux says about a computer: `/sys`, `/proc`, `/etc/group`, and bluetoothctl."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What macOS tells of a computer: system_profiler and lsof."""
+"""What macOS says about a computer: system_profiler and lsof."""
 
 from __future__ import annotations
 

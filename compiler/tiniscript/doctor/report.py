@@ -64,7 +64,7 @@ def values_of(finding: Finding) -> dict[str, str]:
 
 
 def facts(computer: Computer) -> list[tuple[str, str]]:
-    """Return what is told of the computer: names of things, and numbers."""
+    """Return what is said about the computer: names of things, and numbers."""
     adapters = "?"
     if computer.adapters is not None:
         adapters = ", ".join(

@@ -1,4 +1,4 @@
-"""What Windows tells of a computer: pnputil, whose words are in the language of the system.
+"""What Windows says about a computer: pnputil, whose words are in the language of the system.
 
 Only what is the same in every language is read: the numbers of devices.
 """

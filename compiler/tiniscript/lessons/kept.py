@@ -42,7 +42,7 @@ class _Block:
         self.needed_truth = ""  # what its question must give for a move in it, once there is one
 
     def question(self) -> Question | None:
-        """Return its question, if a robot that does not move may be kept by it."""
+        """Return its question, if it may be what keeps the robot from moving."""
         if self.word == "WHILE" and not self.needed_truth:  # it waits
             return Question(self.start, self.word, "FALSE", True, self.words)
         if self.word in ("LOOP", "DEF", "TASK") or not self.needed_truth:

@@ -62,7 +62,7 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compilation:
 
 
 def _add_findings(compilation: Compilation, kit: Kit) -> Compilation:
-    """Return a wrong program with what is told of it."""
+    """Return a wrong program with what is said about it."""
     from tiniscript.recovery.told import diagnose
 
     diagnostics_of = cache(

@@ -53,7 +53,7 @@ class EventReader:
         self._began_ms = int(monotonic() * 1000)
 
     def begin(self, run: int, program: int) -> None:
-        """Note that a run begins: all that it tells is of the text that its program has now."""
+        """Note that a run begins: its events refer to the text that its program has now."""
         self._shows.begin(run, program)
 
     def to_robot_event(self, time_ms: int, event: Event) -> RobotEvent | None:

@@ -146,7 +146,7 @@ class RemoteControl:
         return dict(self.combined_state._asdict())
 
     def take_answer(self, outcome: Reply[Any]) -> None:
-        """Take the robot's answer. One that takes no keys is not told of them again."""
+        """Take the robot's answer. One that takes no keys is not told about them again."""
         self._unanswered_count = 0
         if outcome.status == OK:
             self._finish_sent(Reply(OK, 0, EmptyReply()))

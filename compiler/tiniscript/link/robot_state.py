@@ -103,7 +103,7 @@ class RobotState:
         return values.state <= STATE_RUNNING or self.run not in (None, values.run)
 
     def take_reply(self, values: SentReply, epoch: int) -> bool:
-        """Take a reply of an epoch; return whether it tells of the end of our run, of which no
+        """Take a reply of an epoch; return whether it reports the end of our run, of which no
         event has."""
         self._learn_program(values, epoch)
         if isinstance(values, (ReceiptReply, ResumeReply)):
@@ -185,7 +185,7 @@ class RobotState:
 
     def take_event(self, event: Event) -> None:
         if isinstance(event, (StoppedEvent, FaultEvent, DoneEvent)):
-            self._last_place = self.halt_event = None  # who is told of the end needs no more
+            self._last_place = self.halt_event = None  # who is told about the end needs no more
         if isinstance(event, HaltedEvent):
             self.halt_event = event
         if isinstance(event, (StoppedEvent, FaultEvent)):

@@ -145,7 +145,7 @@ class PendingExchange(PendingRequest[T]):
         self.waiting_status = 0  # the robot's last one, if of _WAITING_STATUSES, or 0
         self.may_be_done = False  # the robot has not said whether it is
         self.is_midway = False  # a frame of it is under way that does what is asked, or has come
-        self.key_showings = 0  # how often a key was shown again for it
+        self.key_showings = 0  # how many times a key was shown again for it
         self.interrupted: InterruptedExchange | None = None
 
     @property
@@ -557,7 +557,7 @@ class Session(Requester):
         self._advance(None, now_ms)
 
     def _go_on(self, interrupted: InterruptedExchange) -> None:
-        """Go on with an exchange, of whose request nothing was sent."""
+        """Go on with an exchange whose request has not been sent yet, not even in part."""
         self._pending, self._transmission = interrupted
         seal = None if self._transmission.is_of("HELLO") else self._sealing.seal
         self._transmission.renew(self._epoch, self._next_number(seal is not None))

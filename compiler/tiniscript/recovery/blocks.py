@@ -19,7 +19,7 @@ from tiniscript.syntax.outline import Item
 
 _ASKING_WORDS = ("IF", "WHILE", "WHEN")
 _REMOTE_NAMES = frozenset(device.name for device in REMOTE)
-MOST_ITEMS_AFTER_ELSE = 200  # items behind an ELSE whose ends are counted
+MOST_ITEMS_AFTER_ELSE = 200  # items after an ELSE whose ends are counted
 
 
 class Line(NamedTuple):
@@ -69,7 +69,7 @@ class _OpenBlock:
 
 
 def _may_ask_before(item: Item, reading: Reading) -> bool:
-    """Whether a question stands behind an instruction that it may be of: `F(2, 80) IF(KEY_A);S`.
+    """Whether a question stands after an instruction that it may be of: `F(2, 80) IF(KEY_A);S`.
 
     No separator is before it, and one is after it.
     """
@@ -84,7 +84,7 @@ def _may_ask_before(item: Item, reading: Reading) -> bool:
 
 
 class Matching:
-    """What each line needs so that all blocks end: edits, ends behind its text, and on new lines.
+    """What each line needs so that all blocks end: edits, ends after its text, and on new lines.
 
     `run` takes item after item of all lines; `next_item` is the next one, of no kind at the end.
     `is_sure`: no end is a guess.
@@ -164,7 +164,7 @@ class Matching:
         if kind == "open":
             if self.is_made_up():
                 return False
-            if not self.is_end_of_do():
+            if not self.end_do():
                 if self.is_when():
                     self.edit_item(1, "WHEN")
                     self.item = self.item._replace(word="WHEN")
@@ -180,7 +180,7 @@ class Matching:
         return True
 
     def is_made_up(self) -> bool:
-        """Whether a header is a word behind an instruction, and nothing more: `F(1, 80) LOP`."""
+        """Whether a header is a word after an instruction, and nothing more: `F(1, 80) LOP`."""
         tokens, (_, _, start, end) = self.line.reading.tokens, self.item
         tokens_around = [*tokens[max(0, start - 1) : start], *tokens[start + 1 : end]]
         has_separator = [token.text for token in tokens_around[:2]] == [";", "("]
@@ -205,8 +205,8 @@ class Matching:
             ended_word == "WHEN" or (line != self.k and ended_word != "IF")
         )
 
-    def is_end_of_do(self) -> bool:
-        """Whether a WHILE ends the block that a DO has begun: then it leaves that."""
+    def end_do(self) -> bool:
+        """End the block of a DO where a WHILE does; return whether it did."""
         item = self.item
         if item.word != "WHILE" or not self.open_blocks or not self.open_blocks[-1].asks_at_end:
             return False
@@ -336,7 +336,7 @@ class Matching:
             return True
         return False
 
-    # -- the end of a line: a body behind its header ends there, unless an end is left for it ----
+    # -- the end of a line: a body after its header ends there, unless an end is left for it ----
 
     def end_line(self, indent_below: int) -> None:
         next_item = self.next_item
@@ -379,7 +379,7 @@ class Matching:
         )
 
     def arms_and_ends(self) -> Iterator[tuple[int, Item]]:
-        """Give the arms and ends behind a place, but those of blocks that begin behind it."""
+        """Give the arms and ends after a place, but those of blocks that begin after it."""
         depth = 0
         for line, item in self.items[self.item_index + 1 :]:
             is_end = item.kind in ("end", "}")

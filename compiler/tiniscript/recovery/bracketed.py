@@ -55,7 +55,7 @@ def explain_brackets(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bo
 
 
 def explain_else_question(diagnostic: Diagnostic, text: str) -> Diagnostic:
-    """Return a mistake of a question behind ELSE with ELSE alone first, where that says the same.
+    """Return a mistake of a question after ELSE with ELSE alone first, where that says the same.
 
     That is where it is no when the question before it is yes: `IF(DISTANCE < 20)`, and
     `ELSE(DISTANCE > 20)`. ELSEIF with the question comes second.

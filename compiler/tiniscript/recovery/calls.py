@@ -68,7 +68,7 @@ class _Call(NamedTuple):
 
 
 def misplaced_values(source: Source) -> list[Diagnostic]:
-    """Return what is told of calls whose values are in another form."""
+    """Return what is said about calls whose values are in another form."""
     diagnostics = []
     line_start = 0
     def_names = {match[1].upper() for match in _DEF.finditer(source.text)}
@@ -88,7 +88,7 @@ def misplaced_values(source: Source) -> list[Diagnostic]:
 
 
 def run_on_calls(source: Source, names: Names) -> list[Diagnostic]:
-    """Return what is told of calls with nothing between them, of which one has an unknown word.
+    """Return what is said about calls with nothing between them, one of which has an unknown word.
 
     Where all are known, a search reads the line.
     """

@@ -714,7 +714,7 @@ class _Statement:
     # -- branches --------------------------------------------------------------------------------
 
     def count_calls(self, name: str) -> int:
-        """Return how often a DEF is called: after DEF, or after an end, its name is no call."""
+        """Return how many times a DEF is called: after DEF, or an end, its name is no call."""
         count = 0
         for k, (previous, token) in enumerate(pairwise([_END, *self.tokens])):
             count += token.text == name and not (
@@ -970,8 +970,8 @@ def _lost_questions(statement: _Statement, repaired: _Statement) -> Iterator[str
     lost_senses = _count_senses(statement) - (repaired.note_words - statement.note_words)
     new_senses = _count_senses(repaired)
     turner_counts = (
-        {word: each.sure_word_counts[word] for word in _QUESTION_TURNERS}
-        for each in (statement, repaired)
+        {word: counted.sure_word_counts[word] for word in _QUESTION_TURNERS}
+        for counted in (statement, repaired)
     )
     negations = (statement.negations, repaired.negations)
     may_turn = (

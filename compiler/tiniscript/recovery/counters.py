@@ -41,7 +41,7 @@ class _Counter(NamedTuple):
 
 
 def counter_diagnostics(source: Source) -> list[Diagnostic]:
-    """Return what is told of headers with a counter that is used, and of the ends that name it."""
+    """Return what is said about headers with a used counter, and about the ends that name it."""
     diagnostics: list[Diagnostic] = []
     rows = [lexemes(split_note(line)[0]) for line in source.text.split("\n")]
     headers_by_row = [[*_headers(row)] for row in rows]

@@ -99,7 +99,7 @@ class UnendedBlock:
 
     It has `behind` on its own line, where it may end after any of `places`, or it is `begun` on
     another line than that of the place, and line `line`, `last`, is its last one. Of `several`
-    instructions the last one may as well be behind it: there `last` is empty. It may end `early`,
+    instructions the last one may as well be after it: there `last` is empty. It may end `early`,
     on the line before one that `begins`.
     """
 
@@ -120,7 +120,7 @@ class UnendedBlock:
 
 @dataclass
 class Explanation:
-    """What is told of a line: its code, and what it is `details`.
+    """What is said about a line: its code, and what it is `details`.
 
     Where more of its block changes, that becomes `block_text`, and ends with `end_word`.
 
@@ -171,7 +171,7 @@ def explain_candidate(program: str, candidate: Candidate) -> list[Explanation]:
 
 @dataclass
 class _ExplainedBlock:
-    """A block that is open: what is told of its beginning, which is in change `first_change`.
+    """A block that is open: what is said about its beginning, which is in change `first_change`.
 
     `first_words` is the first word of each line of its last arm.
     """
@@ -268,7 +268,7 @@ class _Explainer:
             if ends and edit.span.start == span.end:
                 edit = Edit(
                     span, own_text
-                )  # the ends that are missing behind it come behind all of it
+                )  # the ends that are missing after it come after all of it
             instruction = InstructionChange(
                 span, edit, self.changes[k].steps, old_tokens, new_tokens
             )
@@ -346,7 +346,7 @@ class _Explainer:
                 span = Span(line_start + start, line_start + end)
                 edit = trimmed_edit(span.start, text, new_text)
                 if edit.span.start == span.end:
-                    edit = Edit(span, new_text)  # an end that is missing comes behind all of it
+                    edit = Edit(span, new_text)  # an end that is missing comes after all of it
                 changes.append(
                     InstructionChange(
                         span, edit, steps_by_instruction.get(n, []), instruction, new_instruction
@@ -387,7 +387,7 @@ class _Explainer:
         last_line: tuple[int, int],
         new_tokens: Sequence[Lexeme],
     ) -> Explanation | None:
-        """Make an edit part of what is told of the beginning of its block, None where too long."""
+        """Make an edit part of what is said about its block's beginning, None where too long."""
         explanation = block.explanation if block else None
         if block is None or explanation is None or explanation.code not in _CODES_SHOWN_WHOLE:
             return None
@@ -493,7 +493,7 @@ class _Explainer:
     def add_missing_end(
         self, last_line: tuple[int, int], change: search.LineChange, end: str, text: str
     ) -> None:
-        """Tell of an end that is missing behind a line."""
+        """Tell of an end that is missing after a line."""
         block = self.open_blocks.pop() if self.open_blocks else None
         end_offset = self.line_starts[change.last_line] + len(
             self.lines[change.last_line].rstrip("\r")
@@ -544,7 +544,7 @@ class _Explainer:
     def may_end_earlier(self, block: _ExplainedBlock, last_change: int) -> bool:
         """Whether nothing says that the last instruction of a block is in it.
 
-        A sign or a stop behind others may as well come when a LOOP or a DEF is over.
+        A sign or a stop after others may as well come when a LOOP or a DEF is over.
         """
         first_words = block.first_words
         header, last_text = (

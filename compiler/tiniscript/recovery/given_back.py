@@ -16,7 +16,7 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.syntax.free_names import names_in, numbered_names
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Token, scan
 
-_INSTRUCTION_ENDS = (";", NEWLINE, "|", "end")  # what an instruction ends at, or begins behind
+_INSTRUCTION_ENDS = (";", NEWLINE, "|", "end")  # what an instruction ends at, or begins after
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _RESULT_NAME = "RESULT"
 _MOST_CHARACTERS = 4_000  # characters of a text that is looked at
@@ -26,7 +26,7 @@ _YES_NO_WORDS = ("AND", "OR", "NOT")
 
 
 def find_returned_values(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
-    """Return what is told of DEFs that give a value back, and edits to read the rest with."""
+    """Return what is said about DEFs that give a value back, and edits to read the rest with."""
     text = source.text
     if "DEF" not in text.upper() or len(text) > _MOST_CHARACTERS:
         return [], []

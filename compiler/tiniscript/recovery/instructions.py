@@ -107,7 +107,7 @@ def _join_words(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
 def _instructions_with_condition(
     instructions_before: list[SpokenInstruction], words: Sequence[Lexeme], names: Names
 ) -> list[SpokenInstruction]:
-    """Return instructions and the condition behind; a move that it stops is watched meanwhile."""
+    """Return instructions and the condition after; a move that it stops is watched meanwhile."""
     question = block(words, names, goes_on=False)
     if not question and [instruction.word for instruction in instructions_before[-1:]] in (
         ["S"],

@@ -65,7 +65,7 @@ class _Key(NamedTuple):
 
 
 def key_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return what is told of the keys that a text has in other words."""
+    """Return what is said about the keys that a text has in other words."""
     if not kit.has_remote or not re.search(_key_pattern(), plain(source.text)):
         return []
     bodies = [split_note(line)[0] for line in source.text.split("\n")]
@@ -124,7 +124,7 @@ class _Instruction:
                 )
 
     def diagnostics(self, is_in_block: bool) -> Iterator[Diagnostic]:
-        """Give what is told of an instruction, which is inside a block or not."""
+        """Give what is said about an instruction, which is inside a block or not."""
         if instruction := self._assigned_key():
             yield self._instruction_diagnostic(*instruction, "IF" if is_in_block else "WHEN")
             return
@@ -190,7 +190,7 @@ class _Instruction:
     # -- what says a key --------------------------------------------------------------------------
 
     def _find_key(self, k: int) -> _Key | None:
-        """Return the key that pieces from one on say: its side goes before it or behind it."""
+        """Return the key that pieces from one on say: its side goes before it or after it."""
         if (
             self._word_at(k).isalpha()
             and self._word_at(k + 1) == "."

@@ -31,7 +31,7 @@ _NAMED_WORD = re.compile(r"\bDEF\s+(\w+)\b|\b(\w+)\s*[=(]")
 
 @lru_cache(100)
 def label_spans(text: str) -> tuple[Span, ...]:
-    """Return where the labels of a text are, each with the spaces behind it."""
+    """Return where the labels of a text are, each with the spaces after it."""
     numbers = [*_COUNTED_LINE.finditer(text)]
     line_numbers = [int(number[1]) for number in numbers]
     is_counting = len(line_numbers) > 1 and line_numbers[0] in _FIRST_NUMBERS
@@ -43,7 +43,7 @@ def label_spans(text: str) -> tuple[Span, ...]:
 
 
 def label_diagnostics(source: Source) -> list[Diagnostic]:
-    """Return what is told of the labels of a text: each is taken out."""
+    """Return what is said about the labels of a text: each is taken out."""
     return [
         Diagnostic(codes.LINE_NUMBER, Span(span.start, span.start + len(label_text)),
                    {"found": label_text}, None, Repair((Edit(span, ""),), True))

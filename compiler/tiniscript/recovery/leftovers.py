@@ -34,7 +34,7 @@ _EMPTY_WORDS = frozenset((
 
 
 def leftover_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return what is told of all that is left over in a text."""
+    """Return what is said about all that is left over in a text."""
     bodies = [split_note(line)[0] for line in source.text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
     lines = source.text.split("\n")
@@ -47,7 +47,7 @@ def leftover_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
 
 
 def setup_and_end_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return what is told of each `SI|` after an instruction, and of a word for the end of all."""
+    """Return what is said about an `SI|` after an instruction, and a word for the end of all."""
     bodies = [split_note(line)[0] for line in source.text.split("\n")]
     starts = [0, *accumulate(len(line) + 1 for line in source.text.split("\n"))]
     setup_diagnostics = [
@@ -92,7 +92,7 @@ def _is_call(call: re.Match[str], names: Names) -> bool:
 
 
 def _setup_diagnostics(body: str, start: int) -> Iterator[Diagnostic]:
-    """Give each `SI|` behind an instruction of its line: what follows it comes next."""
+    """Give each `SI|` after an instruction of its line: what follows it comes next."""
     for match in _SETUP_ANYWHERE.finditer(body):
         follows_instruction = match["before"] == ")" or bool(
             _SETUP_AT_START.search(body[: match.start("setup")])

@@ -37,7 +37,7 @@ class _Token(NamedTuple):
 
 
 def logo_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return what is told of each line of Logo."""
+    """Return what is said about each line of Logo."""
     names = Names([lexemes(line) for line in source.text.split("\n")], kit)
     diagnostics = _definition_diagnostics(source)
     line_start = 0
@@ -59,7 +59,7 @@ def logo_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
 
 
 def _definition_diagnostics(source: Source) -> list[Diagnostic]:
-    """Return what is told of words that are taught: each is a DEF."""
+    """Return what is said about words that are taught: each is a DEF."""
     diagnostics: list[Diagnostic] = []
     head: Diagnostic | None = None
     is_empty = True

@@ -1,4 +1,4 @@
-"""What people are told of a text by what is meant with it: typed values and edits."""
+"""What people are told about a text, from what is meant by it: typed values and edits."""
 
 from __future__ import annotations
 
@@ -222,7 +222,7 @@ def _moved_lines_diagnostic(
 
 
 def _unit_word(unit: str) -> str:
-    """Return the word for a unit behind the first value of a move, "" where none is."""
+    """Return the word for a unit after the first value of a move, "" where none is."""
     meaning = lexicon_meaning(plain(unit), "unit")
     return next(
         (word for word, way_unit in EXTENTS.items() if meaning and way_unit.unit == meaning[0]), ""

@@ -53,7 +53,7 @@ class _Switch(NamedTuple):
 
 
 def switch_diagnostics(source: Source) -> list[Diagnostic]:
-    """Return what is told of motors that are switched on, and off or to another way after a wait.
+    """Return what is said about motors switched on and, after a wait, off or the other way.
 
     Each with its wait is one move, and the stop after the last one needs no word.
     """
@@ -129,7 +129,7 @@ def _switches(text: str) -> Iterator[_Switch]:
 
 
 def motor_diagnostics(source: Source) -> list[tuple[Diagnostic, Edit]]:
-    """Return what is told of motors that are set one by one, and how the rest is read."""
+    """Return what is said about motors that are set one by one, and how the rest is read."""
     text, motor_instructions = source.text, [*_motors(source.text)]
     findings: list[tuple[Diagnostic, Edit]] = []
     spans_used: set[Span] = set()

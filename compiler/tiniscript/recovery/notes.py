@@ -27,7 +27,7 @@ _CALL = re.compile(r"([^\W\d]\w*)\s*\(")
 
 
 def note_diagnostics(source: Source) -> list[Diagnostic]:
-    """Return what is told of the notes of a text that begin with another sign."""
+    """Return what is said about the notes of a text that begin with another sign."""
     return [
         Diagnostic(codes.OTHER_NOTE, span, {"found": source[span], "right": corrected_line}, span,
                    Repair(edits, True))

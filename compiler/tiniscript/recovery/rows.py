@@ -43,7 +43,7 @@ it keeps a law, which the heading above it names:
 - `kind`: what is read of one word is read of each of its kind: comparisons, ends, blocks, devices.
 - `two`: of two meanings that cost about the same both are offered.
 - `other`: without it another row reads the line as something else.
-- `code`: nothing else tells of its code, which the list of mistakes has.
+- `code`: nothing else reports its code, which the list of mistakes has.
 """
 
 from tiniscript.diagnostics import codes

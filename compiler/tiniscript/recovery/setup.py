@@ -47,7 +47,7 @@ Check = Callable[[str], Sequence[Diagnostic]]
 def beginning_diagnostics(
     source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
-    """Return what is told of a text by the way that it begins: with it the rest is read."""
+    """Return what is said about a text by the way that it begins: with it the rest is read."""
     setup_problem = setup_diagnostic(source.text)
     if setup_problem and setup_problem.repair:
         diagnostics_after = check(apply_edits(source.text, setup_problem.repair.edits))
@@ -62,7 +62,7 @@ def beginning_diagnostics(
 
 
 def wrong_setup_word(source: Source, diagnostics: Sequence[Diagnostic]) -> Diagnostic | None:
-    """Return what is told of a word before the bar that is no `SI`."""
+    """Return what is said about a word before the bar that is no `SI`."""
     first_lexemes = lexemes(source.text[:_MOST_CHARACTERS].lstrip().partition("\n")[0])[:1]
     has_setup = SEAL in source.text or (first_lexemes and first_lexemes[0].text in ("SI", "SB"))
     setup_diagnostics = (
@@ -72,7 +72,7 @@ def wrong_setup_word(source: Source, diagnostics: Sequence[Diagnostic]) -> Diagn
 
 
 def setup_diagnostic(text: str) -> Diagnostic | None:
-    """Return what is told of the beginning of a program where something stands for its `SI|`."""
+    """Return what is said about the beginning of a program where something stands for its `SI|`."""
     start = len(text) - len(text.lstrip())
     line = text[start:].split("\n", 1)[0]
     body = split_note(line)[0]
@@ -100,7 +100,7 @@ def setup_diagnostic(text: str) -> Diagnostic | None:
 
 
 def _frame_diagnostic(source: Source) -> Diagnostic | None:
-    """Return what is told of `void setup() { … }`, in which a sketch has its beginning.
+    """Return what is said about `void setup() { … }`, in which a sketch has its beginning.
 
     What is in its brackets begins the program; `void loop()` after it is a loop.
     """
@@ -134,7 +134,7 @@ def _frame_repair(source: Source, head: re.Match[str], close_offset: int) -> Dia
 
 
 def _spoken_diagnostic(source: Source, kit: Kit) -> Diagnostic | None:
-    """Return what is told of a first line that says how it starts, then instructions, in words.
+    """Return what is said about a first line that says how it starts, then instructions, in words.
 
     `SI go forward 2 seconds, then stop` is `SI|F(2, 80);S`: after SI comes the bar. `start and go`
     is SI, too, and `when the button is pressed` is SB.
@@ -208,7 +208,7 @@ def _begins_instruction(text_after: str, sign: str, is_separate: bool) -> bool:
 
 
 def _assignments_before_setup(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return what is told of variables that are set above `SI|`, with a type before them.
+    """Return what is said about variables that are set above `SI|`, with a type before them.
 
     `int vel = 70;` above `SI|F(2, vel)` is `SI|vel = 70;F(2, vel)`: SI| comes before them.
     """

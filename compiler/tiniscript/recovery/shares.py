@@ -25,7 +25,7 @@ _COMPARING_KINDS = ("less", "more", "than", "is", "equal", "to", "extra", "or", 
 
 
 def find_shares(source: Source, kit: Kit) -> tuple[list[Diagnostic], list[Edit]]:
-    """Return what is told of sensors that are compared with a number in percent.
+    """Return what is said about sensors that are compared with a number in percent.
 
     The rest is read with the shares.
     """

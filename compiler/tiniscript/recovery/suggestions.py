@@ -1,6 +1,6 @@
-"""Suggestions: what is told of words that no repair reads surely.
+"""Suggestions: what is said about words that no repair reads surely.
 
-Reads each instruction of a line with the words behind it, and words without one, by the rows of
+Reads each instruction of a line with the words after it, and words without one, by the rows of
 `suggestion_rows`; `matching_rows` finds them, for `usage`, too. Knows no row and no sentence of any
 language.
 """
@@ -53,7 +53,7 @@ from tiniscript.syntax.free_names import free_number_name
 from tiniscript.syntax.lexer import QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 
-MOST_WORDS = 24  # words behind an instruction that are read
+MOST_WORDS = 24  # words after an instruction that are read
 MOST_INSTRUCTIONS = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
 _SECONDARY_CODES = (codes.REPEATED, codes.WORDS_AFTER)
@@ -84,7 +84,7 @@ class SuggestionRow(NamedTuple):
 
 
 class Subject(Protocol):
-    """What rows speak of: what comes first, and the tokens of the `row_tokens` behind it."""
+    """What rows speak of: what comes first, and the tokens of the `row_tokens` after it."""
 
     text: str
     names: Names
@@ -140,7 +140,7 @@ def _row_index() -> rewrites.RowIndex:
 
 
 def find_suggestions(text: str, kit: Kit) -> list[Suggestion]:
-    """Return what is told of words behind each instruction of a text, or in place of one."""
+    """Return what is said about words after each instruction of a text, or in place of one."""
     bodies = [split_note(line)[0] for line in text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
     suggestions: list[Suggestion] = []
@@ -191,7 +191,7 @@ def _as_instructions(line: str, is_right: bool) -> str | None:
 
 
 def _trailing_words(body: str, start: int, line_context: LineContext) -> Iterator[_TrailingWords]:
-    """Give each instruction of a line that has words behind it, and words without one."""
+    """Give each instruction of a line that has words after it, and words without one."""
     names = line_context.names
     instructions_before: list[str | None] = []
     for match in _INSTRUCTION_AND_BAR.finditer(body):
@@ -271,7 +271,7 @@ def _is_read_surely(trailing: Trailing) -> bool:
 
 
 class _TrailingWords(Trailing):
-    """Words behind an instruction, or without one, as a place of rows."""
+    """Words after an instruction, or without one, as a place of rows."""
 
     def __init__(
         self, line_context: LineContext, start: int, tokens: Sequence[Lexeme],
@@ -588,7 +588,7 @@ def _instructions_said(part: Trailing) -> list[SpokenInstruction]:
 
 
 def _call_and_instructions(gaps: Gaps) -> str:
-    """The instruction, and those that the words behind it say."""
+    """The instruction, and those that the words after it say."""
     found_instructions = _instructions_said(gaps.trailing)
     return (
         f"{gaps.trailing.call_text};{instructions_text(found_instructions)}"
@@ -613,7 +613,7 @@ def _is_last(trailing: Trailing) -> bool:
 
 
 def _note_values(trailing: Trailing) -> dict[str, str]:
-    """Return how words behind a whole instruction are written as a note, where they may be one.
+    """Return how words after a whole instruction are written as a note, where they may be one.
 
     What has a number or a sign of a program, or is joined to the instruction, says more of it.
     """

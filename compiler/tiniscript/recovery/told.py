@@ -1,4 +1,4 @@
-"""What people are told of a wrong text: each step of it, in their order.
+"""What people are told about a wrong text: each step of it, in their order.
 
 The first of `READERS` that says something is told. The rest of the text is read as if its edits
 were made, so that no consequence of a mistake is reported; `usage` says what no reader does. What
@@ -47,7 +47,7 @@ MOST_CHARACTERS = 4_000  # characters of a text that is read as a whole
 
 
 class Findings(NamedTuple):
-    """What is told of a text, and the edits with which the rest of it is read."""
+    """What is said about a text, and the edits with which the rest of it is read."""
 
     diagnostics: list[Diagnostic]
     edits: list[Edit]
@@ -84,7 +84,7 @@ class WrongText:
 def diagnose(
     source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
-    """Return what is told of a wrong text, of which the parser and the checker say `diagnostics`.
+    """Return what is said about a wrong text, which has these `diagnostics` of parser and checker.
 
     The readers know one end of a line that is a character: what the text has instead takes as much.
     """

@@ -111,7 +111,7 @@ _MOST_DIAGNOSTICS = 30  # diagnostics of which more is said
 _VALUE_CODES = (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE)
 _NAME_CODES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
-_INSTRUCTION_STARTS = (";", "newline", "|")  # what an instruction begins behind
+_INSTRUCTION_STARTS = (";", "newline", "|")  # what an instruction begins after
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _FARTHEST_CM = 400  # more is rather in milliseconds
 _NOUN_OF_UNIT = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
@@ -126,7 +126,7 @@ _KINDS_AFTER_NUMBER = (
     "to",
     "at",
     "by",
-)  # behind a number
+)  # after a number
 _KINDS_NO_NAME = (*_KINDS_NO_CALL, "filler", "same")  # without values
 
 
@@ -248,7 +248,7 @@ class _Text:
 
 
 def _usage_diagnostic(usage: Usage) -> Diagnostic | None:
-    """Return what the first row that holds tells of a place, None where there is none."""
+    """Return what the first row that holds says about a place, None where there is none."""
     return next((usage.diagnostic_of(row, gaps) for row, gaps in matching_rows(usage)), None)
 
 
@@ -438,7 +438,7 @@ class Usage:
         return f"{word}({text})" if text else WORDS[word].usage
 
     def question_tokens(self, word: str) -> list[Lexeme]:
-        """Return what stands behind a header, up to what is done."""
+        """Return what stands after a header, up to what is done."""
         tokens_behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.row_tokens)][
             1:
         ]
@@ -567,7 +567,7 @@ class Usage:
 
     @cached_property
     def wrong_value(self) -> _WrongValue | None:
-        """A word behind a number, which is no value: a unit of something else, or nothing."""
+        """A word after a number, which is no value: a unit of something else, or nothing."""
         tokens_before = self.tokens_before()
         calls = [
             token.text for token, next_token in pairwise(tokens_before) if next_token.text == "("
@@ -772,9 +772,11 @@ class Usage:
         """Return each place where a word is meant as a name: S of `F(S, 80)`, not S alone."""
         word, _, _, is_def, _, _ = self.other_name
         tokens = scan(self.text).tokens
-        token_indexes = (
-            range(len(tokens)) if word in VERSION_OF_WORD else _words_as_names(tokens, word, is_def)
-        )
+        partners = {end if word == head else head for head, end in BLOCK_ENDS.items()
+                    if word in (head, end)}  # fmt: skip
+        has_block = any(token.text in partners for token in tokens)
+        is_older = word in VERSION_OF_WORD and not has_block  # the program than the word
+        token_indexes = range(len(tokens)) if is_older else _words_as_names(tokens, word, is_def)
         return [
             tokens[k].span for k in token_indexes
             if tokens[k].text == word and (k == 0 or tokens[k - 1].kind not in (NUMBER, ")"))
@@ -1056,7 +1058,7 @@ def _member_span(usage: Usage) -> Span:
 
 
 def _unit_behind(gaps: Gaps) -> str:
-    """A unit behind a calculation: `F(RANDOM(1, 3) sec, 50)`."""
+    """A unit after a calculation: `F(RANDOM(1, 3) sec, 50)`."""
     usage = _usage_of(gaps)
     found_text = usage.source[usage.diagnostic.span]
     end = _end_of_value(usage)
@@ -1211,7 +1213,7 @@ def _second_start(gaps: Gaps) -> str:
 
 
 def _question_begun(gaps: Gaps) -> str:
-    """IF, where SI has no bar behind it."""
+    """IF, where SI has no bar after it."""
     return "IF" if _second_start(gaps) == "SI" else ""
 
 
@@ -1259,7 +1261,7 @@ def _other_lines(gaps: Gaps) -> list[str]:
 
 
 def _later_lines(gaps: Gaps) -> list[str]:
-    """The lines in which TIME stands behind the first place."""
+    """The lines in which TIME stands after the first place."""
     usage = _usage_of(gaps)
     offsets = [match.start() for match in re.finditer(r"(?i)\bTIME\b", usage.text)][1:]
     return [str(usage.source.position(offset)[0]) for offset in offsets]
@@ -1279,7 +1281,7 @@ def _times_in_line(gaps: Gaps) -> str:
 
 
 def _words_after(gaps: Gaps) -> str:
-    """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
+    """What begins no instruction comes after one: with a `;` between them it is as wrong."""
     usage = _usage_of(gaps)
     text = usage.source[_following_span(usage)]
     outline = lines.parse_line(lexemes(text), usage.names)
@@ -1334,7 +1336,7 @@ def _may_be_value_of(argument: Argument, number: float) -> bool:
 
 
 def _calls_taking_values(gaps: Gaps) -> list[str]:
-    """The values in brackets that no word is before, behind each word that takes such ones."""
+    """The values in brackets that no word is before, after each word that takes such ones."""
     usage = _usage_of(gaps)
     values = [
         value.strip() for value in usage.source[usage.instruction_span].strip("() ").split(",")
@@ -1389,7 +1391,9 @@ _SEVERAL_FUNCTIONS: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "dots": lambda it, _: it.dots_values(), "unended": lambda it, _: it.unended_values(),
     "instead": lambda it, _: foreign_word_hints(it.token_texts[0]), "in_words": Usage.worded_values,
     "in_brackets": Usage.bracketed_values, "one_number": Usage.number_values,
-    "in_dark": lambda it, word: said if (said := it.bracketed_values(word)).get("question") else {},
+    "in_dark": (
+        lambda it, word: values if (values := it.bracketed_values(word)).get("question") else {}
+    ),
 }  # fmt: skip
 GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "said": _gap_of(lambda it: it.source[it.instruction_span]),

@@ -1,4 +1,4 @@
-"""What a page has asked of its robot and is told of it, and what is still done for it.
+"""What a page has asked of its robot and is told about it, and what is still done for it.
 
 A page counts the times that its user presses STOP, and the count rides in every beat: a request
 that is lost, late or repeated loses no stop, and each number stops the robot once. It stops nothing
@@ -46,7 +46,7 @@ class Attending:
         self._news_count = 0
         self._wants_stop = self._is_silent = False
         self._last_request_number = 0  # one that comes again was lost on its way back
-        self._latch_news_number = 0  # of what tells of the newest latching stop
+        self._latch_news_number = 0  # of the news of the newest latching stop
         self._stop_counts: dict[int, int] = {}  # that are asked for, with the stops before them
         self._was_heard = False
 

@@ -25,7 +25,7 @@ class Block(NamedTuple):
     brackets as values. `note` is the comment after it; `is_apart`: an empty line stands before it.
     `said` is what its lines were when it was read, the end left out, and `comment` the comment of
     it, or what it is; what is missing or empty is printed anew. `is_behind`: a comment that stands
-    behind the line before it.
+    after the line before it.
     """
 
     kind: str

@@ -3,7 +3,7 @@
 A pupil joins with the code of the class and gets a token. Whoever wants a robot stands in one
 queue; a turn ends when the pupil leaves the robot or is not heard, and after a time if somebody
 waits. A pupil reaches only the robot of their own turn: the page of a request is never one that a
-pupil names. A pupil's page tells of its work, and whether a hand is up.
+pupil names. A pupil's page reports its work, and whether a hand is up.
 
 Pupils of a group (`groups`) have one place in the queue and one turn: each of them may take the
 robot over, and each may stop it, whoever drives it. Their program is asked for without the lock of
@@ -366,7 +366,7 @@ class Classroom:
         self._kept_work_by_key[work.key] = work
 
     def _report_page(self, pupil: Pupil, request: Json) -> Json:
-        """A page tells of its program, and hears its place: 0 is a turn, -1 none."""
+        """A page reports its program, and hears its place: 0 is a turn, -1 none."""
         self._hear_work(pupil, request)
         robot_wish, hand_wish = request.get("wants"), request.get("hand")
         mates = self._mates(pupil)
@@ -425,7 +425,7 @@ class Classroom:
         }
 
     def _hear_work(self, pupil: Pupil, request: Json) -> None:
-        """Take what a page tells of its work; what it does not tell stays. Raises BadRequest."""
+        """Take what a page says about its work; what it does not tell stays. Raises BadRequest."""
         new_fields = {name: request[name] for name in Work._fields if request.get(name) is not None}
         if "robot" in new_fields:
             robot_of(new_fields)
@@ -606,7 +606,7 @@ class Classroom:
             for pupil in self._pupil_by_token.values()
             if pupil.queue_number is not None
         ]
-        return [pupil for _, pupil in sorted(numbered_pupils, key=lambda found: found[0])]
+        return [pupil for _, pupil in sorted(numbered_pupils, key=lambda numbered: numbered[0])]
 
     def _turn(self, pupil: Pupil) -> ClassRobot | None:
         return next((robot for robot in self._robots if robot.pupil is pupil), None)

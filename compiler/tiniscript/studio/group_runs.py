@@ -64,7 +64,7 @@ class GroupRuns:
             return self._news_count, [row.news for row in rows if row.news["number"] > number]
 
     def _events_of(self, news_item: Json) -> Iterator[Json]:
-        """Yield what is told of an event of the link, each once in the order of the runs."""
+        """Yield what is said about an event of the link, each once in the order of the runs."""
         event, program = news_item.get("event"), str(news_item.get("program", ""))
         if "connected" in news_item:
             yield {"event": "ROBOT", "robot": news_item["connected"]["robot"]}

@@ -190,7 +190,7 @@ class Groups:
             if member is None:
                 pupils = group.pupils
                 if token != TEACHER and len(pupils) >= MOST_MEMBERS:
-                    silent_member = min(pupils, key=lambda each: each.heard_s)
+                    silent_member = min(pupils, key=lambda pupil: pupil.heard_s)
                     if now_s - silent_member.heard_s <= GONE_S:
                         return {"failure": "group_full"}
                     del group.member_by_token[silent_member.token]
@@ -418,6 +418,7 @@ class Groups:
                     "name": group.name,
                     "founder": group.founder,
                     "owners": group.owner_of_page,
+                    "names": group.name_of_page,
                     "members": [[member.token, member.name, member.page]
                                 for member in group.member_by_token.values()],
                 }
@@ -441,6 +442,12 @@ class Groups:
                 owner_of_page.update(owners if isinstance(owners, dict) else {})
                 group.owner_of_page = {page: str(owner) for page, owner in owner_of_page.items()
                                 if _PAGE_NAME.fullmatch(page)}  # fmt: skip
+                names = row.get("names")
+                group.name_of_page = {
+                    page: plain_name(name)
+                    for page, name in (names.items() if isinstance(names, dict) else ())
+                    if _PAGE_NAME.fullmatch(page) and isinstance(name, str)
+                }
                 members = row.get("members")
                 for member_data in members if isinstance(members, list) else ():
                     self._bring_back(group, member_data, is_here)

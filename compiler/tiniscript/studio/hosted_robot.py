@@ -41,8 +41,8 @@ class HostedRobot:
         """`robot` is the profile of the page's programs.
 
         `tab` and `connection` are the page's name of itself and its count of connections;
-        `stop_count`: how often that one has pressed STOP before, as far as it is done. The port is
-        free when `earlier_robots` have closed it.
+        `stop_count`: how many times that one has pressed STOP before, as far as it is done. The
+        port is free when `earlier_robots` have closed it.
         """
         self.port = port
         self.tab = tab

@@ -145,7 +145,7 @@ class Rows:
 
 
 class ReadingRows:
-    """The rows of a real robot's run for what it tells of its readings.
+    """The rows of a real robot's run for what it says about its readings.
 
     `incomplete_names` are the sensors of which it could not tell all.
     """

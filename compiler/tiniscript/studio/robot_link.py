@@ -1,4 +1,4 @@
-"""What the page asks of a robot, and what it is told of it: both as data for JSON.
+"""What the page asks of a robot, and what it is told about it: both as data for JSON.
 
 The same code is in the page, over Web Serial and Web Bluetooth, and in `tsc studio`, over the ports
 of the computer; in both places it uses the session of `tiniscript.link`. So a request, a receipt

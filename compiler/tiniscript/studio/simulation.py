@@ -23,7 +23,7 @@ from tiniscript.virtual.world import World
 
 LONGEST_ANSWER_MS = 10_000  # for a robot to answer
 PUSH_MS = 60
-FAULT_MS = 500  # for a robot to tell of a fault
+FAULT_MS = 500  # for a robot to report a fault
 NONCE = 1  # the same program makes the same run
 PART, BREAKPOINT = 1, 2  # marks in a program's code
 MOST_CODE = 1 << 16  # bytes

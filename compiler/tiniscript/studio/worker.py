@@ -63,8 +63,8 @@ def _check(fields: Json, data: bytes) -> Json:
 
 def _on_blocks(message: Message, kit: Kit) -> Json:
     """Return a message for those who see blocks: its sentences, and which block each code is."""
-    said, fix = (mark_code(sentence, kit) for sentence in (message.message, message.fix))
-    return {"message": said, "fix": fix, "spoken": blocks_of(codes_in([said, fix]), kit)}
+    text, fix = (mark_code(sentence, kit) for sentence in (message.message, message.fix))
+    return {"message": text, "fix": fix, "spoken": blocks_of(codes_in([text, fix]), kit)}
 
 
 def _repair(fields: Json, data: bytes) -> Json:

@@ -29,6 +29,7 @@ class Journal:
     def __init__(self, path: Path | None) -> None:
         self.path = path
         self.is_incomplete = False
+        self._is_damaged = False  # the file, while the one before it can be read
         self._file: int | None = None
         self._size = 0
 
@@ -60,7 +61,7 @@ class Journal:
                         os.truncate(path, len(complete_rows))
                         self._size = len(complete_rows)
             else:
-                self.is_incomplete = True
+                self.is_incomplete = self._is_damaged = True
             return program
         return None
 
@@ -86,8 +87,9 @@ class Journal:
         if self.path is None:
             return
         self.close()
-        with suppress(OSError):
-            self.path.replace(self._old_path)
+        if not self._is_damaged:
+            with suppress(OSError):
+                self.path.replace(self._old_path)
         data = _line(program.snapshot())
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
@@ -95,6 +97,7 @@ class Journal:
         except (OSError, ValueError):
             self.is_incomplete = True
             return
+        self._is_damaged = False
         self._open()
 
     def _open(self) -> None:

@@ -133,7 +133,7 @@ def _entries(tree: Tree, container: str = ROOT) -> Iterable[_Entry]:
 
 
 def tree_lines(tree: Tree) -> list[Line]:
-    """Return the lines of a program. A start and what is behind it share one."""
+    """Return the lines of a program. A start and what is after it share one."""
     entries = list(_entries(tree))
     is_alone = _has_one_instruction(entries)
     rows: list[Row] = []

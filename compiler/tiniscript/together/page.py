@@ -2,7 +2,7 @@
 
 It applies its own changes at once, over what has arrived; what is refused is not there any more. A
 line that does not parse yet, or in which a key was just pressed, is a draft: text in the place of
-lines, or behind one. Only lines without drafts become operations, so no characters of two pupils
+lines, or after one. Only lines without drafts become operations, so no characters of two pupils
 are ever merged. Runs in the page's Pyodide; knows no network and no editor.
 """
 
@@ -393,7 +393,7 @@ class Page:
     def _split_at_caret(
         self, i1: int, i2: int, j1: int, j2: int
     ) -> list[tuple[int, int, int, int]]:
-        """Return the parts of a hunk before a hot line, of that, and behind it: what is finished in
+        """Return the parts of a hunk before a hot line, of that, and after it: what is finished in
         the lines around goes on without it. A draft stays whole: nobody knows which of its lines
         hide which."""
         k = self.caret
@@ -450,7 +450,7 @@ class Page:
         )
 
     def _drafts_of(self, held_hunks: list[Hunk]) -> list[Draft]:
-        """Return what is held as drafts, each behind the line above it, which may be a new one."""
+        """Return what is held as drafts, each after the line above it, which may be a new one."""
         keys = [key for line in tree_lines(self.view) for key in line.keys]
         drafts = []
         for k, hunk in enumerate(held_hunks):
@@ -657,7 +657,7 @@ class Page:
         return ids
 
     def _anchor(self, key_above: Key | None, present_keys: set[Key]) -> Key | None:
-        """Return the line behind which a draft is whose line above has gone."""
+        """Return the line after which a draft is whose line above has gone."""
         if key_above is None or key_above in present_keys:
             return key_above
         id = key_above[0]

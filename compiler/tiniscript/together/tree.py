@@ -1,7 +1,7 @@
 """The shared program as a tree of instructions, each with an id that stays while its text changes.
 
 A node is an instruction, a block, an arm (ELSE, ELSEIF: a leaf among what is in its IF, so that
-"the first of an arm" is "behind the arm"), a line of comment, or the start, which is always there
+"the first of an arm" is "after the arm"), a line of comment, or the start, which is always there
 and whose text may be empty. Knows no text of a program and no operation.
 """
 
@@ -218,7 +218,7 @@ class Tree:
     def snapshot(self) -> Json:
         return {
             "tree": self.subtree(ROOT).data(),
-            "gone": {id: list(each) for id, each in self.former_place_by_id.items()},
+            "gone": {id: list(place) for id, place in self.former_place_by_id.items()},
         }
 
     @classmethod

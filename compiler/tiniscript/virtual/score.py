@@ -37,7 +37,7 @@ class Score:
         return len(self._world.rivals) if self._world.rings else 0
 
     def update(self, robot: VirtualRobot) -> None:
-        """See where the robot is now. What it does with all done, or fallen, counts no more."""
+        """See where the robot is now. After all is done, or after a fall, nothing counts."""
         if self.is_complete or self._has_fallen or robot.now_ms % LOOK_INTERVAL_MS:
             return
         if robot.started_ms is None:

@@ -87,7 +87,7 @@ import { watchPromise } from './page/progress.js';
 /** @typedef {{resolve: (answer: any) => void, reject: (why: Error) => void}} PendingRequest */
 
 /**
- * @typedef {object} PythonListener what is told of it until it is there
+ * @typedef {object} PythonListener who is told about it until it is there
  * @property {() => void} onWait nothing has come of what it needs for a while
  * @property {() => void} onFail it cannot be had
  * @property {() => void} onBegin it is tried again

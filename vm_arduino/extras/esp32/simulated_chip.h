@@ -73,7 +73,7 @@ struct SimulatedChip {
   bool watches_idle = true;  // the task watchdog, that of core 0, which nobody feeds meanwhile
   bool has_restarted = false;
   uint32_t slept_us = 0;  // by the main loop, and not yet counted as turns of it
-  uint32_t rests = 0;     // how often it slept
+  uint32_t rests = 0;     // how many times it slept
 
   bool is_heap_full = false;  // no stack finds room
   std::atomic<bool> has_wifi{false};

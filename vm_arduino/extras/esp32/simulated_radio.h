@@ -54,6 +54,6 @@ struct RadioSettings {
   std::string network;  // that it joins or is
   std::string password;
   bool is_access_point;
-  uint32_t joins;  // how often it, or the core for it, has tried
+  uint32_t joins;  // how many times it, or the core for it, has tried
 };
 RadioSettings radio_settings();

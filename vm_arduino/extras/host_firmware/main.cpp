@@ -407,14 +407,14 @@ void board_release() {
   }
 }
 
-bool board_has_hung(Place* place) {
+bool board_take_hang(Place* place) {
   const bool found = table.has_hung;
   table.has_hung = false;
   *place = table.hung;
   return found;
 }
 
-bool board_has_stalled() {
+bool board_take_stall() {
   const bool found = table.has_stalled;
   table.has_stalled = false;
   return found;

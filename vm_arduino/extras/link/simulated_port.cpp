@@ -120,7 +120,7 @@ void port_take(uint8_t mode, bool is_live) {
   hold(image, (mode & kSave) != 0 ? Saved::kStored : Saved::kMemory);
 }
 
-void port_has_checksum(const uint8_t* image) {
+void port_take_checksum(const uint8_t* image) {
   if (text_of(image) != sealed(text_of(image))) say("SEAL something else");
 }
 

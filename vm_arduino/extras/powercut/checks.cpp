@@ -171,7 +171,7 @@ const char* run_checks() {
   start(&store);
   expect(has(store, a) && save(&store, b));
 
-  // what is half written over counts no more
+  // what is half written over no longer counts
   expect(store.begin_save(c.data()));
   run(&store, false, 5000);
   store.give_up();

@@ -31,7 +31,7 @@ uint8_t nasty_byte(uint16_t place) {
 }
 
 void write(uint16_t place, uint8_t value) {
-  expect(place < kMemoryBytes, "a write behind the end");
+  expect(place < kMemoryBytes, "a write past the end");
   expect(!memory.is_writing, "a write while another one goes on");
   if (memory.is_off) return;
   memory.is_writing = true;
@@ -77,7 +77,7 @@ void Memory::fill(uint8_t value) {
 bool nvm_is_ready() { return !memory.is_writing; }
 
 uint8_t nvm_read(uint16_t place) {
-  expect(place < kMemoryBytes, "a look behind the end");
+  expect(place < kMemoryBytes, "a read past the end");
   expect(!memory.is_writing, "a look while a write goes on");
   const Memory::Cell& cell = memory.cells[place];
   return cell.value == cell.other ? cell.value : old_value(cell);

@@ -26,8 +26,8 @@ namespace {
 
 constexpr uint32_t kRoom = 65536;  // for an image, and for some that are too long
 
-// The numbers of calls that are frequent. They lie in memory: to pass some takes the other side
-// several times as long as the call.
+// The numbers of frequent calls. They are exchanged in memory: on the other side, passing some of
+// them as arguments takes several times as long as the call.
 struct Exchange {
   uint32_t now_ms;  // of a tick,
   uint32_t budget;  // 0 to 65535 instructions; then what is left of it

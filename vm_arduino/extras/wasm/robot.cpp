@@ -48,7 +48,7 @@ int32_t readings[256];
 uint16_t hashes[512];
 uint8_t words[kWordBytes];
 
-// What `begin` tells of the robot.
+// What `begin` says about the robot.
 struct RobotSettings {
   uint16_t kit;
   uint8_t sensors;
@@ -196,11 +196,11 @@ void board_release() {
 
 void board_actuators_off() { note(kActuatorsOff); }
 
-bool board_has_stalled() { return false; }
+bool board_take_stall() { return false; }
 
 LineErrors board_line_errors() { return {0, 0}; }  // its bytes come whole, or not at all
 
-bool board_has_hung(Place*) { return false; }
+bool board_take_hang(Place*) { return false; }
 
 void board_forget() {}
 

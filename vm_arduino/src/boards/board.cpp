@@ -120,13 +120,13 @@ void board_release() { motors_release(); }
 void board_actuators_off() { actuators_off(false); }
 
 // A program may have set an actuator again after the timer turned it off.
-bool board_has_stalled() {
-  const bool found = watchdog_has_stalled();
+bool board_take_stall() {
+  const bool found = watchdog_take_stall();
   if (found) actuators_off(true);
   return found;
 }
 
-bool board_has_hung(Place* place) { return watchdog_has_hung(place); }
+bool board_take_hang(Place* place) { return watchdog_take_hang(place); }
 
 Press board_button(uint32_t now_ms) { return button_read(!is_high(kStartButton), now_ms); }
 

@@ -50,7 +50,7 @@ void board_release();
 void board_actuators_off();
 
 // Whether the main loop has hung since the last call; the board has then turned the motors off.
-bool board_has_stalled();
+bool board_take_stall();
 
 // The slotted discs on both wheels.
 struct Discs {
@@ -67,7 +67,7 @@ uint16_t board_edges(bool is_right);
 LineErrors board_line_errors();
 
 // Whether the watchdog caused this reset, and what ran then: zeros if nothing did. Reported once.
-bool board_has_hung(Place* place);
+bool board_take_hang(Place* place);
 
 // A program begins: discards readings that nobody has fetched.
 void board_forget();

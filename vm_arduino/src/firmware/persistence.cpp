@@ -44,7 +44,7 @@ void load_fault() {
   const bool is_there = store.fetch_first(Area::kFault, record, kRecordBytes);
   if (is_there) read_pace(record);
   Place hung;
-  if (board_has_hung(&hung)) {
+  if (board_take_hang(&hung)) {
     robot_status.fault = static_cast<uint8_t>(LinkFault::kStall);
     robot_status.fault_at = hung.at;
     robot_status.fault_program = hung.program;

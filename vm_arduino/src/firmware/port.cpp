@@ -58,7 +58,7 @@ void port_take(uint8_t mode, bool is_live) {
   show_light();
 }
 
-void port_has_checksum(const uint8_t* image) {
+void port_take_checksum(const uint8_t* image) {
   if (image == program && (!kTextIsInProgram || is_in_memory()))
     robot_status.program = get32(image + kChecksumAt);
 }

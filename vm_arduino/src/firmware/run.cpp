@@ -102,7 +102,7 @@ void begin_run(const uint8_t* image) {
 }
 
 void tick_run() {
-  if (board_has_stalled() && is_running()) abort_run(LinkFault::kStall);
+  if (board_take_stall() && is_running()) abort_run(LinkFault::kStall);
   if (is_start_due && load_program() && is_start_due) {
     is_start_due = false;
     if (is_in_memory()) begin_run(program);

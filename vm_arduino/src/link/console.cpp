@@ -199,7 +199,7 @@ bool Console::is_chatter() {
 void Console::read(uint8_t byte) {
   if (refused_ != Remark::kNone || (!is_open_ && !begin(byte))) return;
   reader_.put(byte);
-  if (!has_moved_ && !is_ignored() && reader_.wants_room()) has_room();
+  if (!has_moved_ && !is_ignored() && reader_.wants_room()) find_room();
 }
 
 // Begins a program in memory that nobody uses.
@@ -221,7 +221,7 @@ bool Console::begin(uint8_t byte) {
 }
 
 // Moves the program to where there is room for all of it. False: not now.
-bool Console::has_room() {
+bool Console::find_room() {
   if (has_moved_) return true;
   const bool is_lost = port_status().saved == Saved::kMemory;
   uint16_t room;
@@ -273,7 +273,7 @@ inline Console::Act Console::end_line(bool is_heard) {
       is_talking_ = true;
       if (reader_.start() == kStartPing) {
         say(Remark::kHello);
-      } else if (has_room()) {
+      } else if (find_room()) {
         is_open_ = false;
         return Act::kStart;
       } else {

@@ -89,7 +89,7 @@ class Console {
   void end_silence();
   void begin_silence();
   bool begin(uint8_t byte);
-  bool has_room();
+  bool find_room();
   void refuse();
   bool is_ignored() const;
 

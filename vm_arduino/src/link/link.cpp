@@ -114,7 +114,7 @@ tini_noinline void Link::write_checksum() {
   const uint32_t checksum = image_checksum(image, image_length(image));
   __builtin_memcpy(image + kChecksumAt, &checksum, sizeof checksum);
   if (!is_typed()) checksum_ = checksum;
-  port_has_checksum(image);
+  port_take_checksum(image);
 }
 
 bool Link::next_tx_byte(uint8_t* byte) {

@@ -395,7 +395,7 @@ class Link {
   tini_with_seals Seal seal_;
   tini_with_transports bool was_stopped_;
   tini_with_breakpoints bool has_breakpoints_;  // of this session
-  tini_with_breakpoints bool owns_halt_;  // it was told of the last halt: that ends with it
+  tini_with_breakpoints bool owns_halt_;  // it was told about the last halt: that ends with it
   tini_with_readings bool tells_readings_;  // to this session
   tini_with_readings bool has_late_value_;
   tini_with_readings uint8_t behind_;  // by how many bytes readings delay what is sent

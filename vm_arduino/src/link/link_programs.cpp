@@ -192,7 +192,7 @@ uint8_t Link::commit(const uint8_t* payload) {
   }
   if (admission.refusal != 0) return refuse(static_cast<Answer>(admission.refusal), admission.offset);
   finish(mode_, false);
-  port_has_checksum(image);
+  port_take_checksum(image);
   return kIsFine;
 }
 

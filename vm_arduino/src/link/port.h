@@ -132,7 +132,7 @@ void port_forget();
 void port_take(uint8_t mode, bool is_live);
 
 // The taken image has its checksum.
-void port_has_checksum(const uint8_t* image);
+void port_take_checksum(const uint8_t* image);
 
 // Starts the image taken last, or the program that the robot holds.
 void port_start(bool is_live);

@@ -109,7 +109,7 @@ class Reader {
   bool matches(const uint8_t** entry, bool in_flash);
   void find_in_kit();
   SensorBits ask();
-  bool is_free();
+  bool take_word();
   void find_name();
   void add_name(uint8_t info, uint8_t more);
 

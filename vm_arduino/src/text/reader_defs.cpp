@@ -47,7 +47,7 @@ void Reader::close_routine(Block* block) {
 Problem Reader::define(uint8_t token) {
   state_ = kAfterDefName;
   if (token != kNameToken) return Problem::kReserved;
-  if (!is_free()) return Problem::kTaken;
+  if (!take_word()) return Problem::kTaken;
   if (stack_ != names_) return Problem::kDef;
   if (defs_ == kDefs) return Problem::kLimit;
   defs_++;
@@ -96,7 +96,7 @@ Problem Reader::name_value_of_def(uint8_t token) {
   if (token != kNameToken) {
     return token == ',' || token == ')' ? Problem::kValue : Problem::kReserved;
   }
-  if (!is_free() && found_ != kIsGone) return Problem::kTaken;
+  if (!take_word() && found_ != kIsGone) return Problem::kTaken;
   if (def_->values >= kMostValues * kOneValue || variables_ == kVariables) return Problem::kLimit;
   add_name(static_cast<uint8_t>(kNameOfDef | variables_), 0);
   variables_++;

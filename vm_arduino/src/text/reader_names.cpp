@@ -68,8 +68,9 @@ SensorBits Reader::ask() {
   return bit;
 }
 
-// Whether the word may become a name of the program; then nobody asks it.
-bool Reader::is_free() {
+// Takes the word as a name of the program, if it may be one. What a remote control has of this name
+// counts as asked from then on. False: it is taken.
+bool Reader::take_word() {
   const SensorBits before = asked_;
   return found_ == 0 || (kHasRemote && (found_ & kGivesWay) != 0 && (ask() & before) == 0);
 }

@@ -143,7 +143,7 @@ Problem Reader::after_name(uint8_t token) {
   state_ = kInstruction;
   target_ = number_;
   if (token == token_of(Op::kEq)) {
-    if (is_free()) {
+    if (take_word()) {
       if (variables_ == kVariables) return before(Problem::kLimit);
       target_ = variables_;
       add_name(variables_, 0);

@@ -88,7 +88,7 @@ constexpr uint8_t kAllOthers = 14;
 constexpr uint8_t kHasHadTurn = 64;   // the first turn, of the main task before all others, is over
 constexpr uint8_t kHasOthers = 128;  // there are tasks beside the main one
 
-// Of a counted loop that is open: how often it still goes around. Of an open call: where it
+// Of a counted loop that is open: how many times it still goes around. Of an open call: where it
 // continues. They lie in the order in which they were opened.
 template <bool kInAssembly>
 struct FrameOf {

@@ -160,7 +160,7 @@ class _SetUp:
         return text(key, self.language).format(**values)
 
     def _read_settings(self, module: Module) -> dict[str, str]:
-        """Return what the module tells of what it keeps. Its PIN is not asked."""
+        """Return what the module says about what it keeps. Its PIN is not asked."""
         dialect = module.dialect
         questions = {NAME: dialect.name_question, BAUD: dialect.baud_question}
         values = {

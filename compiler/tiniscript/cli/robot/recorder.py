@@ -1,4 +1,4 @@
-"""Writes what a robot tells of a run into a file: `tsc upload --record`, and rows of CSV.
+"""Writes what a robot says about a run into a file: `tsc upload --record`, and rows of CSV.
 
 The file of a run has the form of `studio/recordings.py`, which reads it. Each line is flushed
 before the next one comes.

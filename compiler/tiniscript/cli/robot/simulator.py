@@ -39,7 +39,7 @@ def running_address(options: Namespace) -> str | None:
     Raises CommandError if several run, or if none runs and the verb cannot start one.
     """
     can_start = hasattr(options, "world")
-    if can_start and simulator_options.wants_own(options):
+    if can_start and simulator_options.needs_own_robot(options):
         return None
     running_robots = directory.unclaimed_robots() if can_start else directory.running_robots()
     if not running_robots and not can_start:

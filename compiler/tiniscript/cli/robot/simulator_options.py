@@ -27,7 +27,7 @@ LONGEST_S = 1_000_000 * ONE
 MOTOR_LOW, MOTOR_HIGH = 10 * ONE, 200 * ONE  # percent
 
 
-def wants_own(options: Namespace) -> bool:
+def needs_own_robot(options: Namespace) -> bool:
     """Whether an option needs a virtual robot of this command."""
     return any(getattr(options, name, None) not in (None, []) for name in virtual_names())
 

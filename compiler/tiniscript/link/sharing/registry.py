@@ -73,7 +73,7 @@ def write(registration: Registration) -> None:
 
 def remove(registration: Registration) -> None:
     """Remove the file of a server, unless another server has replaced it."""
-    _remove(_path(registration.port), lambda found: found == registration)
+    _remove(_path(registration.port), lambda written: written == registration)
 
 
 def _remove(path: Path, is_meant: Callable[[Registration | None], bool]) -> None:

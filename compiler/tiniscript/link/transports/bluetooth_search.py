@@ -164,7 +164,7 @@ async def find_robots() -> list[SeenDevice]:
     async with _scan() as scan:
         await asyncio.sleep(LIST_S)
         found_robots = [device for device in scan.seen_devices.values() if device.is_robot]
-    return sorted(found_robots, key=lambda seen: (seen.name, seen.address))
+    return sorted(found_robots, key=lambda device: (device.name, device.address))
 
 
 def reason_of(failure: Exception) -> str:

@@ -217,7 +217,7 @@ class Broker:
         if not is_answered:
             raise PortError(errors.UNREACHABLE, self.end_reason or "no answer of a broker")
         self._client.unsubscribe(topics)
-        return sorted(presences, key=lambda each: (each.name.casefold(), each.id))
+        return sorted(presences, key=lambda presence: (presence.name.casefold(), presence.id))
 
     @property
     def skipped_topics(self) -> dict[str, int]:

@@ -120,7 +120,7 @@ def swallowed_instructions(note: str) -> list[str]:
 
 
 def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
-    """Whether what stands before the token at `end` is an instruction, and no header nor `SI|`."""
+    """Whether an instruction stands before the token at `end`, not a header or `SI|`."""
     k = end - 1
     while k >= 0 and tokens[k].kind == ";":
         k -= 1

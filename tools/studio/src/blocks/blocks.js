@@ -23,7 +23,7 @@ import { text, textsOf } from '../page/texts.js';
 /** @typedef {import('../python.js').Finding} Finding */
 /** @typedef {import('../page/page_state.js').TaughtBlocks} TaughtBlocks */
 /**
- * @typedef {object} BlocksListener who is told of what is done to blocks
+ * @typedef {object} BlocksListener who is told about what is done to blocks
  * @property {() => void} onChange
  * @property {(place: {line: number, column: number}) => void} toggleBreakpoint
  * @property {(form: Form, isAsked: boolean) => Promise<void>} tryAlone a part of the program, until it has run; whoever only touched it wants nothing else to end for it

@@ -361,7 +361,7 @@ export function clearWorkspace(workspace) {
   withoutEvents(() => workspace.clear());
 }
 
-/** Nothing is told of what is done, and nothing of it refused. @param {() => void} change */
+/** What is done is not reported, and nothing of it is refused. @param {() => void} change */
 function withoutEvents(change) {
   Blockly.Events.disable();
   Checker.isLenient = true;

@@ -14,7 +14,10 @@ export function element(id, kind) {
 
 /** Says it there, unless it is said: what stays costs the browser nothing. @param {Element} target @param {string} text */
 export function setText(target, text) {
-  if (target.textContent !== text) target.textContent = text;
+  if (target.textContent === text) return;
+  const { firstChild } = target;
+  if (firstChild instanceof Text && firstChild === target.lastChild) firstChild.data = text; // which is laid out sooner than another node
+  else target.textContent = text;
 }
 
 /** Hides it or shows it, unless it is so. @param {HTMLElement} target @param {boolean} isHidden */

@@ -1,4 +1,4 @@
-// What a real robot does, in a sentence beside its name. Nobody is told of it aloud: what is new is said beneath.
+// What a real robot does, in a sentence beside its name. Nobody is told about it aloud: what is new is said beneath.
 
 import { element, setHidden, setText } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';

@@ -3,7 +3,7 @@
 // a class the token is the teacher's, and pupils get tokens of their own.
 //
 // The main thread asks many times a second; when it hangs or the page sleeps, `tsc studio` hears
-// nothing, and stops the robot. How often STOP was pressed is in every request, so a lost one is made up for.
+// nothing, and stops the robot. How many times STOP was pressed is in every request, so a lost one is made up for.
 
 /** @import { Answer, RobotInfo } from './transport.js' */
 

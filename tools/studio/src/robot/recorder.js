@@ -1,4 +1,4 @@
-// Records what a robot tells of a run of a program that it has from here: the run is kept beside those of the virtual robot.
+// Records what a robot says about a run of a program that it has from here: the run is kept beside those of the virtual robot.
 
 import { element, setHidden } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';

@@ -94,7 +94,7 @@ export class SerialPort {
           onData(value);
         }
       } catch {
-        // A framing error: there is a new reader after it. After the end there is none.
+        // A framing error: the next reader goes on after it. After the end there is none.
       } finally {
         this.#reader.releaseLock();
       }

@@ -16,7 +16,7 @@ const NOTICE_MS = 3000; // after which it is said that nobody has heard it
 
 let newestStop = 0;
 
-/** Stops all robots, and tells of it until each has confirmed or the time is over. */
+/** Stops all robots, and reports it until each has confirmed or the time is over. */
 export async function stopAll() {
   const stopNumber = ++newestStop;
   const began_ms = performance.now();

@@ -110,7 +110,7 @@ export class SensorWatch {
     this.#stopWatching();
   }
 
-  /** @param {RobotEvent} event @param {boolean} isTyped it tells of a line that somebody has typed @returns {boolean} whether nobody else is to hear of it */
+  /** @param {RobotEvent} event @param {boolean} isTyped it reports a line that somebody has typed @returns {boolean} whether nobody else is to hear of it */
   onEvent({ event, program: checksum = '', value = '', at: offset = -1, cause, rows = [] }, isTyped) {
     if (event === 'READING') this.#takeRead(rows);
     else if (ENDS.includes(event)) this.#read.clear();

@@ -3,6 +3,7 @@
 // A moment is a state of the simulator, as text: what has changed since the one before, and all of it every so often.
 
 /** @typedef {import('../python.js').RobotState} RobotState */
+/** @typedef {RobotState & {shown: RobotState['events']}} Moment also what each SHOW has shown last, in the order in which they began to */
 
 const WHOLE_INTERVAL = 16; // of so many moments one is kept whole
 const LEAST_MS = 40; // of the robot's time between two moments in which nothing happens
@@ -19,12 +20,12 @@ export class Moments {
   #eventMoments = [];
   /** @type {number[]} */
   #partMoments = [];
-  /** What has been shown, with its moment. @type {[number, [number, string, number]][]} */
-  #shows = [];
+  /** What each SHOW has shown last. @type {Map<number, RobotState['events'][number]>} */
+  #shown = new Map();
   #characters = 0;
   /** The newest moment, by its keys. @type {Map<string, string>} */
   #lastValues = new Map();
-  /** The moment that was asked for last: a picture of it asks several times. @type {{moment: number, state: RobotState} | null} */
+  /** The moment that was asked for last: a picture of it asks several times. @type {{moment: number, state: Moment} | null} */
   #cachedMoment = null;
 
   /** @param {number} [mostCharacters] characters */
@@ -66,7 +67,7 @@ export class Moments {
     this.#times_ms = [];
     this.#eventMoments = [];
     this.#partMoments = [];
-    this.#shows = [];
+    this.#shown = new Map();
     this.#characters = 0;
     this.#lastValues = new Map();
     this.#cachedMoment = null;
@@ -84,16 +85,17 @@ export class Moments {
     const moment = this.length;
     if (isEvent) this.#eventMoments.push(moment);
     if (isPart) this.#partMoments.push(moment);
-    this.#append(values, state);
+    for (const event of state.events) if (event[1].startsWith('SHOW ')) this.#shown.set(event[2], event);
+    values.set('shown', JSON.stringify([...this.#shown.values()]));
+    this.#append(values, state.now_ms);
     if (this.#characters > this.#mostCharacters) this.#thinOut();
   }
 
   /**
    * @param {Map<string, string>} values
-   * @param {RobotState} state
+   * @param {number} now_ms
    */
-  #append(values, { now_ms, events }) {
-    for (const event of events) if (event[1].startsWith('SHOW ')) this.#shows.push([this.length, event]);
+  #append(values, now_ms) {
     const isWhole = this.length % WHOLE_INTERVAL === 0;
     const changedEntries = [...values].filter(([key, value]) => isWhole || this.#lastValues.get(key) !== value);
     const row = `{${changedEntries.map(([key, value]) => `"${key}":${value}`).join()}}`;
@@ -111,20 +113,22 @@ export class Moments {
     const firstKept = keptIndexes.length > 0.9 * this.length ? Math.floor(keptIndexes.length / 2) : 0;
     const moments = keptIndexes.slice(firstKept).map((k) => ({ k, state: this.at(k) }));
     const events = new Set(this.#eventMoments), parts = new Set(this.#partMoments);
+    const shown = this.#shown;
     this.begin();
+    this.#shown = shown;
     for (const { k, state } of moments) {
       if (events.has(k)) this.#eventMoments.push(this.length);
       if (parts.has(k)) this.#partMoments.push(this.length);
-      this.#append(new Map(Object.entries(state).map(([key, value]) => [key, JSON.stringify(value)])), state);
+      this.#append(new Map(Object.entries(state).map(([key, value]) => [key, JSON.stringify(value)])), state.now_ms);
     }
   }
 
-  /** @param {number} moment a moment @returns {RobotState} */
+  /** @param {number} moment a moment @returns {Moment} */
   at(moment) {
     if (this.#cachedMoment?.moment === moment) return this.#cachedMoment.state;
     const state = {};
     for (let index = moment - (moment % WHOLE_INTERVAL); index <= moment; index += 1) Object.assign(state, JSON.parse(this.#stateDiffs[index] ?? '{}'));
-    this.#cachedMoment = { moment, state: /** @type {RobotState} */ (state) };
+    this.#cachedMoment = { moment, state: /** @type {Moment} */ (state) };
     return this.#cachedMoment.state;
   }
 
@@ -151,11 +155,6 @@ export class Moments {
   neighbourOf(moment, direction, moments) {
     if (direction < 0) return moments[countUntil(moments, moment - 1) - 1] ?? 0;
     return moments[countUntil(moments, moment)] ?? Math.max(0, this.length - 1);
-  }
-
-  /** @param {number} moment @returns {[number, string, number][]} what has been shown until a moment */
-  shownUntil(moment) {
-    return this.#shows.slice(0, countUntil(this.#shows.map(([moment]) => moment), moment)).map(([, event]) => event);
   }
 }
 

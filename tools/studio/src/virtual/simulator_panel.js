@@ -1,4 +1,4 @@
-// The part of the page with the virtual robot: its buttons, its picture and what is told of it.
+// The part of the page with the virtual robot: its buttons, its picture and what is said about it.
 
 import { Arena } from './arena.js';
 import { sayOnBlocks } from '../blocks/said.js';
@@ -361,7 +361,7 @@ export class SimulatorPanel {
   #lookBack() {
     if (this.#simulator.phase === 'running') this.#pauseRun();
     this.#arena.showBubble('', 0);
-    this.#pastShownValues = this.#keepShownValues(new Map(), this.#timeLine.showsUntilSeen);
+    this.#pastShownValues = this.#keepShownValues(new Map(), this.#timeLine.shown);
     this.#show();
   }
 
@@ -373,7 +373,7 @@ export class SimulatorPanel {
       this.#drawTrack(this.#newestRun);
     }
     this.#timeLine.leave();
-    this.#keepShownValues(this.#shownValues, this.#timeLine.showsUntilSeen);
+    this.#keepShownValues(this.#shownValues, this.#timeLine.shown);
     this.#show();
   }
 
@@ -578,9 +578,9 @@ export class SimulatorPanel {
   }
 
   #show() {
-    const { phase } = this.#simulator, state = this.#shownState;
+    const { phase } = this.#simulator;
+    this.#arena.draw(this.#shownState); // first: writing on a canvas has the browser compute the style that changes made stale
     this.#showReadings();
-    this.#arena.draw(state);
     document.documentElement.dataset['phase'] = phase;
     this.#offerRemote();
     if (!this.#isDriving) this.#onRunOver();

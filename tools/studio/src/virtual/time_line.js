@@ -47,9 +47,10 @@ export class TimeLine {
     return this.#seen_ms === null ? null : this.#run.moments.at(this.#seenMoment);
   }
 
-  /** What had been shown then. */
-  get showsUntilSeen() {
-    return this.#run.moments.shownUntil(this.#seenMoment);
+  /** What each SHOW had shown last at the moment that is looked at, or has by now; the newest is the last. @returns {RobotState['events']} */
+  get shown() {
+    const { shown = [] } = this.#run.moments.at(this.#seenMoment);
+    return [...shown, ...shown.toSorted(([a_ms], [b_ms]) => a_ms - b_ms)]; // a name keeps the place where it was first
   }
 
   get #seenMoment() {
@@ -76,7 +77,8 @@ export class TimeLine {
       Object.assign(this.#slider, { min: '0', max: '0', value: '0' }); // it has no moment of the run before
       return;
     }
-    Object.assign(this.#slider, { min: String(first_ms), max: String(last_ms) });
+    if (this.#slider.min !== String(first_ms)) this.#slider.min = String(first_ms);
+    if (this.#slider.max !== String(last_ms)) this.#slider.max = String(last_ms);
     const { now_ms, began_ms } = this.#run.moments.at(this.#seenMoment);
     this.#slider.value = String(now_ms);
     const seconds = ((now_ms - (began_ms ?? now_ms)) / 1000).toFixed(1);

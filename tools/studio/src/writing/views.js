@@ -435,7 +435,7 @@ export class Views {
     await this.#waitForHand();
     await this.#sending;
     if (this.#isTouched) {
-      this.#changeCount ||= 1; // Blockly tells of it a moment later
+      this.#changeCount ||= 1; // Blockly reports it a moment later
       await this.#sendBlocks();
     }
     await this.#group?.settle();

@@ -103,7 +103,7 @@ void TiniLink::take(bool is_live) {
   status_.saved = Saved::kMemory;
 }
 
-void TiniLink::has_checksum(const uint8_t* image) {
+void TiniLink::take_checksum(const uint8_t* image) {
   if (image == held()) status_.program = checksum_of(image);
 }
 
@@ -162,7 +162,7 @@ uint8_t* port_memory(uint16_t length, bool is_live) { return only->memory(length
 bool port_may_write_ahead() { return !only->is_running(); }
 void port_forget() { only->forget(); }
 void port_take(uint8_t, bool is_live) { only->take(is_live); }
-void port_has_checksum(const uint8_t* image) { only->has_checksum(image); }
+void port_take_checksum(const uint8_t* image) { only->take_checksum(image); }
 void port_start(bool is_live) { only->start(is_live); }
 void port_end() { only->prepare_upload(); }
 void port_stop(uint8_t fault) { only->stop(fault); }

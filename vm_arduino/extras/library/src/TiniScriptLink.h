@@ -33,7 +33,7 @@ class TiniLink {
   uint8_t* memory(uint16_t length, bool is_live);
   void forget();
   void take(bool is_live);
-  void has_checksum(const uint8_t* image);
+  void take_checksum(const uint8_t* image);
   void start(bool is_live);
   void end(tiniscript::State state);
   void stop(uint8_t fault);

@@ -91,13 +91,13 @@ void watchdog_begin() {
   SREG = before;
 }
 
-bool watchdog_has_stalled() {
+bool watchdog_take_stall() {
   const bool found = has_stalled;
   has_stalled = false;
   return found;
 }
 
-bool watchdog_has_hung(Place* place) {
+bool watchdog_take_hang(Place* place) {
   if (!has_hung) return false;
   has_hung = false;
   *place = last.place;

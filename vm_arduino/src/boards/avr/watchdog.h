@@ -23,15 +23,11 @@ tini_always_inline void watchdog_feed() {
   clock.silence_ms = 0;
 }
 
-// Triggers the interrupt that turns everything off: the main loop has hung for more than kStallMs.
-// Call it from an interrupt.
-tini_always_inline void watchdog_is_stalled() { TIMSK0 |= 1 << OCIE0A; }
-
 // Whether the main loop has hung since the last call.
-bool watchdog_has_stalled();
+bool watchdog_take_stall();
 
 // Whether the watchdog has restarted the chip, and what ran then. Reported once.
-bool watchdog_has_hung(Place* place);
+bool watchdog_take_hang(Place* place);
 
 Reset watchdog_reset_cause();
 

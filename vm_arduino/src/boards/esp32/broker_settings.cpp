@@ -129,7 +129,7 @@ Answer broker_forget() {
   return broker_is_set() ? kept.keep(wanted) : Answer::kOk;
 }
 
-void broker_has_memory(bool is_so) { lacks_memory = !is_so; }
+void broker_note_memory(bool has_memory) { lacks_memory = !has_memory; }
 
 // What it says of those before is over when the main loop learns that it has taken these.
 bool broker_changed(BrokerSettings* broker_settings) {

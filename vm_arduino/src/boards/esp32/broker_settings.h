@@ -38,7 +38,7 @@ Answer broker_set(WifiStep step, const uint8_t* text, uint8_t length);
 Answer broker_forget();
 
 // The main loop's: whether there was memory for the broker's task.
-void broker_has_memory(bool is_so);
+void broker_note_memory(bool has_memory);
 
 // The broker's task: whether the settings have changed since the last call; then they are in
 // `*broker_settings`.

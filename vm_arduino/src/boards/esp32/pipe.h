@@ -57,7 +57,7 @@ class Ring {
   Item items_[kPlaces];
 };
 
-// How often one has told another something. It wraps around to 0.
+// How many times one has told another something. It wraps around to 0.
 class Tally {
  public:
   // The writer's.

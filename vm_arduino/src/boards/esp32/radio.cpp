@@ -77,7 +77,7 @@ void begin_broker() {
   has_broker = begin(kBrokerRadio);
   has_broker_failed = !has_broker;
   broker_failed_ms = now_ms;
-  broker_has_memory(has_broker);
+  broker_note_memory(has_broker);
 }
 
 // On a chip with one core the main loop would leave the idle task no turn, and that frees what tasks

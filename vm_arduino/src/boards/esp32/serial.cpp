@@ -43,7 +43,7 @@ constexpr Pin kReceive = {3};
 // received, is held low.
 constexpr uint8_t kLowMs = static_cast<uint8_t>(10000 / kBaud + 3);
 
-// The driver hands a byte over before so many, and tells of its framing error at once.
+// The driver hands a byte over before so many, and reports its framing error at once.
 constexpr uint8_t kFifoMs = static_cast<uint8_t>(128 * 10000 / kBaud + 1);
 
 // The core's task counts, the main loop reads.

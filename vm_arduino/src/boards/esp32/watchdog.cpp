@@ -42,7 +42,7 @@ bool is_fed;  // since the timer's task has looked
 bool is_hanging;
 bool has_stalled;
 
-uint8_t missed;  // the timer's: how often it has looked since
+uint8_t missed;  // the timer's: how many times it has looked since
 
 template <class Value>
 Value read(const Value& from) {
@@ -144,13 +144,13 @@ void watchdog_feed() {
   esp_task_wdt_reset();
 }
 
-bool watchdog_has_stalled() {
+bool watchdog_take_stall() {
   if (!read(has_stalled)) return false;
   write_to(&has_stalled, false);
   return true;
 }
 
-bool watchdog_has_hung(Place* place) {
+bool watchdog_take_hang(Place* place) {
   if (!has_hung) return false;
   has_hung = false;
   *place = last.place;

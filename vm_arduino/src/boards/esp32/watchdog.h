@@ -21,10 +21,10 @@ void panic_begin();  // of `panic.cpp`
 void watchdog_feed();
 
 // Whether the main loop has hung since the last call.
-bool watchdog_has_stalled();
+bool watchdog_take_stall();
 
 // Whether a watchdog has restarted the chip, and what ran then. Reported once.
-bool watchdog_has_hung(Place* place);
+bool watchdog_take_hang(Place* place);
 
 Reset watchdog_reset_cause();
 
