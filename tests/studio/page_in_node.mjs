@@ -264,6 +264,7 @@ class Matrix {
 const stands = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
 for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Details', 'Form', 'Dialog', 'TextArea']) stands(`HTML${kind}Element`, Part);
 stands('Element', Part);
+stands('Text', class {}); // what is said in a part is a string
 stands('DOMMatrix', Matrix);
 stands('setTimeout', setLater);
 stands('clearTimeout', clearLater);

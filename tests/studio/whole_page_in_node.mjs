@@ -179,12 +179,13 @@ async function opens(stores) {
   const phone = Object.assign(new EventTarget(), { matches: false });
   globalThis.matchMedia = (query) => (query.includes('max-width: 700px') ? phone : Object.assign(new EventTarget(), { matches: false }));
   globalThis.confirm = () => true;
-  let isLoaded = false;
-  page.load('main.js').then(() => { isLoaded = true; });
-  while (!isLoaded) {
+  let isComing = true;
+  const loading = page.load('main.js').finally(() => { isComing = false; });
+  while (isComing) {
     await settles();
     await passes(5);
   }
+  await loading;
   await passes(500);
   const { pageState } = await page.load('page/page_state.js');
   const { summaryOf } = await page.load('writing/messages.js');
