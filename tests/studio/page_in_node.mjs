@@ -21,6 +21,7 @@ const PLAYED = {
   'robot/host.js': ['HostRobot', 'hasHost', 'fetchPorts', 'isPupil', 'isTeacher', 'post'],
   'robot/serial.js': ['hasSerial', 'choosePort', 'listKnownPorts', 'SerialPort'],
   'robot/flash.js': ['fetchFirmwares', 'loadFirmware', 'flashBoard'],
+  '@codemirror/view': ['Decoration', 'EditorView', 'GutterMarker', 'WidgetType', 'gutter', 'highlightActiveLine', 'keymap', 'lineNumbers'],
   pyodide: ['loadPyodide'],
   'lean-qr': ['generate', 'correction'],
 };
@@ -32,12 +33,12 @@ registerHooks({
   resolve(specifier, context, next) {
     const query = /\?page=\d+$/.exec(context.parentURL ?? '')?.[0];
     if (!query) return next(specifier, context);
-    const name = Object.keys(PLAYED).find((each) => specifier === each || specifier.endsWith(`/${each.split('/')[1]}`));
+    const name = Object.keys(PLAYED).find((each) => specifier === each || (!each.startsWith('@') && specifier.endsWith(`/${each.split('/')[1]}`)));
     if (name && PLAYED[name][0] in played) return { url: `played:${name}${query}`, shortCircuit: true };
     if (specifier.endsWith('/pyodide.asm.mjs')) return { url: 'data:text/javascript,', shortCircuit: true };
     if (specifier.endsWith('.json')) return { url: `made:${specifier.split('/').at(-1)}${query}`, shortCircuit: true };
     const found = next(specifier, context);
-    return { ...found, url: found.url + query };
+    return found.url.includes('/node_modules/') ? found : { ...found, url: found.url + query };
   },
   load(url, context, next) {
     const [kind, name] = url.replace(/\?page=\d+$/, '').split(/:(.*)/s);
@@ -93,7 +94,40 @@ export async function passes(ms) {
 
 // -- a browser
 
-class Part extends EventTarget {
+/** Who captures an event hears it first, from the window inwards; where it bubbles, the others hear it outwards. */
+class Heard extends EventTarget {
+  #capturing = {};
+
+  addEventListener(kind, does, options) {
+    if (options?.capture) (this.#capturing[kind] ??= []).push(does);
+    else super.addEventListener(kind, does, options);
+  }
+
+  dispatchEvent(event) {
+    let isStopped = false;
+    for (const name of ['stopPropagation', 'stopImmediatePropagation']) {
+      const stops = event[name];
+      event[name] = () => {
+        isStopped = true;
+        stops.call(event);
+      };
+    }
+    const path = [this];
+    if (event.bubbles) {
+      for (let part = this.parent; part; part = part.parent) path.push(part);
+      path.push(document, document.heard);
+      Object.defineProperty(event, 'target', { value: this, configurable: true });
+      event.composedPath = () => path;
+    }
+    for (const each of path.toReversed()) for (const does of each.#capturing[event.type] ?? []) if (!isStopped) does(event);
+    for (const each of path) if (!isStopped) EventTarget.prototype.dispatchEvent.call(each, event);
+    return !event.defaultPrevented;
+  }
+}
+
+class Part extends Heard {
+  localName = '';
+  className = '';
   dataset = {};
   children = [];
   files = [];
@@ -111,9 +145,16 @@ class Part extends EventTarget {
   set src(address) { this.attributes['src'] = address; }
   get parentElement() { return this.parent; }
   get lastElementChild() { return this.children.at(-1); }
-  append(...parts) {
-    for (const each of parts) if (each instanceof Part) each.parent = this;
-    this.children.push(...parts);
+  append(...parts) { this.#put(this.children.length, parts); }
+  prepend(...parts) { this.#put(0, parts); }
+  after(...parts) { this.parent?.#put(this.parent.children.indexOf(this) + 1, parts); }
+  #put(index, parts) {
+    const next = this.children.slice(index).find((each) => !parts.includes(each));
+    for (const each of parts) if (each instanceof Part) {
+      each.parent?.children.splice(0, Infinity, ...each.parent.children.filter((other) => other !== each));
+      each.parent = this;
+    }
+    this.children.splice(next === undefined ? this.children.length : this.children.indexOf(next), 0, ...parts);
   }
   replaceChildren(...parts) {
     this.children = [];
@@ -123,16 +164,30 @@ class Part extends EventTarget {
     this.append(part);
     return part;
   }
-  before(part) { this.placedBefore = part; }
+  before(...parts) {
+    [this.placedBefore] = parts;
+    this.parent?.#put(this.parent.children.indexOf(this), parts);
+  }
   remove() { this.parent.children = this.parent.children.filter((each) => each !== this); }
-  setAttribute(name, value) { this.attributes[name] = value; }
-  removeAttribute(name) { delete this.attributes[name]; }
-  getAttribute(name) { return this.attributes[name] ?? null; }
+  setAttribute(name, value) {
+    this.attributes[name] = value;
+    if (name.startsWith('data-')) this.dataset[keyOf(name)] = value;
+  }
+  removeAttribute(name) {
+    delete this.attributes[name];
+    if (name.startsWith('data-')) delete this.dataset[keyOf(name)];
+  }
+  getAttribute(name) { return (name.startsWith('data-') ? this.dataset[keyOf(name)] : this.attributes[name]) ?? null; }
   click() { this.dispatchEvent(new Event('click')); }
-  focus() {}
+  focus() { document.activeElement = this; }
   select() {}
   setPointerCapture() {}
-  toggleAttribute() {}
+  getContext() { return null; }
+  attachShadow() { return new Part(); }
+  toggleAttribute(name, isOn) {
+    if (isOn) this.setAttribute(name, '');
+    else this.removeAttribute(name);
+  }
   showModal() { this.open = true; }
   close() {
     if (!this.open) return;
@@ -140,6 +195,20 @@ class Part extends EventTarget {
     this.dispatchEvent(new Event('close'));
   }
   contains(part) { return part === this || this.children.some((each) => each instanceof Part && each.contains(part)); }
+  /** Of a selector each of tag, #id, .class and [name=value], one of several that commas part. */
+  matches(selector) {
+    return selector.split(',').some((each) => {
+      const found = /^([\w-]+)?(?:#([\w-]+))?(?:\.([\w-]+))?(?:\[([\w-]+)(?:=([^\]]*))?\])?$/.exec(each.trim());
+      if (!found) return false;
+      const [, tag, id, className, name, value] = found;
+      const had = name && (typeof this[name] === 'boolean' ? (this[name] ? '' : null) : this.getAttribute(name));
+      return (!tag || tag === this.localName) && (!id || id === this.id) && (!className || this.className.split(' ').includes(className))
+        && (!name || (value === undefined ? had !== null : had === value));
+    });
+  }
+  closest(selector) { return this.matches(selector) ? this : this.parent?.closest(selector) ?? null; }
+  querySelectorAll(selector) { return this.children.filter((each) => each instanceof Part).flatMap((each) => [...each.matches(selector) ? [each] : [], ...each.querySelectorAll(selector)]); }
+  checkVisibility() { return !this.hidden && (this.parent?.checkVisibility() ?? true); }
   insertBefore(part, next) {
     this.children = this.children.filter((each) => each !== part);
     part.parent = this;
@@ -147,9 +216,18 @@ class Part extends EventTarget {
   }
 }
 
+const keyOf = (name) => name.slice('data-'.length).replace(/-(\w)/g, (_, letter) => letter.toUpperCase());
+
 class Store {
   #kept = new Map();
   room = Infinity; // characters
+  constructor() {
+    return new Proxy(this, { // its places are its keys
+      get: (_, name) => (typeof this[name] === 'function' ? this[name].bind(this) : this[name]),
+      ownKeys: () => [...this.#kept.keys()],
+      getOwnPropertyDescriptor: (_, name) => (this.#kept.has(name) ? { value: this.#kept.get(name), enumerable: true, configurable: true } : undefined),
+    });
+  }
   getItem(key) { return this.#kept.get(key) ?? null; }
   /** How many characters there is room for at a place. */
   roomFor(key) { return this.room - [...this.#kept].reduce((sum, [each, whole]) => sum + (each === key ? 0 : whole.length), 0); }
@@ -158,6 +236,7 @@ class Store {
     this.#kept.set(key, value);
   }
   removeItem(key) { this.#kept.delete(key); }
+  [Symbol.iterator]() { return this.#kept[Symbol.iterator](); }
 }
 
 /** A matrix of the plane, with what the page asks of one. */
@@ -184,6 +263,8 @@ class Matrix {
 
 const stands = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
 for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Details', 'Form', 'Dialog', 'TextArea']) stands(`HTML${kind}Element`, Part);
+stands('Element', Part);
+stands('Text', class {}); // what is said in a part is a string
 stands('DOMMatrix', Matrix);
 stands('setTimeout', setLater);
 stands('clearTimeout', clearLater);
@@ -200,21 +281,46 @@ const goesTo = (_, __, address) => { location.hash = new URL(address, location.h
 stands('history', { replaceState: goesTo, pushState: goesTo });
 AbortSignal.timeout = () => new AbortController().signal;
 
+/** The elements of a page that a browser makes of its HTML, from the whole of which they hang. */
+function partsOf(html) {
+  const whole = new Part();
+  let inner = whole;
+  for (const [, isEnd, tag, words, isEmpty, said] of html.matchAll(/<(\/?)([a-z]\w*)((?:\s+[\w-]+(?:="[^"]*")?)*)\s*(\/?)>|([^<>]+)/gi)) {
+    if (said !== undefined) {
+      if (said.trim()) inner.textContent += said;
+    } else if (isEnd) inner = inner.parent;
+    else {
+      const part = Object.assign(new Part(), { localName: tag });
+      for (const [, name, value = ''] of words.matchAll(/([\w-]+)(?:="([^"]*)")?/g)) {
+        part.setAttribute(name, value);
+        if (['hidden', 'disabled', 'open'].includes(name)) part[name] = true;
+        if (['id', 'value', 'type', 'title'].includes(name)) part[name] = value;
+        if (name === 'class') part.className = value;
+      }
+      inner.append(part);
+      if (!isEmpty && !['meta', 'link', 'input'].includes(tag)) inner = part;
+    }
+  }
+  return whole;
+}
+
 let pages = 0;
-/** Loads the page anew; what is played is as given. @returns how its modules are imported, and its elements by their ids */
-export function freshPage(given = {}) {
+/** Loads the page anew; what is played is as given. @param {string} html of which it is made; else it has whatever is asked for @returns how its modules are imported, and its elements by their ids */
+export function freshPage(given = {}, html = '') {
   const query = `?page=${(pages += 1)}`;
-  const parts = new Map();
+  const whole = partsOf(html);
+  const parts = new Map(whole.querySelectorAll('[id]').map((part) => [part.id, part]));
   const byId = (id) => parts.get(id) ?? parts.set(id, new Part()).get(id);
   played = given;
   timers = [];
   stands('window', Object.assign(new EventTarget(), { setTimeout: setLater, setInterval: every, sessionStorage: new Store(), localStorage: new Store() }));
-  const heard = new EventTarget();
+  const heard = new Heard();
   for (const name of ['addEventListener', 'dispatchEvent']) stands(name, heard[name].bind(heard));
-  stands('document', Object.assign(new EventTarget(), {
-    documentElement: new Part(), body: new Part(), getElementById: byId, querySelectorAll: () => [],
-    createElement: () => new Part(), createElementNS: () => new Part(),
-    visibilityState: 'visible', hidden: false, querySelector: byId,
+  stands('document', Object.assign(new Heard(), {
+    heard,
+    documentElement: whole.children[0] ?? new Part(), body: whole.querySelectorAll('body')[0] ?? new Part(), getElementById: byId, querySelectorAll: (selector) => whole.querySelectorAll(selector),
+    createElement: (tag) => Object.assign(new Part(), { localName: tag }), createElementNS: (_, tag) => Object.assign(new Part(), { localName: tag }),
+    visibilityState: 'visible', hidden: false, querySelector: html ? (selector) => whole.querySelectorAll(selector)[0] ?? null : byId,
   }));
   const load = (name) => import(pathToFileURL(`${sources}/${name}`).href + query);
   return { load, byId };
@@ -248,4 +354,57 @@ export function chanceOf(seed) {
   chance.below = (most) => Math.floor(chance() * most);
   chance.of = (list) => list[chance.below(list.length)];
   return chance;
+}
+
+export const PROGRAM = { image: '00ff', places: [[0, 1, 1, 1, 9]], shows: [[0, 'X', 1, 1, false, false]], variables: [{ name: 'X', is_yes_no: false }], remote: ['KEY_A'] };
+
+/** As the worker's: each picture of it goes on, bumps, says and ends. */
+export function virtualRobot(chance, isGood) {
+  let now_ms = 0;
+  let fault = '';
+  let bumps = 0;
+  const ends_ms = 300 + chance.below(3000);
+  let isStopped = false;
+  let isHeld = false;
+  const does = isGood ? chance.of(['runs', 'runs', 'refused', 'fault']) : chance.of(['runs', 'refused', 'breaks', 'fault']);
+  return {
+    does,
+    breaks: () => does === 'breaks' && chance() < 0.3,
+    answer(request) {
+      const events = [];
+      if (request.do === 'power_on') {
+        if (does === 'refused') return { refused: ['no place'] };
+        events.push([0, 'START']);
+        isStopped = false;
+        isHeld = request.is_held;
+      }
+      if (request.do === 'go_on') isHeld = false;
+      if (request.do === 'stop') {
+        isStopped = true;
+        events.push([now_ms, 'STOP']);
+      }
+      const duration_ms = isHeld || isStopped ? 0 : request.duration_ms ?? (request.do === 'step' ? 20 : 0);
+      now_ms += duration_ms;
+      if (duration_ms && chance() < 0.3) events.push([now_ms, `SHOW ${chance.below(9)}`, 0]);
+      if (duration_ms && chance() < 0.2) events.push([now_ms, `BEEP 440 ${chance.below(900)}`]);
+      if (duration_ms && chance() < 0.2) bumps += 1;
+      if (now_ms > ends_ms && does === 'fault') fault = 'STUCK';
+      return {
+        now_ms, began_ms: 0, pose: [0, 0, 0], motors: [0, 0], is_running: !isStopped && now_ms < ends_ms, is_waiting: false,
+        is_held: isHeld, fault, fault_at: fault ? 0 : null, at: 0, places: [0], bumps, touches: null, score: null, actuators: [],
+        readings: [], variables: [now_ms], events,
+      };
+    },
+  };
+}
+
+const AROUND = 150; // characters
+
+/** What is seen of both, from where they differ. */
+export function compared(after, alone) {
+  const [a, b] = [JSON.stringify(after), JSON.stringify(alone)];
+  let at = 0;
+  while (at < a.length && a[at] === b[at]) at += 1;
+  const from = Math.max(0, at - AROUND);
+  return { after: a.slice(from, at + AROUND), alone: b.slice(from, at + AROUND), isSame: a === b, length: b.length };
 }

@@ -2,8 +2,9 @@
 // then another one; a page that was just loaded does only that. Prints a JSON row for each seed: how the first one has
 // ended, and what is seen of the other one, after the first one and by itself.
 
+import { readFileSync } from 'node:fs';
 import { pathToFileURL } from 'node:url';
-import { chanceOf, freshPage, later, learns, noting, now, passes, playsFetch, playsNavigator, settles, sources, words } from './page_in_node.mjs';
+import { chanceOf, compared, freshPage, later, learns, noting, now, passes, playsFetch, playsNavigator, PROGRAM, settles, sources, virtualRobot, words } from './page_in_node.mjs';
 
 const [part, seeds] = words;
 const unhandled = [];
@@ -165,6 +166,7 @@ const PARTS = {
       const has = { text: '', place: -1, isUp: false };
       const wanted = { place: -1, isUp: false };
       let turns = 0;
+      let joins = 0;
       let over = '';
       let late = 0; // asked after the class was over
       let isCalm = false; // nothing is lost
@@ -173,7 +175,11 @@ const PARTS = {
       const told = isGood && { key: 'one', text: 'given', robot: 'tinibot', lessons: [] };
       room = {
         async asked(by, request) {
-          if (request.do === 'join') return answers({ token });
+          if (request.do === 'join') {
+            joins += 1;
+            await later(20);
+            return answers({ token });
+          }
           if (by !== token) { // a look of the class before
             await later(1);
             return { ok: false, status: 403 };
@@ -200,8 +206,10 @@ const PARTS = {
         writes: () => { work.text = `F(${chance.below(1000)})`; },
         nothing: () => {},
       };
-      join.dispatchEvent(new Event('submit', { cancelable: true }));
-      await settles();
+      for (let k = chance.of([1, 2]); k > 0; k -= 1) join.dispatchEvent(new Event('submit', { cancelable: true }));
+      await passes(30);
+      if (joins > 1) throw new Error(`who presses twice is ${joins} pupils`);
+      if (hand.hidden) throw new Error('in a class nobody can ask for help');
       if (isGood && chance() < 0.5) presses.hand(); // before the class has said how it is
       await passes(500);
       for (let k = 1 + chance.below(4); k > 0; k -= 1) {
@@ -212,6 +220,7 @@ const PARTS = {
       ends = end;
       for (let k = chance.below(isGood ? 1 : 4); k > 0; k -= 1) chance.of([ask, quit, hand]).click();
       while (!isGood && join.hidden) await passes(50 + chance.below(50));
+      if (!isGood && ![hand, ask, quit, connect].every(({ hidden }) => hidden)) throw new Error('outside of a class there are its buttons');
       if (!isGood) return { ends: [ends], seen: [] };
       presses.writes();
       await passes(2);
@@ -830,7 +839,7 @@ const PARTS = {
     /** Who is in the class, by name. @type {Map<string, {number: number, text: string, version: number}>} */
     const here = new Map();
     const kept = new Map();
-    const seenLarge = () => large.open && [large.children[0].children[0].textContent, large.children[1].children[1].textContent, open.get(large.children[1].children[0].children[0].src)];
+    const seenLarge = () => large.open && [large.querySelectorAll('h2')[0].textContent, large.children[1].children[1].textContent, open.get(large.children[1].children[0].children[0].src)];
     return async (chance, isGood) => {
       let lost = false;
       let isLate = () => !isGood;
@@ -2294,6 +2303,126 @@ const PARTS = {
     };
   },
 
+  // One build of the page after another, in a browser that keeps them: without a network, the newest one that could be
+  // had is there whole, and so is each language that was seen, whatever was kept there before; and no older build is.
+  async builds() {
+    const source = readFileSync(`${sources}/service_worker.js`, 'utf-8');
+    const FILES = ['./', 'main.js'];
+    const LANGUAGES = { es: ['es.json', 'es.zip'], pt: ['pt.json', 'pt.zip'] };
+    /** What a browser keeps for an address, by the name of each store. @type {Map<string, Map<string, string>>} */
+    let kept = new Map();
+    let served = 0;
+    let loses = () => false;
+    const fetches = async (name) => {
+      await later(5);
+      if (loses()) throw new Broken();
+      return `${name} of ${served}`;
+    };
+    const nameOf = (request) => request.name ?? request;
+    const storeOf = (all) => ({
+      match: async (request) => all.get(nameOf(request)),
+      async addAll(requests) {
+        const found = await Promise.all(requests.map(async (each) => [nameOf(each), await fetches(nameOf(each))]));
+        for (const [name, content] of found) all.set(name, content);
+      },
+    });
+    const caches = {
+      async open(name) {
+        if (!kept.has(name)) kept.set(name, new Map());
+        return storeOf(kept.get(name));
+      },
+      match: async (name) => [...kept.values()].map((all) => all.get(name)).find(Boolean),
+      delete: async (name) => kept.delete(name),
+      keys: async () => [...kept.keys()],
+    };
+    class Request { constructor(name) { this.name = name; } }
+    /** The worker of a build. @returns {(kind: string, more?: object) => Promise<any>} */
+    const worker = (version) => {
+      const heard = new Map();
+      const self = { addEventListener: (kind, does) => heard.set(kind, does), clients: { claim: async () => {} } };
+      new Function('self', 'caches', 'fetch', 'Request', 'VERSION', 'FILES', 'LANGUAGES', source)(self, caches, (request) => fetches(nameOf(request)), Request, `v${version}`, FILES, LANGUAGES);
+      return async (kind, more = {}) => {
+        let done = null;
+        const takes = (promise) => { done = promise; };
+        heard.get(kind)({ waitUntil: takes, respondWith: takes, ...more });
+        return done;
+      };
+    };
+    return async (chance, isGood) => {
+      kept = new Map([['of others', new Map([['./', 'theirs']])]]);
+      const ends = new Set();
+      let open = null; // the build that the page is of
+      let version = 0;
+      const seen = new Set(); // its languages
+      const ended = async (promise) => {
+        let isDone = null;
+        promise.then(() => { isDone = true; }, () => { isDone = false; });
+        await passes(50);
+        return isDone;
+      };
+      for (let k = 3 + chance.below(8); k > 0; k -= 1) {
+        loses = () => !isGood && chance() < 0.15;
+        const act = chance.of(open ? ['builds', 'speaks', 'speaks', 'stranger'] : ['builds']);
+        if (act === 'stranger') kept.set(`tiniscript-studio-v${served + 1}`, new Map([...FILES, 'es.json', './?'].map((name) => [name, 'a stranger has put it there'])));
+        if (act === 'speaks') {
+          const language = chance.of(Object.keys(LANGUAGES));
+          if (await ended(open('message', { data: language }))) seen.add(language);
+        }
+        if (act === 'builds') {
+          served += 1;
+          const next = worker(served);
+          const isThere = await ended(next('install'));
+          if (isThere) {
+            [open, version] = [next, served];
+            await ended(open('activate'));
+            if (`${[...kept.keys()].sort()}` !== `of others,tiniscript-studio-v${version}`) throw new Error(`it keeps ${[...kept.keys()]} of ${version}`);
+          }
+          ends.add(isThere ? 'installed' : 'lost');
+        }
+        if (!open) continue;
+        loses = () => true;
+        if (await open('fetch', { request: { name: './robots', method: 'POST' } })) throw new Error('it answers for the server');
+        for (const name of ['./?', ...FILES, ...[...seen].flatMap((language) => LANGUAGES[language])]) {
+          let answer = '';
+          open('fetch', { request: { name, method: 'GET' } }).then((found) => { answer = found; }, () => {});
+          await passes(20);
+          if (answer.startsWith('a stranger')) throw new Error(`${name} is what a stranger has left`);
+          if (name !== './?' && !(FILES.includes(name) ? [`${name} of ${version}`] : Array.from({ length: served }, (_, n) => `${name} of ${n + 1}`)).includes(answer)) throw new Error(`without a network ${name} of ${version} is ${answer}`);
+        }
+      }
+      return { ends: [...ends], seen: [] };
+    };
+  },
+
+  // What this page keeps on a device, until it forgets all: what was put at a place last is there, for the tab and for all
+  // of them; then nothing of it is on the device, what others keep is, and the page goes on with what it puts there.
+  async kept() {
+    const page = freshPage();
+    const { forgetAll, loadText, storeText } = await page.load('page/kept.js');
+    const wanted = new Map();
+    return async (chance, isGood) => {
+      const stores = ['localStorage', 'sessionStorage'];
+      const places = ['tiniscript.a', 'tiniscript.b'];
+      if (!isGood) for (const store of stores) window[store].setItem('theirs', store);
+      const puts = (count) => {
+        for (let k = count; k > 0; k -= 1) {
+          const [store, place, value] = [chance.of(stores), chance.of(places), chance.of(['', 'x', 'y'])];
+          if (storeText(place, value, store)) wanted.set(store + place, value);
+          for (const each of stores) for (const other of places) if (loadText(other, each) !== (wanted.get(each + other) ?? '')) throw new Error(`${loadText(other, each)} is at ${each} ${other}`);
+        }
+      };
+      puts(chance.below(8));
+      if (isGood) return { ends: ['goes on'], seen: [] };
+      forgetAll();
+      wanted.clear();
+      puts(chance.below(8));
+      const left = stores.flatMap((store) => [...window[store]].map(([place]) => place));
+      if (`${left}` !== 'theirs,theirs') throw new Error(`${left} is on the device`);
+      puts(chance.below(8));
+      return { ends: ['forgets'], seen: [] };
+    };
+  },
+
   // One language after another is chosen, over a connection that may fail: the last one is seen, or what was seen before it.
   async languages() {
     const page = freshPage();
@@ -2344,12 +2473,15 @@ const PARTS = {
         isBusy = false;
         focusedLine = 1;
         has = {};
-        layoutText = 'L0';
+        stands = 'L0';
+        next = null; // where those stand that are shown next
         form = { body: [] };
         constructor(_, __, ___, page) {
           Object.assign(this, { page });
           blocks = this;
         }
+        get layoutText() { return this.stands; }
+        set layoutText(layout) { this.next = layout; }
         get lines() { return this.form.body.map((_, line) => [`${line}`, line]); }
         readForm() {
           if (this.isBusy) fails('blocks are read while one is in a hand');
@@ -2361,8 +2493,11 @@ const PARTS = {
           if (form.body.some(({ kind }) => kind === 'grey') && editor.hasFocus && now() - asked_ms > 2500) fails('blocks are made of what somebody is typing');
           this.form = structuredClone(form);
           this.shown = textOf(form);
+          this.setRanges();
           isTyped = hasTouched = false;
-          stood = this.layoutText;
+          this.stands = this.next ?? this.stands;
+          this.next = null;
+          stood = this.stands;
           this.has = {};
         }
         levelOf() { return 'few'; }
@@ -2378,7 +2513,10 @@ const PARTS = {
           this.has[what] = JSON.stringify(value);
         }
         async makePicture() { return textOf(this.form); }
-        setRanges() { if (group) this.shown = textOf(formOf(editor.text)); }
+        setRanges() {
+          this.ranged = textOf(this.form);
+          if (group) this.shown = textOf(formOf(editor.text));
+        }
         showFault() {} setLevel() {} setRobot() {} setTaught() {} setGivenBlocks() {} updateLanguage() {} resize() {} beginProgram() {}
       },
     });
@@ -2386,6 +2524,8 @@ const PARTS = {
     let hasTouched = false; // blocks, since then
     let asked_ms = 0; // for blocks of a text that is wrong, too
     let stood = 'L0'; // where blocks stood then
+    let undone = null; // where an undo has them stand, until they are moved
+    let places = []; // of others
     let past = [];
     let layout = () => {};
     const editor = {
@@ -2413,9 +2553,10 @@ const PARTS = {
         if (hasTouched && !isTyped && !hasFailed) fails('undo comes before what was done to blocks');
         const [text, before, after] = past.pop() ?? [editor.text, '', ''];
         editor.put(text);
+        if (text === blocks.shown) isTyped = false; // it is taken back
         if (before === after) return;
         layout(before);
-        if (blocks.layoutText !== before) fails('an undo leaves blocks where they are');
+        undone = before;
       },
       redo() {},
       onLayoutChange: (does) => { layout = does; },
@@ -2504,7 +2645,8 @@ const PARTS = {
       },
       moves() {
         if (work.view !== 'blocks') return;
-        blocks.layoutText = `L${(count += 1)}`;
+        blocks.stands = `L${(count += 1)}`;
+        undone = null;
         blocks.page.onChange();
       },
       async undoes() {
@@ -2524,7 +2666,10 @@ const PARTS = {
         blocks.page.toggleBreakpoint({});
       },
       runs: () => pageState.virtualRun.set({ ranges: [{ line: (count += 1) }], isHeld: false }),
-      mates: () => views.showMates([{ line: (count += 1) }]),
+      mates() {
+        places = [{ line: (count += 1) }];
+        views.showMates(places);
+      },
       async pictures() {
         const { view } = work;
         let picture;
@@ -2541,7 +2686,7 @@ const PARTS = {
         views.join(group);
       },
       leaves() {
-        [group, mine, hasTouched] = [null, [], false];
+        if (group) [group, mine, hasTouched] = [null, [], false];
         views.join(null);
       },
       waits: () => {},
@@ -2563,6 +2708,9 @@ const PARTS = {
       if (pane.dataset['state'] !== 'shown' || page.byId('blocks_note').textContent) throw new Error(`it says ${pane.dataset['state']} ${page.byId('blocks_note').textContent}`);
       if (pageState.checkResult.value && blocks.has.findings !== JSON.stringify(pageState.checkResult.value.findings)) throw new Error(`${blocks.has.findings} is said at blocks`);
       if (blocks.has.points !== JSON.stringify(pageState.breakpoints.value)) throw new Error('breakpoints are not at blocks');
+      if (!group && blocks.ranged !== text) throw new Error(`their places are those of ${blocks.ranged}`);
+      if (blocks.has.mates !== JSON.stringify(places)) throw new Error('others of the group are not at blocks');
+      if (undone !== null && blocks.stands !== undone) throw new Error(`blocks stand at ${blocks.stands}, and an undo has put them at ${undone}`);
       if (blocks.has.running !== JSON.stringify(pageState.virtualRun.value.ranges)) throw new Error('what runs is not marked at blocks');
       if (group) for (const line of mine) if (!linesOf(editor.text).includes(line)) throw new Error(`${line} is lost`);
     };
@@ -2576,7 +2724,7 @@ const PARTS = {
         editor.hasFocus = false;
         isTyped = true;
         hasFailed = false;
-        blocks.layoutText = 'L0';
+        [blocks.stands, blocks.next, undone] = ['L0', null, null];
         editor.put('first\nsecond');
         pageState.breakpoints.set([]);
         pageState.virtualRun.set({ ranges: [], isHeld: false });
@@ -2714,65 +2862,12 @@ const REAL_SIDE = {
 
 const answers = (found) => ({ ok: true, status: 200, json: async () => found });
 
-const PROGRAM = { image: '00ff', places: [[0, 1, 1, 1, 9]], shows: [[0, 'X', 1, 1, false, false]], variables: [{ name: 'X', is_yes_no: false }], remote: ['KEY_A'] };
-
 /** @returns one that runs */
 function runningRobot(chance) {
   for (;;) {
     const robot = virtualRobot(chance, false);
     if (robot.does === 'runs') return robot;
   }
-}
-
-/** As the worker's: each picture of it goes on, bumps, says and ends. */
-function virtualRobot(chance, isGood) {
-  let now_ms = 0;
-  let fault = '';
-  let bumps = 0;
-  const ends_ms = 300 + chance.below(3000);
-  let isStopped = false;
-  let isHeld = false;
-  const does = isGood ? chance.of(['runs', 'runs', 'refused', 'fault']) : chance.of(['runs', 'refused', 'breaks', 'fault']);
-  return {
-    does,
-    breaks: () => does === 'breaks' && chance() < 0.3,
-    answer(request) {
-      const events = [];
-      if (request.do === 'power_on') {
-        if (does === 'refused') return { refused: ['no place'] };
-        events.push([0, 'START']);
-        isStopped = false;
-        isHeld = request.is_held;
-      }
-      if (request.do === 'go_on') isHeld = false;
-      if (request.do === 'stop') {
-        isStopped = true;
-        events.push([now_ms, 'STOP']);
-      }
-      const duration_ms = isHeld || isStopped ? 0 : request.duration_ms ?? (request.do === 'step' ? 20 : 0);
-      now_ms += duration_ms;
-      if (duration_ms && chance() < 0.3) events.push([now_ms, `SHOW ${chance.below(9)}`, 0]);
-      if (duration_ms && chance() < 0.2) events.push([now_ms, `BEEP 440 ${chance.below(900)}`]);
-      if (duration_ms && chance() < 0.2) bumps += 1;
-      if (now_ms > ends_ms && does === 'fault') fault = 'STUCK';
-      return {
-        now_ms, began_ms: 0, pose: [0, 0, 0], motors: [0, 0], is_running: !isStopped && now_ms < ends_ms, is_waiting: false,
-        is_held: isHeld, fault, fault_at: fault ? 0 : null, at: 0, places: [0], bumps, touches: null, score: null, actuators: [],
-        readings: [], variables: [now_ms], events,
-      };
-    },
-  };
-}
-
-const AROUND = 150; // characters
-
-/** What is seen of both, from where they differ. */
-function compared(after, alone) {
-  const [a, b] = [JSON.stringify(after), JSON.stringify(alone)];
-  let at = 0;
-  while (at < a.length && a[at] === b[at]) at += 1;
-  const from = Math.max(0, at - AROUND);
-  return { after: a.slice(from, at + AROUND), alone: b.slice(from, at + AROUND), isSame: a === b, length: b.length };
 }
 
 for (let seed = 0; seed < Number(seeds); seed += 1) {

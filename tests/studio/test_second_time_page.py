@@ -16,6 +16,7 @@ from tests.support.node import in_node, page_data
 
 __all__ = ["page_data"]  # a fixture
 SCRIPT = Path(__file__).with_name("second_time_in_node.mjs")
+WHOLE_PAGE = Path(__file__).with_name("whole_page_in_node.mjs")
 SEEDS = 80
 # What the first one has to have met, for the row to be about something.
 ENDS = {
@@ -55,6 +56,8 @@ ENDS = {
     "queue": {"asks", "hears", "stops", "waits", "broken"},
     "writing": {"types", "builds", "undoes", "views", "joins", "leaves", "pictures", "failed"},
     "languages": {"en", "es", "pt"},
+    "builds": {"installed", "lost"},
+    "kept": {"forgets"},
     "presses": {"run", "step", "stop", "edits"},
     "watching": {"told", "silent"},
 }
@@ -67,5 +70,28 @@ def test_it_is_as_on_a_page_that_was_just_loaded(page_data: Path, part: str) -> 
     rows: list[dict[str, Any]] = [json.loads(line) for line in lines]
     assert len(rows) == SEEDS
     assert ENDS[part] <= {end for row in rows for end in row["ends"]}
+    for row in rows:
+        assert row["isSame"] and not row["unhandled"], row
+
+
+# Of the whole page: what each row of seeds has to have done first, for it to be about something.
+DONE = {"run", "stop", "step", "types", "builds", "robot"}
+LEAST_WAYS = 30  # of doing something
+ROW = 8  # seeds
+
+
+@pytest.mark.sampled("first", keep=1)
+@pytest.mark.parametrize("first", range(0, 10 * ROW, ROW))
+def test_who_begins_anew_sees_what_a_tab_that_is_loaded_again_shows(
+    page_data: Path, first: int
+) -> None:
+    """Whatever was pressed before, and whatever is pressed then; what the page keeps, both keep.
+
+    At rest the page says and shows what is so, and nothing that was typed is lost."""
+    lines = in_node(WHOLE_PAGE, str(page_data), str(first), str(ROW))
+    rows: list[dict[str, Any]] = [json.loads(line) for line in lines]
+    assert len(rows) == ROW
+    done = {end for row in rows for end in row["ends"]}
+    assert done >= DONE and len(done) > LEAST_WAYS
     for row in rows:
         assert row["isSame"] and not row["unhandled"], row

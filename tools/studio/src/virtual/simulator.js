@@ -129,6 +129,7 @@ export class Simulator {
     this.phase = 'off';
     this.state = null;
     this.trace = [];
+    this.failure = '';
   }
 
   /** There is one row of pictures, whichever run or pause has begun it. */

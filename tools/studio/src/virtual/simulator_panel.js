@@ -204,6 +204,7 @@ export class SimulatorPanel {
     pageState.breakpoints.subscribe(() => this.#breakpointsChanged());
     pageState.programText.subscribe(() => { // what runs is no longer what is seen
       this.#places = [];
+      if (!this.#isWaiting) this.#note = ''; // which was said of the text before
       this.#show();
     });
     this.#stage = new Stage({
@@ -426,9 +427,9 @@ export class SimulatorPanel {
   begin() {
     this.#worldDrawing.letGo();
     this.#previewWorld = null;
+    this.#worldDrawing.forget();
     this.#switchOff();
     this.#stage?.showWhole();
-    this.#worldDrawing.forget();
   }
 
   #pauseRun() {
@@ -442,6 +443,8 @@ export class SimulatorPanel {
     this.#simulator.leaveRun();
     this.#plot.begin();
     this.#timeLine.begin();
+    this.#note = '';
+    this.#shownValues.clear();
     this.#variables = [];
     this.#arena.begin(this.#shownWorld, pageState.robotName.value, this.#worldChoice.goals);
     this.#show();
@@ -452,8 +455,10 @@ export class SimulatorPanel {
     try {
       const isWhole = await this.#worldChoice.restoreOwn();
       if (this.#page.work.world !== OWN_WORLD) return;
-      if (!isWhole) this.#note = text('world_lost');
       this.begin();
+      if (isWhole) return;
+      this.#note = text('world_lost');
+      this.#show();
     } catch {
       // the page says that there is no compiler
     } finally {

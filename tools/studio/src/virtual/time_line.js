@@ -73,7 +73,10 @@ export class TimeLine {
   show() {
     const { length, first_ms, last_ms } = this.#run.moments;
     this.#slider.disabled = length < 2;
-    if (length < 2) return;
+    if (length < 2) {
+      Object.assign(this.#slider, { min: '0', max: '0', value: '0' }); // it has no moment of the run before
+      return;
+    }
     if (this.#slider.min !== String(first_ms)) this.#slider.min = String(first_ms);
     if (this.#slider.max !== String(last_ms)) this.#slider.max = String(last_ms);
     const { now_ms, began_ms } = this.#run.moments.at(this.#seenMoment);

@@ -112,6 +112,7 @@ export class WorldDrawing {
     this.#chosenPart = FLOOR;
     this.#pointIndex = -1;
     this.#isBlocked = false;
+    this.notice = this.isDrawing ? text('world_hint') : '';
     if (this.isDrawing) this.#showTools();
   }
 

@@ -173,7 +173,11 @@ export class Views {
   /** The text has changed, by whoever did it. */
   #textChanged() {
     this.#findings = []; // those are of the text before
-    if (!this.#blocks || !this.#isStale()) return;
+    if (!this.#blocks) return;
+    if (!this.#isStale()) {
+      this.#markBlocks(); // it has come back
+      return;
+    }
     this.#showState();
     clearTimeout(this.#typingTimer);
     this.#typingTimer = window.setTimeout(() => this.#refreshBlocks(!this.#page.editor.hasFocus), TYPING_MS);
@@ -335,12 +339,11 @@ export class Views {
           await this.#waitForHand();
           continue;
         }
-        this.#shownText = answer.text;
+        if (this.#shownText !== null) this.#shownText = answer.text; // else other blocks are made of it
         this.#shownForm = formText;
         this.#shownLayout = layouts.after;
         this.#blocks.setRanges(ids, answer.places);
         this.#page.editor.replaceByBlocks(answer.text, layouts);
-        this.#showBreakpoints();
       }
     } catch (error) {
       this.#showFailure(error);
@@ -369,7 +372,7 @@ export class Views {
       if (!answer?.is_shown) return;
       this.#shownText = this.#page.editor.text;
       this.#blocks.setRanges(ids, answer.places ?? []);
-      this.#showBreakpoints();
+      this.#markBlocks();
       await this.#waitForHand();
     }
   }
@@ -394,11 +397,11 @@ export class Views {
           await this.#settle();
           if (!this.#isStale()) break;
         }
-        const newText = this.#page.editor.text;
+        const newText = this.#page.editor.text, robotName = pageState.robotName.value;
         /** @type {Form & {size: number}} */
-        const form = await this.#page.python.ask({ do: 'blocks', robot: pageState.robotName.value }, new TextEncoder().encode(newText));
+        const form = await this.#page.python.ask({ do: 'blocks', robot: robotName }, new TextEncoder().encode(newText));
         await this.#waitForHand();
-        if (newText !== this.#page.editor.text || group !== this.#group || (group && (this.#sending || this.#isTouched))) continue;
+        if (newText !== this.#page.editor.text || robotName !== pageState.robotName.value || group !== this.#group || (group && (this.#sending || this.#isTouched))) continue;
         const areBlocksKept = !this.#isForced && this.#page.editor.hasFocus && this.#shownText !== null && hasGrey(form);
         if (!form.body || areBlocksKept) {
           this.#showState(form.body ? text('blocks_wait') : text('blocks_many'));
@@ -441,6 +444,11 @@ export class Views {
   /** Blocks that are new have nothing at them yet. */
   #decorateBlocks() {
     this.#blocks?.showFindings(this.#findings);
+    this.#markBlocks();
+  }
+
+  /** What came while they were not those of the text. */
+  #markBlocks() {
     this.#blocks?.showFault(pageState.fault.value.range, pageState.fault.value.sentence);
     this.#blocks?.showRunning(this.#runningRanges);
     this.#blocks?.showMates(this.#matePlaces);

@@ -1,0 +1,489 @@
+// node whole_page_in_node.mjs SOURCES MADE FIRST COUNT: somebody presses whatever the page has, begins anew, and presses more; in a
+// tab that is loaded again at that moment somebody presses the same. Prints a JSON row for each seed: what was pressed first,
+// and what is seen afterwards, in the one tab and in the other.
+
+import { readFileSync } from 'node:fs';
+import { pathToFileURL } from 'node:url';
+import { chanceOf, compared, freshPage, later, made, passes, playsFetch, playsNavigator, PROGRAM, settles, sources, virtualRobot, words } from './page_in_node.mjs';
+
+const [firstSeed, seedCount] = words.map(Number);
+const HTML = readFileSync(`${sources}/index.html`, 'utf-8');
+const unhandled = [];
+process.on('unhandledRejection', (why) => unhandled.push(String(why?.stack ?? why)));
+process.on('uncaughtException', (why) => unhandled.push(String(why.stack)));
+Date.now = () => 0;
+globalThis.innerWidth = 1366;
+
+// -- the text editor of a browser: CodeMirror's own states in a view that draws nothing
+
+const codemirror = await import(pathToFileURL(`${sources}/../node_modules/@codemirror/view/dist/index.js`).href);
+const { forEachDiagnostic } = await import(pathToFileURL(`${sources}/../node_modules/@codemirror/lint/dist/index.js`).href);
+const { Transaction } = await import(pathToFileURL(`${sources}/../node_modules/@codemirror/state/dist/index.js`).href);
+let view = null;
+class EditorView {
+  hasFocus = false;
+  #isUpdating = false;
+
+  constructor({ state }) {
+    this.state = state;
+    view = this;
+  }
+
+  dispatch = (...specs) => {
+    if (this.#isUpdating) throw new Error('a change within a change');
+    const startState = this.state;
+    const transaction = specs[0] instanceof Transaction ? specs[0] : startState.update(...specs);
+    this.state = transaction.state;
+    this.#isUpdating = true;
+    const update = { view: this, state: this.state, startState, transactions: [transaction], changes: transaction.changes, docChanged: transaction.docChanged };
+    for (const hears of this.state.facet(codemirror.EditorView.updateListener)) hears(update);
+    this.#isUpdating = false;
+  };
+
+  focus() { this.hasFocus = true; }
+}
+for (const name of ['updateListener', 'theme', 'baseTheme', 'decorations', 'lineWrapping', 'contentAttributes', 'scrollIntoView']) EditorView[name] = codemirror.EditorView[name];
+
+// -- Python
+
+const START = { x_cm: 30, y_cm: 30, heading: 0 };
+const world = (name) => ({ name, labels: { en: name }, width_cm: 200, height_cm: 100, has_border: true, ambient_percent: 50, seconds: 0, start: START, walls: [], boxes: [], lines: [], lamps: [], flags: [], rings: [], rivals: [] });
+const LESSONS = [1, 2].map((k) => ({ name: `lesson${k}`, title: `L${k}`, block_title: `L${k}`, robot: ['tinibot', 'liner'][k - 1], worlds: 2, world: world(`lesson ${k}`) }));
+const linesOf = (text) => text.split('\n').map((line) => line.trim()).filter(Boolean);
+const textOf = ({ body }) => body.map((each) => `${each.text}\n`).join('');
+const formOf = (text) => ({ body: linesOf(text).map((line) => ({ text: line, kind: 'word', bodies: [] })), loose: [], size: 1 });
+
+/** What Python says of a program: a line with a `?` is a mistake, and so is a LIFT of another robot than a tinibot. */
+function checked(text, robot) {
+  const findings = text.split('\n').flatMap((line, k) => (line.includes('?') || (line.startsWith('LIFT') && robot !== 'tinibot') ? [{
+    code: 'C', severity: 'mistake', line: k + 1, column: 1, end_line: k + 1, end_column: line.length + 1, message: `in ${line}`, fix: '', may_repair: line.includes('?'),
+    on_blocks: { message: 'm', fix: '', spoken: {} },
+  }] : []));
+  const places = findings.length ? [] : linesOf(text).map((_, k) => [k, k + 1, 1, k + 1, 4]);
+  const image = findings.length || !text.trim() ? '' : Buffer.from(text).toString('hex');
+  return { ...PROGRAM, robot, findings, image, program: image, bytes: text.length, places, halts: [], shows: [], start: 'SI', names_robot: text.includes('// robot'), loose: 0, remote: text.includes('KEY_A') ? ['KEY_A'] : [] };
+}
+
+class Python {
+  runs = 0;
+  late = () => 5;
+  verdict = () => 'passed';
+  #robot = null;
+
+  answer(request, text) {
+    switch (request.do) {
+      case 'check': return checked(text, request.robot);
+      case 'repair': return { changes: [{ line: 1 + text.split('\n').findIndex((line) => line.includes('?')), column: 1, end_line: 1 + text.split('\n').findIndex((line) => line.includes('?')), end_column: 99, text: 'W(1)' }] };
+      case 'blocks': return { ...formOf(text), robot: request.robot };
+      case 'text': return { text: textOf(request.form), places: [] };
+      case 'line': return { text: `SI|${text}` };
+      case 'rename': case 'open': return { text };
+      case 'learn': return {};
+      case 'lesson_titles': return { lessons: LESSONS };
+      case 'lesson_steps': {
+        const steps = [{ blocks: [{ kind: 'program', rows: [['F(1)']] }], hint: '' }, { blocks: [], hint: 'a hint' }];
+        return { steps, block_steps: steps, offered: [], needed: [], new: [], spoken: {} };
+      }
+      case 'lesson_world': return { world: world(`lesson ${request.number}`), goals: [] };
+      case 'lesson_check': return {};
+      case 'lesson_go': {
+        const verdict = this.verdict();
+        return { verdict, seed: 1, worlds: 2, said: ['said'], block_said: ['said'], spoken: {}, run: verdict === 'failed' ? { seed: 1, until_ms: 900 } : null };
+      }
+      case 'write_world': return { text: JSON.stringify(request.form), is_blocked: false };
+      case 'open_world': return { world: JSON.parse(text) };
+      case 'write_run': return { file: JSON.stringify(request) };
+      case 'open_run': return { end_ms: 900, shapes: null, is_by_button: false, ...JSON.parse(text) };
+      default:
+        if (request.do === 'power_on') {
+          this.runs += 1;
+          this.#robot = virtualRobot(chanceOf(this.runs), true);
+        }
+        return { driver: null, touches: null, rivals: [], rows: [], ...this.#robot.answer(request) };
+    }
+  }
+}
+
+// -- the page
+
+const TEXTS = readFileSync(`${made}/texts.json`, 'utf-8');
+
+/** A tab in which this is kept. */
+async function opens(stores) {
+  const python = new Python();
+  const seen = { arena: null, blocks: null };
+  class Arena {
+    camera = '';
+    ways = 0; // that are on the floor
+    #world = '';
+    constructor() { seen.arena = this; }
+    begin(of, robot, goals) { this.#world = [of.name, of.start, of.walls.length, robot, goals]; }
+    followState() { this.ways += 1; }
+    eraseTracks() { this.ways = 0; }
+    get seen() { return [this.camera, this.ways, this.#world]; }
+    draw() {} resize() {} shake() {} cheer() {} showBubble() {} showBeep() {} setMark() {}
+    floorAt({ clientX, clientY }) { return { place: [clientX, clientY], reach_cm: 40 }; }
+  }
+  class Blocks {
+    form = { body: [], loose: [] };
+    layoutText = 'L0';
+    isBusy = false;
+    has = {};
+    constructor(_, __, level, page) {
+      this.page = page;
+      this.has.level = level;
+      if (page) seen.blocks = this; // else they are drawn for a lesson
+    }
+    readForm() { return { form: structuredClone(this.form), ids: [] }; }
+    show(form) {
+      this.form = structuredClone(form);
+      this.has = { robot: form.robot, level: this.has.level };
+    }
+    showFindings(findings) { this.has.findings = findings.map(({ line }) => line); }
+    showBreakpoints(points) { this.has.points = points.map(({ line }) => line); }
+    showRunning(ranges) { this.has.running = ranges.map(({ line }) => line); }
+    showFault(range, sentence) { this.has.fault = sentence; }
+    setLevel(level) { this.has.level = level; }
+    levelOf() { return 'few'; }
+    setRobot() {} setTaught() {} setGivenBlocks() {} updateLanguage() {} resize() {} beginProgram() {} setRanges() {} showMates() {} goTo() {}
+    async makePicture() { return null; }
+  }
+  const still = (name) => function made() { return new Proxy(this, { get: (_, what) => (what === 'then' ? undefined : () => name) }); };
+  playsNavigator({ language: 'en-US' });
+  playsFetch(async () => {
+    await later(5);
+    return new Response(TEXTS);
+  });
+  globalThis.Worker = class extends EventTarget {
+    #last = Promise.resolve();
+    constructor() {
+      super();
+      this.#says({ begun: true }, 1);
+      this.#says({ id: 0 }, 20);
+    }
+    #says(data, ms) { setTimeout(() => this.dispatchEvent(Object.assign(new Event('message'), { data })), ms); }
+    postMessage({ id, request, data }) {
+      const asked = JSON.parse(request), text = new TextDecoder().decode(data);
+      this.#last = this.#last.then(() => later(python.late())).then(() => {
+        this.#says({ id, answer: JSON.stringify(python.answer(asked, text)) }, 0);
+      });
+    }
+    terminate() {}
+  };
+  const page = freshPage({
+    Arena, Blocks, Plot: still(''), RunAnnouncer: still(''), Sounds: still(''), starsText: String, boutEnd: () => '', EditorView,
+    ...Object.fromEntries(['Decoration', 'GutterMarker', 'WidgetType', 'gutter', 'highlightActiveLine', 'keymap', 'lineNumbers'].map((name) => [name, codemirror[name]])),
+    generate: () => ({ toCanvas() {} }), correction: {},
+  }, HTML);
+  for (const [name, kept] of Object.entries(stores)) for (const [key, value] of kept) window[name].setItem(key, value);
+  const phone = Object.assign(new EventTarget(), { matches: false });
+  globalThis.matchMedia = (query) => (query.includes('max-width: 700px') ? phone : Object.assign(new EventTarget(), { matches: false }));
+  globalThis.confirm = () => true;
+  let isComing = true;
+  const loading = page.load('main.js').finally(() => { isComing = false; });
+  while (isComing) {
+    await settles();
+    await passes(5);
+  }
+  await loading;
+  await passes(500);
+  const { pageState } = await page.load('page/page_state.js');
+  const { summaryOf } = await page.load('writing/messages.js');
+  return { page, pageState, summaryOf, python, seen, phone };
+}
+
+// -- what somebody does
+
+const LINES = ['F(1)', 'B(1)', 'R(1)', 'KEY_A', 'LIFT(1)', 'W(?)', 'BEEP(1)', '// robot'];
+const at = (id) => document.getElementById(id);
+const press = (part, detail = 1) => part?.dispatchEvent(Object.assign(new Event('click', { bubbles: true, cancelable: true }), { detail, pointerType: 'mouse' }));
+const chooses = (id, value) => {
+  at(id).value = value;
+  at(id).dispatchEvent(new Event('change', { bubbles: true }));
+};
+const isSeen = (part) => part.checkVisibility() && !part.disabled && isOpen(part);
+const BEHIND_START = ['main', '#home', '#robot_choice', '#bar_new', '#save', '#my_programs', '#other', '#run']; // as in style.css
+/** Not of another screen, side, view or window. */
+function isOpen(part) {
+  const { screen, view } = { ...document.documentElement.dataset, view: at('writing').dataset.view };
+  const window_ = document.querySelectorAll('dialog').find(({ open }) => open);
+  if (window_ && !part.closest(`#${window_.id}`)) return false;
+  const behind = [...screen === 'start' ? BEHIND_START : ['#start'], ...'phone' in document.documentElement.dataset ? [] : ['#bar'], ...view === 'text' ? ['#blocks', '#blocks_note'] : ['#editor'], ...window_ ? [] : ['dialog'], 'details'];
+  return !behind.some((each) => {
+    const place = part.closest(each);
+    return place && !(each === 'details' && place.open);
+  });
+}
+const WORLDS = ['obstacles', 'free', 'line'];
+const NOT_PRESSED = ['open', 'run_open', 'world_open', 'keys_import', 'flash_open', 'link_serial', 'link_bluetooth', 'save', 'save_trace', 'world_save', 'camera', 'share_picture', 'copy', 'public'];
+const KEPT = ['runs_open', 'undo', 'redo']; // bring back what a tab has kept of before
+
+/** Each is done, unless it cannot be: then it says so. */
+const ACTS = {
+  presses(chance, { isAnew }) {
+    const buttons = document.querySelectorAll('button').filter((each) => isSeen(each) && !NOT_PRESSED.includes(each.id) && !(isAnew && KEPT.includes(each.id)));
+    const button = chance.of(buttons);
+    press(button, chance() < 0.2 ? 0 : 1);
+    return button?.id || button?.textContent;
+  },
+  drives(chance) {
+    const buttons = ['run', 'run', 'step', 'pause', 'stop', 'lesson_next', 'lesson_check'].map(at).filter(isSeen);
+    if (!buttons.length) return false;
+    const button = chance.of(buttons);
+    press(button);
+    return button.id;
+  },
+  types(chance) {
+    if (document.documentElement.dataset.screen === 'start') return false;
+    const text = Array.from({ length: chance.below(4) }, () => `${chance.of(LINES)}\n`).join('');
+    view.dispatch({ changes: { from: chance() < 0.5 ? 0 : view.state.doc.length, to: view.state.doc.length, insert: text } });
+  },
+  builds(chance, { seen }) {
+    const { blocks } = seen;
+    if (!blocks || at('writing').dataset.view !== 'blocks' || document.documentElement.dataset.screen === 'start') return false;
+    blocks.form.body.push(...formOf(chance.of(LINES)).body);
+    blocks.page.onChange();
+  },
+  learns(chance) {
+    const ways = [...document.querySelectorAll('button').filter(({ textContent }) => textContent === 'Add it to the program'), at('start_lessons'), at('side_lessons'), at('lesson')].filter(isSeen);
+    if (!ways.length) return false;
+    const way = chance.of(ways);
+    if (way.id !== 'lesson') press(way);
+    else chooses('lesson', chance.of(['1', '2']));
+    return way.id || way.textContent;
+  },
+  robot(chance) {
+    if (!isSeen(at('robot'))) return false;
+    chooses('robot', chance.of(['tinibot', 'liner']));
+    return 'robot';
+  },
+  retypes(chance, tab) { // while a program that names its robot gets another one
+    if (!ACTS.robot(chance)) return false;
+    return ACTS.types(chance, tab) === false ? 'robot' : 'types';
+  },
+  world: (chance) => isSeen(at('world')) && chooses('world', chance.of(WORLDS)),
+  speed: (chance) => isSeen(at('speed')) && chooses('speed', chance.of(['0.1', '1', '4'])),
+  level: (chance) => isSeen(at('level')) && chooses('level', chance.of(['few', 'usual', 'all'])),
+  lesson: (chance) => isSeen(at('lesson')) && chooses('lesson', chance.of(['1', '2'])),
+  points(chance) {
+    if (at('writing').dataset.view !== 'text' || !view.state.doc.length) return false;
+    view.state.facet(codemirror.keymap).flat().find(({ key }) => key === 'F9').run(view);
+  },
+  key(chance, { isAnew }) {
+    const keys = [{ key: 'Escape' }, { key: 'f' }, ...isAnew ? [] : [{ key: 'z', ctrlKey: true }, { key: 'Z', ctrlKey: true, shiftKey: true }]];
+    at('editor').dispatchEvent(Object.assign(new Event('keydown', { bubbles: true, cancelable: true }), chance.of(keys)));
+  },
+  looks(chance) {
+    if (!isSeen(at('time_at'))) return false;
+    at('time_at').value = String(chance.below(2000));
+    at('time_at').dispatchEvent(new Event('input', { bubbles: true }));
+  },
+  phone(chance, { phone }) {
+    phone.matches = !phone.matches;
+    phone.dispatchEvent(new Event('change'));
+  },
+  back() {
+    if (document.documentElement.dataset.screen === 'start') return false;
+    location.hash = '';
+    dispatchEvent(new Event('popstate'));
+  },
+  language: (chance) => isSeen(at('language')) && chooses('language', chance.of(['en', 'es'])),
+  draws(chance) {
+    if (!isSeen(at('arena'))) return false;
+    const point = (kind) => at('arena').dispatchEvent(Object.assign(new Event(kind, { bubbles: true, cancelable: true }), { isPrimary: true, button: 0, pointerId: 1, clientX: chance.below(200), clientY: chance.below(100) }));
+    for (const kind of ['pointerdown', 'pointermove', 'pointermove', chance.of(['pointerup', 'pointerup', 'pointercancel', 'pointermove'])]) point(kind);
+  },
+  names(chance) {
+    if (!isSeen(at('program_name'))) return false;
+    at('program_name').value = chance.of(['', 'one', 'two']);
+    at('program_name').dispatchEvent(new Event('input', { bubbles: true }));
+  },
+  shares() {
+    if (!isSeen(at('share'))) return false;
+    at('share').open = !at('share').open;
+    at('share').dispatchEvent(new Event('toggle'));
+  },
+  hides() {
+    document.hidden = true;
+    document.dispatchEvent(new Event('visibilitychange'));
+    document.hidden = false;
+  },
+  writes(chance) { // whoever presses in the text or the blocks
+    for (const kind of ['pointerenter', 'pointerdown', 'focusin', 'pointerup']) at('writing').dispatchEvent(Object.assign(new Event(kind, { bubbles: true }), { pointerType: chance.of(['mouse', 'touch']), buttons: 0 }));
+  },
+  waits: () => {},
+};
+
+/** What somebody presses who wants to begin anew: `begin_anew` of `tests/support/studio.py`, and the first step of a lesson. */
+async function beginsAnew(tab) {
+  const { phone } = tab;
+  if (phone.matches) ACTS.phone(null, { phone });
+  for (const each of document.querySelectorAll('dialog')) each.close();
+  press(at('view_text'), 0);
+  press(at('start_lessons'), 0);
+  await passes(1000);
+  for (const number of ['1', '2', '1']) {
+    chooses('lesson', number);
+    await passes(1000);
+  }
+  for (const id of ['stop', 'home', 'start_write', 'view_text', 'seen_arena', 'bar_new']) press(at(id), 0);
+  for (const id of ['words', 'why']) if (at(id).getAttribute('aria-pressed') === 'true') press(at(id), 0);
+  for (const [id, value] of [['language', 'en'], ['robot', 'tinibot'], ['world', 'obstacles'], ['speed', '1']]) if (at(id).value !== value) chooses(id, value);
+  await passes(5000);
+  Object.assign(tab, { isAnew: true, stays: null, isComing: false });
+}
+
+/** Where the text editor marks what runs, by their lines. */
+function runningLines() {
+  const lines = [];
+  for (const marks of view.state.facet(codemirror.EditorView.decorations)) {
+    if (typeof marks === 'function') continue;
+    marks.between(0, view.state.doc.length, (from, _, { spec }) => { if (spec.class === 'cm-running') lines.push(view.state.doc.lineAt(from).number); });
+  }
+  return lines;
+}
+
+function diagnosticLines() {
+  const lines = [];
+  forEachDiagnostic(view.state, (_, from) => lines.push(view.state.doc.lineAt(from).number));
+  return lines;
+}
+
+const keptWork = () => JSON.parse(window.sessionStorage.getItem('tiniscript.work'));
+
+/** What changes neither the program nor how large the robot is seen; and what may change the program a while later. */
+const PASSIVE = ['types', 'robot', 'language', 'speed', 'looks', 'hides', 'waits', 'points', 'pause', 'stop', 'words', 'theme', 'sound', 'erase_ways', 'seen_arena', 'seen_plot', 'seen_trace', 'other', 'names', 'shares'];
+const LATER = ['', 'builds', 'undo', 'redo', 'start_lessons', 'side_lessons', 'lesson', 'lesson_next', 'home', 'back', 'Add it to the program'];
+
+/** What an act changes, and what it does not. @returns what is checked once it is done, and later on */
+function expects(tab) {
+  const { dataset } = document.documentElement;
+  const before = { full: 'full' in dataset, side: dataset.side, isLesson: keptWork().lesson !== '', text: view.state.doc.toString() };
+  return (did) => {
+    const text = view.state.doc.toString();
+    if (PASSIVE.includes(did) && before.full !== 'full' in dataset) throw new Error(`${did} makes the robot small`);
+    if (/^side_/.test(did) && dataset.side !== before.side && 'full' in dataset) throw new Error(`${did} is behind the robot`);
+    if (['home', 'back'].includes(did) && !before.isLesson && text !== before.text) throw new Error(`${did} takes the program`);
+    if (['new', 'bar_new'].includes(did) && (text || keptWork().lesson || keptWork().own)) throw new Error(`${did} is of ${keptWork().lesson}`);
+    if (did === 'start_write' && dataset.half !== 'program') throw new Error('the program is not seen');
+    if (['world', 'bar_new', 'new'].includes(did) && 'big' in dataset) throw new Error(`after ${did} the robot is seen as in a run`);
+    if (LATER.includes(did)) tab.isComing = true;
+    if (!PASSIVE.includes(did) || tab.isComing) tab.stays = null;
+    else if (did === 'types') tab.stays = text;
+    checkStays(tab);
+  };
+}
+
+function checkStays({ stays }) {
+  const text = view.state.doc.toString();
+  if (typeof stays === 'string' && text !== stays) throw new Error(`${JSON.stringify(stays)} was typed, and is ${JSON.stringify(text)} now`);
+}
+
+/** What has to be said and shown of the program, whoever has done what; nothing is under way. */
+function checksRest({ pageState, summaryOf, seen }) {
+  const { checkResult, virtualRun, robotName, programText, fault, breakpoints } = pageState;
+  const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
+  const { phase, state, screen } = document.documentElement.dataset;
+  is(state, 'checked', 'the program');
+  const lines = checkResult.value.findings.map(({ line }) => line);
+  is(at('status').textContent, summaryOf(checkResult.value), 'the status');
+  is(checkResult.value.image, checked(view.state.doc.toString(), robotName.value).image, 'the image');
+  is(at('messages').children.length, lines.length, 'the messages');
+  is(at('messages').querySelectorAll('.repair').length, checkResult.value.findings.filter((each) => each.may_repair).length, 'the fixes');
+  is(diagnosticLines(), lines, 'what is marked as wrong');
+  const running = virtualRun.value.ranges.map(({ line }) => line);
+  if (phase !== 'running') is(runningLines(), running, 'what is marked as running');
+  is(at('robot').value, robotName.value, 'the robot');
+  is(at('pause').disabled, !['running', 'paused'].includes(phase), 'Pause');
+  if (screen === 'start' && (['running', 'paused'].includes(phase) || 'full' in document.documentElement.dataset || 'big' in document.documentElement.dataset || keptWork().own)) throw new Error(`behind the start screen is ${JSON.stringify([document.documentElement.dataset, keptWork()])}`);
+  const work = keptWork();
+  is([work.text, work.robot], [view.state.doc.toString(), robotName.value], 'what is kept');
+  is(programText.value, work.text, 'the program');
+  if (at('writing').dataset.view !== 'blocks' || screen === 'start' || phase === 'running') return;
+  is(textOf(seen.blocks.form), textOf(formOf(work.text)), 'the blocks');
+  is(seen.blocks.has, { robot: work.robot, level: at('level').value, findings: lines, fault: fault.value.sentence, running, points: breakpoints.value.map(({ line }) => line) }, 'what is at blocks');
+}
+
+/** All that is seen. */
+function seenIn({ seen }) {
+  const isText = at('writing').dataset.view === 'text';
+  const parts = document.querySelectorAll('[id]').filter((each) => !each.children.length || ['messages', 'values', 'versions', 'start_programs', 'world', 'robot', 'lesson'].includes(each.id)).filter((each) => each.id !== 'link_said' && each.checkVisibility() && isOpen(each));
+  const saidOf = (part) => (typeof part === 'string' ? part : [part.textContent, part.children.map(saidOf)].flat(9).join(''));
+  const { dataset } = document.documentElement;
+  return JSON.parse(JSON.stringify([
+    Object.entries({ ...dataset, halt: '', link: '' }).sort(), document.querySelectorAll('dialog').filter(({ open }) => open).map(({ id }) => id), view.state.doc.toString(), diagnosticLines(), runningLines(), seen.arena.seen, !isText && seen.blocks && [seen.blocks.form, seen.blocks.has],
+    ...parts.map((part) => [part.id, saidOf(part), part.value, part.disabled, part.getAttribute('aria-pressed'), { ...part.dataset }]),
+  ]));
+}
+
+const MOSTLY = ['presses', 'presses', 'drives', 'types', 'builds', 'presses', 'learns', 'retypes'];
+function acts(chance, tab, names = chance() < 0.7 ? MOSTLY : Object.keys(ACTS)) {
+  for (;;) {
+    const name = chance.of(names);
+    const check = expects(tab);
+    const found = ACTS[name](chance, tab);
+    if (found === false) continue;
+    const did = typeof found === 'string' ? found : name;
+    check(did);
+    return did;
+  }
+}
+
+async function playsSeed(seed) {
+  location.hash = '';
+  const chance = chanceOf(seed + 1);
+  const tab = await opens({});
+  const late = () => chance.below(chance.of([10, 10, 300]));
+  tab.python.late = late;
+  tab.python.verdict = () => chance.of(['', '', 'passed', 'failed', 'mistakes']);
+  const ends = [];
+  for (let k = 20 + chance.below(40); k > 0; k -= 1) {
+    ends.push(acts(chance, tab));
+    await passes(chance.of([0, chance.below(50), chance.below(800)]));
+    checkStays(tab);
+    if (k % 20) continue;
+    tab.python.late = () => 5;
+    await passes(4000);
+    checkStays(tab);
+    checksRest(tab);
+    tab.isComing = false;
+    tab.python.late = late;
+    acts(chance, tab, ['retypes', 'waits']);
+    await passes(1000);
+    checkStays(tab);
+  }
+  tab.python.late = () => 5;
+  await passes(3000);
+  await beginsAnew(tab);
+  const stores = Object.fromEntries(['localStorage', 'sessionStorage'].map((name) => [name, [...window[name]]]));
+  await beginsAnew(tab); // as the other tab
+  const plays = async (each) => {
+    const same = chanceOf(seed + 1000);
+    each.python.runs = 0;
+    each.python.verdict = () => same.of(['', 'passed', 'failed', 'mistakes']);
+    const all = [['begins', seenIn(each)]];
+    for (let k = 8; k > 0; k -= 1) {
+      const did = acts(same, each);
+      const waited_ms = same.of([300, 2000, 6000]);
+      await passes(waited_ms);
+      if (waited_ms > 1000) checksRest(each);
+      all.push([did, seenIn(each)]);
+    }
+    return all;
+  };
+  const after = await plays(tab);
+  const fresh = await opens(stores);
+  await beginsAnew(fresh);
+  const alone = await plays(fresh);
+  let k = 0;
+  while (k < after.length - 1 && JSON.stringify(after[k]) === JSON.stringify(alone[k])) k += 1;
+  console.log(JSON.stringify({ ends, acts: after.slice(0, k + 1).map(([did]) => did), ...compared(after[k], alone[k]), unhandled: unhandled.splice(0) }));
+}
+
+try {
+  for (let seed = firstSeed; seed < firstSeed + seedCount; seed += 1) await playsSeed(seed);
+  process.exit(0);
+} catch (why) {
+  console.error(why);
+  process.exit(1);
+}
