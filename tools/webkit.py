@@ -160,6 +160,7 @@ def join_class(page: Browser, address: str, code: str) -> None:
 
 def join_group(page: Browser, changes: Callable[[], None], has: Callable[[str], bool]) -> None:
     page.write("F(1, 80)\nS\n")
+    page.click("#side_class")
     page.fill("#class_group input", 0, "Red")
     page.click("[data-text=group_join]")
     page.wait_for_data("group", "in")

@@ -81,7 +81,7 @@ def begins(two: tuple[Page, Page]) -> None:
     """Let both have the program, and no caret in it."""
     ana, luz = two
     write(ana, PROGRAM)
-    ana.locator("#class_group h2").click()
+    ana.click("#side_class")
     ana.locator(".cm-content").evaluate("(it) => it.blur()")
     for page in (ana, luz):
         has(page, *ROWS)
@@ -323,7 +323,7 @@ def test_work_that_is_given_back_waits_for_who_does_not_want_it_in_the_group(
     for page in two:
         has(page, *ROWS)
     assert [work["key"] for work in taught.room.teach({"do": "class"})["kept"]] == [kept["key"]]
-    luz.click("#side_real")
+    luz.click("#side_class")
     luz.click("[data-text=group_leave]")
     has(luz, "F(1, 77)")
     until(lambda: not taught.room.teach({"do": "class"})["kept"], "the class has heard of it")
@@ -381,7 +381,7 @@ def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_secon
 def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) -> None:
     ana, luz = two
     begins(two)
-    luz.click("#side_real")  # it was loaded again
+    luz.click("#side_class")  # it was loaded again
     luz.click("[data-text=group_leave]")
     luz.locator("[data-text=group_join]").wait_for()
     goes_to(ana, "S;")
@@ -389,7 +389,7 @@ def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) 
     luz.locator("#class_group button", has_text="Red (Ana)").wait_for()
     assert "W(8)" not in "".join(lines(luz))
     luz.reload()  # nobody is in a group again unasked
-    luz.click("#side_real")
+    luz.click("#side_class")
     luz.locator("#class_group button", has_text="Red (Ana)").wait_for()
     assert luz.locator("html[data-group=in]").count() == 0
     assert "W(8)" not in "".join(lines(luz))

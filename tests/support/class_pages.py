@@ -46,6 +46,7 @@ def teaches(pages: Pages, taught: Class) -> Page:
 
 
 def enters(page: Page) -> None:
+    page.click("#side_class")
     page.locator("#class_group input").fill("Red")
     page.click("[data-text=group_join]")
     page.locator("html[data-group=in]").wait_for(state="attached")

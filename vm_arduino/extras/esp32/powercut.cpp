@@ -44,6 +44,7 @@ void forget() {
   chip.nvs_handles = 0;
   its_slot = kSlots;
   waits = false;
+  __builtin_memset(blob, 0, sizeof blob);
 }
 
 void run(Store* store) {
@@ -136,6 +137,21 @@ void history(const char* name, Area area, const std::vector<Content>& contents) 
   }
 }
 
+// A program that somebody edits: its end comes and goes, and a byte of it changes.
+std::vector<Content> edited(uint16_t size) {
+  const Content whole = some_image(size);
+  std::vector<Content> contents;
+  for (int k = 0; k < 12; k++) {
+    const uint16_t code_bytes = static_cast<uint16_t>(1 + random_below(size));
+    Content image(whole.begin(), whole.begin() + kHeaderBytes + code_bytes);
+    image[kCodeLengthAt] = static_cast<uint8_t>(code_bytes);
+    image[kCodeLengthAt + 1] = static_cast<uint8_t>(code_bytes >> 8);
+    image[kHeaderBytes + random_below(code_bytes)] ^= 1;
+    contents.push_back(checked(image));
+  }
+  return contents;
+}
+
 // Saves one after the other; nothing is cut.
 void save_all(const std::vector<Content>& contents) {
   doing = "programs";
@@ -162,6 +178,7 @@ int main(int count, char** arguments) {
     return 0;
   }
   history("programs", Area::kProgram, {a, b, c, b, c, a});
+  save_all(edited(size));
   for (Area area : {Area::kIdentity, Area::kFault, Area::kOwner}) {
     std::vector<Content> records;
     for (int k = 0; k < 4; k++) records.push_back(some_record(area));

@@ -5,6 +5,7 @@ import { element, setText } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { bugSentence } from '../page/faults.js';
 import { pageState } from '../page/page_state.js';
+import { showSide } from '../page/sides.js';
 import { text } from '../page/texts.js';
 import { noteStopCount, post } from '../robot/host.js';
 import { asPlainText } from '../robot/plain_text.js';
@@ -18,6 +19,7 @@ const STOP_TRIES = 5;
 
 export class Group {
   #section;
+  #sideButton = element('side_class', HTMLButtonElement);
   #nameInput = makeElement('input');
   #joinForm = makeElement('form', '', makeLabel('group_name', this.#nameInput), makeElement('button', 'group_join'));
   #groupList = makeElement('p');
@@ -30,8 +32,8 @@ export class Group {
   /** Whether another pupil of the group has the robot. */
   isDriven = false;
 
-  /** @param {import('./classroom.js').Page} page @param {HTMLElement} parent */
-  constructor(page, parent) {
+  /** @param {import('./classroom.js').Page} page */
+  constructor(page) {
     this.#membership = new Membership(page, {
       say: (key) => this.#showState(key),
       onBug: (error) => setText(this.#statusElement, bugSentence(error)),
@@ -39,7 +41,8 @@ export class Group {
     });
     this.#section = makeElement('section', '', makeElement('h2', 'group'), this.#joinForm, this.#groupList, this.#statusElement, this.#matesElement, this.#leaveButton);
     this.#section.id = 'class_group';
-    this.#section.hidden = true;
+    this.#sideButton.dataset['text'] = 'group';
+    this.#sideButton.textContent = text('group');
     this.#nameInput.maxLength = 24;
     this.#nameInput.autocomplete = 'off';
     this.#nameInput.required = true;
@@ -49,7 +52,7 @@ export class Group {
       event.preventDefault();
       this.#join(this.#nameInput.value);
     });
-    parent.append(this.#section);
+    element('class', HTMLElement).append(this.#section);
     element('run', HTMLButtonElement).addEventListener('click', () => this.#membership.finishEdit());
     element('stop', HTMLButtonElement).addEventListener('click', () => this.#stop());
     onEscapeKey(() => this.#stop());
@@ -58,13 +61,14 @@ export class Group {
 
   /** The page is in the class. */
   enter() {
-    this.#section.hidden = false;
+    this.#sideButton.hidden = false;
     this.#membership.resume();
   }
 
   /** The page is not in the class any more. */
   exit() {
-    this.#section.hidden = true;
+    if (pageState.sideId.value === this.#sideButton.id) showSide('side_real'); // where one comes in again
+    this.#sideButton.hidden = true;
     this.#membership.endMembership();
     this.isDriven = false;
   }

@@ -93,7 +93,7 @@ export class Pupil {
     });
     this.#boxElement.append(this.#joinForm, this.#statusElement, makeElement('p', '', this.#askButton, this.#quitButton, this.#connectButton, this.#ownRobotButton));
     this.#boxElement.hidden = false;
-    this.#group = new Group(page, this.#boxElement);
+    this.#group = new Group(page);
     const token = loadText(TOKEN_KEY, 'sessionStorage');
     if (token) this.#onJoined(token);
     else {
