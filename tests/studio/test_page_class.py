@@ -64,6 +64,13 @@ IN_ONE_LINE = """() => {
   return Math.max(...[...document.querySelectorAll('#bar button:not(:has(> svg:only-child))')].map(tops));
 }"""  # noqa: E501
 
+# Whether the tabs, and the buttons of the bar, are each in one row inside the page.
+ARE_IN_ONE_ROW = """() => ['#sides', '#bar'].map((row) => {
+  const buttons = [...document.querySelectorAll(`${row} > button`)];
+  const boxes = buttons.filter((it) => it.checkVisibility()).map((it) => it.getBoundingClientRect());
+  return new Set(boxes.map(({ top }) => top)).size < 2 && boxes.every(({ right }) => right <= innerWidth);
+})"""  # noqa: E501
+
 # A hand goes up in a page that looks no more by itself.
 UP_AT_ONCE = """() => { for (let k = setTimeout(() => {}); k > 0; k--) clearTimeout(k);
   class_hand.click(); }"""
@@ -259,6 +266,7 @@ def test_who_opens_the_address_of_a_class_joins_it_at_once(
     if size[0] < size[1]:
         for _ in range(2):
             assert page.evaluate(IN_ONE_LINE) == 1  # with the hand, too
+            assert page.evaluate(ARE_IN_ONE_ROW) == [True, True]
             page.click("#other")
     page.close()
     only_ana(taught)
