@@ -177,6 +177,7 @@ def join_group(page: Browser, changes: Callable[[], None], has: Callable[[str], 
 
 
 def stop_robot(page: Browser, robot: PtyRobot) -> None:
+    page.click("#side_real")
     page.click("[data-text=class_ask]")
     page.wait_for_data("robot", "connected")
     page.write(FOREVER + "\n")
