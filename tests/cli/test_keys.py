@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import json
-import random
 import stat
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import cast
 
@@ -117,34 +115,6 @@ def test_many_claims_at_once_lose_no_key(key_file: KeyFile) -> None:
     ]
     assert not any(key.is_pending for key in robot_keys)
     assert [key.is_stale for key in robot_keys] == [key.id % 5 == 0 for key in robot_keys]
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_a_key_that_its_robot_may_have_taken_stays_until_that_is_known(
-    key_file: KeyFile, seed: int
-) -> None:
-    """Whatever else comes into the file, or goes out of it: a robot keeps no second copy."""
-    key_file.add([ONE, ONE._replace(id=7)])
-    claim = key_file.create_pending_key(ONE.id, ONE.which, ONE.name)
-    assert claim is not None
-    other = ONE._replace(key=bytes(range(1, 17)))
-    changes: list[Callable[[], object]] = [
-        lambda: key_file.add([ONE]), lambda: key_file.add([other, ONE._replace(which=KEY_TEACHER)]),
-        lambda: key_file.add([ONE._replace(id=7)]), lambda: key_file.forget(7),
-        lambda: key_file.mark_stale(ONE),
-        lambda: key_file.drop_key(ONE), lambda: key_file.drop_key(other),
-        lambda: key_file.settle_key(ONE._replace(id=7)),
-        lambda: key_file.settle_key(ONE._replace(which=KEY_TEACHER)),
-        lambda: key_file.create_pending_key(ONE.id, KEY_TEACHER, ONE.name),
-    ]  # fmt: skip
-    chance = random.Random(seed)
-    for change in chance.choices(changes, k=6):
-        change()
-        assert claim in key_file.all()
-    key_file.settle_key(claim)
-    assert [key for key in key_file.keys_of_robot(ONE.id) if key.which == ONE.which] == [
-        claim._replace(is_pending=False)
-    ]
 
 
 def test_a_command_that_stands_still_keeps_no_other_one_waiting_for_ever(

@@ -8,6 +8,7 @@ import time
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
+from random import Random
 from threading import Thread
 from typing import Any
 
@@ -90,6 +91,38 @@ def test_a_list_that_is_not_whole_is_none(
         pytest.raises(PortError),
     ):
         school_broker.list_robots("3b")
+
+
+# -- a broker that goes and comes back ------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_process_connects_whenever_its_broker_is_there(tmp_path: Path, seed: int) -> None:
+    """However often it was not, and whether somebody wanted it meanwhile: robots share a connection
+    as long as that lasts.
+    """
+    chance, own, is_there = Random(seed), Mosquitto(tmp_path), True
+    connections = [broker.connect("127.0.0.1", own.port)]
+    try:
+        for _ in range(12):
+            if chance.random() < 0.5:
+                is_there = not is_there
+                own.start() if is_there else own.kill()
+            if not is_there:
+                until(lambda: connections[-1].end_reason != "", "the connection ends")
+            port = broker.port_of("127.0.0.1", own.port, "aula", f"{chance.randrange(3):08x}")
+            if is_there:
+                broker.open_port(port, 0, 1.0).write(bytes(STOP_BYTES))
+                connections.append(broker.connect("127.0.0.1", own.port))
+                assert connections[-1].stop("aula")
+                assert connections[-1] is connections[-2] or connections[-2].end_reason
+            else:
+                with pytest.raises(PortError):
+                    broker.open_port(port, 0, 1.0)
+    finally:
+        own.kill()
+        for connection in connections:
+            connection.close()
 
 
 # -- what a computer says is said once ------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from random import Random
 
 import pytest
 
@@ -16,10 +17,18 @@ from tiniscript.virtual import worlds
 COUNT = "X = 3;\nLOOP(2);\n  X = X + 1;\n  SHOW(X);\nEND_LOOP;\nIS = X > 4;\nF(0.5, 80)"
 STEPS = ["X = 3", "LOOP(2);", "X = X + 1", "SHOW(X)", "LOOP(2);", "X = X + 1", "SHOW(X)",
          "LOOP(2);", "IS = X > 4", "F(0.5, 80)"]  # fmt: skip
+REPEATED = (
+    COUNT,
+    "LOOP(2);\n  W(0.3) UNTIL(DISTANCE < 3);\n  F(0.1, 80);\nEND_LOOP",
+    "DEF HOP;\n  F(0.1, 80);\nEND_DEF;\nLOOP(3);\n  HOP;\n  X = 2;\n  SHOW(X);\nEND_LOOP",
+    "WHEN(DISTANCE < 60);\n  BEEP(0.1, 440);\nEND_WHEN;\nLOOP(4);\n  F(0.2, 80);\nEND_LOOP",
+)
 EXAMPLES = (
     ("obstacle", "tinibot", "obstacles"),
     ("line", "liner", "line"),
 )
+LONGEST_PART_MS = 1000
+HISTORIES = 10
 
 
 def part(text: str, simulation: Simulation) -> str:
@@ -99,6 +108,54 @@ def test_a_program_that_was_held_takes_as_long_as_it_calculates() -> None:
             simulation.go(50)
         runs.append(trace_of(simulation))
     assert runs[0] == runs[1] == ["2 BEEP 440 100", "100 DONE"]
+
+
+@pytest.mark.parametrize("text", REPEATED)
+def test_breakpoints_hold_alike_whenever_they_are_set(text: str) -> None:
+    """A run in which they change at random moments, and in which somebody steps, is held where and
+    when one is that has had a breakpoint everywhere from the beginning.
+    """
+    parts = range(len(check(text.encode(), "tinibot", "en").places))
+    every = started_simulation(text, parts)
+    arrivals = []
+    while every.held_at is not None:
+        arrivals.append((every.robot.now_ms, every.held_at))
+        every.go_on()
+        every.go(LONGEST_PART_MS)
+    pauses = [holds_of_a_run(text, arrivals, Random(seed)) for seed in range(HISTORIES)]
+    assert sum(map(bool, pauses)) > HISTORIES / 2
+
+
+def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], chance: Random) -> int:
+    """Return how often a run is held, each time at the arrival at which it has to be."""
+    offsets = sorted({offset for _, offset in arrivals})
+    simulation = started_simulation(text, is_held=chance.random() < 0.5)
+    breakpoints: list[int] = []
+    pauses = 0
+    while arrivals:
+        at, now_ms = simulation.held_at, simulation.robot.now_ms
+        if at is None:
+            arrivals = [arrival for arrival in arrivals if arrival[0] > now_ms]
+        else:
+            assert (now_ms, at) == arrivals[0]
+            arrivals = arrivals[1:]
+            pauses += 1
+        if chance.random() < 0.5:
+            breakpoints = chance.sample(offsets, chance.choice((0, 1, len(offsets))))
+            simulation.set_breakpoints(breakpoints)
+        duration_ms, is_step = chance.randint(1, 100), chance.random() < 0.2
+        if is_step:
+            simulation.step(duration_ms)
+        else:
+            simulation.go_on()
+            simulation.go(duration_ms)
+        wanted = [k for k, (_, offset) in enumerate(arrivals) if is_step or offset in breakpoints]
+        if wanted and arrivals[wanted[0]][0] <= now_ms + duration_ms:
+            arrivals = arrivals[wanted[0] :]
+            assert (simulation.robot.now_ms, simulation.held_at) == arrivals[0]
+        else:
+            assert simulation.held_at is None
+    return pauses
 
 
 def test_a_breakpoint_is_arrived_at_once_however_long_it_looks() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from random import Random
 from typing import Any
 
 import pytest
@@ -11,8 +12,8 @@ from tests.support.virtual_robot import robot_in
 from tiniscript import compile, robots
 from tiniscript.link import keys
 from tiniscript.link.authority import RobotKey
-from tiniscript.link.messages import HOLD_MS, REMOTE
-from tiniscript.studio import worker
+from tiniscript.link.messages import HOLD_MS, KEY_BYTES, KEY_TEACHER, REMOTE
+from tiniscript.studio import page_line, worker
 from tiniscript.studio.page_line import ATTENDED_MS, PageKeys, PageRobot
 from tiniscript.studio.robot_link import MOST_WAITING, BadRequest
 
@@ -126,20 +127,55 @@ def test_keys_of_a_file_replace_those_of_the_same_robot() -> None:
     ]  # fmt: skip
 
 
+def ask(data: bytes, **fields: object) -> dict[str, Any]:
+    """Return what the page's Python answers."""
+    answer: dict[str, Any] = json.loads(worker.answer(json.dumps(fields), data))
+    return answer
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Out of a list, or out of a claim: the page keeps the newest of each robot and person, and the
+    session with a robot that is connected has the same.
+    """
+    monkeypatch.setattr(page_line, "_robot", None)
+    chance, kept = Random(seed), ""
+    newest_keys: dict[tuple[int, int], bytes] = {}
+    for now_ms in range(40):
+        new_keys = [
+            RobotKey(robot, chance.choice((OWNER, KEY_TEACHER)), chance.randbytes(KEY_BYTES))
+            for robot in chance.sample(range(1, 5), 2)
+        ]
+        match chance.choice(("connect", "import", "claim", "link")):
+            case "connect":
+                ask(kept.encode(), do="connect", robot="tinibot", language="en")
+                new_keys = []
+            case "import":
+                kept = ask(keys.encode_keys(new_keys), do="import_keys", kept=kept)["keys"]
+            case "claim" | "link" as does if page_line._robot:
+                new_keys = new_keys[: does == "claim"]
+                for key in new_keys:
+                    page_line._robot.keys.settle_key(key)
+                kept = ask(b"", do="link", now_ms=now_ms, asked=[]).get("keys", kept)
+            case _:
+                continue
+        newest_keys |= {key.slot: key.key for key in new_keys}
+        kept_keys = keys.decode_keys(kept.encode()) if kept else []
+        assert {key.slot: key.key for key in kept_keys} == newest_keys
+        assert not page_line._robot or page_line._robot.keys.keys_of_robot(None) == kept_keys
+
+
 @pytest.mark.parametrize(
     "data", [b"", b"{", b"[]", b"\xff", b'{"tiniscript_keys": 1}', b"[" * 5000]
 )
 def test_what_is_no_file_of_keys_changes_nothing(data: bytes) -> None:
     kept = keys.encode_keys([key(1)]).decode()
-    answer = json.loads(worker.answer(json.dumps({"do": "import_keys", "kept": kept}), data))
-    assert answer == {"count": None}
+    assert ask(data, do="import_keys", kept=kept) == {"count": None}
 
 
 def test_kept_keys_that_are_damaged_do_not_keep_a_robot_out() -> None:
-    request = {"do": "connect", "robot": "tinibot", "language": "es"}
-    assert json.loads(worker.answer(json.dumps(request), b"damaged")) == {}
-    asked = {"do": "link", "now_ms": 5, "asked": [{"do": "hello", "id": 1}]}
-    answer = json.loads(worker.answer(json.dumps(asked), b""))
+    assert ask(b"damaged", do="connect", robot="tinibot", language="es") == {}
+    answer = ask(b"", do="link", now_ms=5, asked=[{"do": "hello", "id": 1}])
     assert answer["send"] and answer["news"] == []
 
 

@@ -77,12 +77,11 @@ class KeyFile(KeyRing):
         """
         with self._locked():
             stored_keys = self.all()
-            new_keys = {key.slot: key for key in with_known_seals(keys, stored_keys)}
-            other_keys = [key for key in stored_keys if key.is_pending or key.slot not in new_keys]
-            changed_keys = [key for key in new_keys.values() if key not in stored_keys]
-            if changed_keys:
-                self._write_keys([*other_keys, *new_keys.values()])
-            return len(changed_keys)
+            all_keys = with_keys_added(stored_keys, keys)
+            changed_count = sum(key not in stored_keys for key in all_keys)
+            if changed_count:
+                self._write_keys(all_keys)
+            return changed_count
 
     def forget(self, robot_id: int) -> None:
         """Take the keys of a robot out of the file. Raises BadKeys."""
@@ -160,14 +159,19 @@ class KeyFile(KeyRing):
             raise BadKeys(getattr(failure, "strerror", None) or str(failure)) from None
 
 
-def with_known_seals(
-    robot_keys: Iterable[RobotKey], known_keys: Iterable[RobotKey]
-) -> list[RobotKey]:
-    """Return keys with what was known before: that their robots seal."""
-    sealing_keys = {key.key for key in known_keys if key.uses_seals}
-    return [
-        key._replace(uses_seals=key.uses_seals or key.key in sealing_keys) for key in robot_keys
-    ]
+def with_keys_added(stored_keys: list[RobotKey], added_keys: Iterable[RobotKey]) -> list[RobotKey]:
+    """Return stored keys with those of a list, each in the place of the one before.
+
+    A pending key stays beside it: which of the two is right, the robot alone knows. What was known
+    of a key before stays, too: that its robot seals.
+    """
+    sealing_keys = {key.key for key in stored_keys if key.uses_seals}
+    new_keys = {
+        key.slot: key._replace(uses_seals=key.uses_seals or key.key in sealing_keys)
+        for key in added_keys
+    }
+    other_keys = [key for key in stored_keys if key.is_pending or key.slot not in new_keys]
+    return [*other_keys, *new_keys.values()]
 
 
 def is_shared(path: Path) -> bool:

@@ -14,7 +14,7 @@ from typing import TypeVar
 
 from tiniscript.link.authority import KeyRing, RobotKey
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
-from tiniscript.link.keys import BadKeys, decode_keys, encode_keys, with_known_seals
+from tiniscript.link.keys import BadKeys, decode_keys, encode_keys, with_keys_added
 from tiniscript.link.outcomes import Backlog, Event
 from tiniscript.link.requests import DeviceInfo
 from tiniscript.link.session import Session
@@ -40,9 +40,8 @@ class PageKeys(KeyRing):
 
     def add(self, data: bytes) -> int:
         """Put the keys of a file in the place of those before; return how many. Raises BadKeys."""
-        new_keys = with_known_seals(decode_keys(data), self.keys)
-        for key in new_keys:
-            self.settle_key(key)
+        new_keys = decode_keys(data)
+        self._change_keys(lambda stored_keys: with_keys_added(stored_keys, new_keys))
         return len(new_keys)
 
     def _stored_keys(self) -> list[RobotKey]:

@@ -44,8 +44,12 @@ class HeldMachine : public Machine {
     if (is_held) return status();
     if (rest != 0) budget = rest;
     rest = 0;
-    if (wanted == 0) return Machine::tick(now_ms, budget);
     Status found;
+    if (wanted == 0) {
+      found = Machine::tick(now_ms, budget);
+      passes = passes && left() == budget;  // where nothing is wanted now, something may be later
+      return found;
+    }
     do {
       if (has_tasks() && !reach_instruction(now_ms)) return status();
       if (is_marked(now_ms)) {
