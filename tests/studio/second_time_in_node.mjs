@@ -644,30 +644,50 @@ const PARTS = {
     };
   },
 
-  // A check of a lesson, which may be ended at any time.
+  // A check of a lesson, which may be ended at any time. Whichever lessons are taken, in whichever order, the own program is
+  // as it was once they are left.
   async lessons() {
     const page = freshPage({ replaceOptions() {}, makePictureOption() {}, makeWorldPicture() {} });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Lessons } = await page.load('lesson/lessons.js');
-    const LESSONS = [1, 2].map((k) => ({ name: `lesson${k}`, title: 'L', block_title: 'L', robot: 'tinibot', worlds: 2, world: {} }));
+    const LESSONS = ['tinibot', 'liner', 'tinibot'].map((robot, k) => ({ name: `lesson${k}`, title: 'L', block_title: 'L', robot, worlds: 2, world: {} }));
     let late = () => 5;
     let verdict = '';
     let parts = 0;
     const python = {
       tryAgain() {},
-      async ask(request) {
+      async ask(request, bytes) {
         const isLast = request.do === 'lesson_go' && (parts -= 1) < 0;
         const own = verdict;
         await later(late());
         if (request.do === 'lesson_titles') return { lessons: LESSONS };
-        if (request.do === 'lesson_steps') return { steps: [{ blocks: [], hint: '' }], block_steps: [{ blocks: [], hint: '' }], taught: [] };
+        if (request.do === 'lesson_steps') return { steps: [{ blocks: [{ kind: 'program', rows: [[`F(${request.number})`]] }], hint: '' }], block_steps: [], taught: [] };
+        if (request.do === 'check') return { image: ['', request.robot].includes(/tinibot|liner|$/.exec(new TextDecoder().decode(bytes))[0]) ? '00' : '' };
         return { verdict: isLast ? own : '', seed: 1, worlds: 2, said: ['said'], block_said: ['said'], spoken: {}, run: isLast && own === 'failed' ? { seed: 1, until_ms: 9 } : null };
       },
     };
     let stops = () => {};
-    const driving = { showLesson: () => later(late()), stop: () => stops(), play: () => new Promise((resolve) => { stops = resolve; setTimeout(resolve, 200); }) };
-    new Lessons({ python, simulatorPanel: driving, put() {}, work: { text: '', robot: '', name: '', lesson: '', own: null } });
+    const driving = { showLesson: () => later(late()), leaveLesson() {}, stop: () => stops(), play: () => new Promise((resolve) => { stops = resolve; setTimeout(resolve, 200); }) };
+    const work = { text: '', robot: '', name: '', lesson: '', own: null };
+    pageState.view.set('text');
+    pageState.robotName.subscribe((robot) => { work.robot = robot; });
+    pageState.programText.subscribe((text) => { work.text = text; });
+    const opens = ({ text, robot, name, lesson = '' }) => {
+      pageState.robotName.set(robot);
+      Object.assign(work, { name, lesson, own: lesson ? work.own : null });
+      pageState.programText.set(text);
+    };
+    const inEditor = () => JSON.stringify([work.text, work.robot, work.name]);
+    let mine = ''; // the own program, which has stepped back
+    const given = (program) => {
+      if (program.lesson) mine ||= inEditor();
+      opens(program);
+      if (program.lesson) return;
+      if (inEditor() !== mine) throw new Error(`${inEditor()} comes back in place of ${mine}`);
+      mine = '';
+    };
+    const lessons = new Lessons({ python, simulatorPanel: driving, put: given, exchange: given, work });
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
     await passes(500);
@@ -677,6 +697,29 @@ const PARTS = {
       check: () => page.byId('lesson_check').click(),
       end: () => page.byId('lesson_end').click(),
       edit: () => pageState.programText.set('F(1)'),
+    };
+    const written = (chance) => `F(${chance.below(1000)}) ${chance.of(['', '// tinibot', '// liner'])}`; // and where it is right
+    const goesTo = (side) => {
+      page.byId('lessons').hidden = side !== 'side_lessons';
+      pageState.sideId.set(side);
+      page.byId(side).click();
+    };
+    const takes = { // lessons, in any order
+      chooses(chance) {
+        page.byId('lesson').value = String(1 + chance.below(LESSONS.length));
+        page.byId('lesson').dispatchEvent(new Event('change'));
+      },
+      uses: () => page.byId('lesson_step').children[0].children[1].click(),
+      writes: (chance) => pageState.programText.set(written(chance)),
+      empties: () => pageState.programText.set(''),
+      robot: (chance) => pageState.robotName.set(chance.of(['tinibot', 'liner'])),
+      goes: (chance) => goesTo(chance.of(['side_lessons', 'side_virtual'])),
+      checks: () => acts.check(),
+      leaves: () => lessons.leave(),
+      opens(chance) {
+        mine = '';
+        opens({ text: written(chance), robot: chance.of(['tinibot', 'liner']), name: `${chance.below(9)}.ts` });
+      },
     };
     return async (chance, isGood) => {
       late = () => (isGood ? 5 : 5 + chance.below(300));
@@ -698,7 +741,16 @@ const PARTS = {
       }
       acts.check();
       await passes(3000);
-      return { ends: [end], seen: [seen, said()] };
+      seen.push(said());
+      late = () => 5 + chance.below(300);
+      for (let k = 5 + chance.below(25); k > 0; k -= 1) {
+        takes[chance.of(['chooses', 'uses', 'writes', ...Object.keys(takes)])](chance);
+        await passes(chance.below(1000));
+      }
+      await passes(3000);
+      lessons.leave();
+      if (mine || work.lesson || work.own) throw new Error(`after all lessons there is ${work.lesson} ${inEditor()}, and the own program is ${mine}`);
+      return { ends: [end], seen };
     };
   },
 
