@@ -130,8 +130,9 @@ const PARTS = {
     };
   },
 
-  // A pupil in a class, and in another one, or again after a teacher has taken them out, until it is over. The class has
-  // what was written and pressed last, the page goes to its robot once in a turn, and takes what it is given once.
+  // A pupil in a class, and in another one, or again after a teacher has taken them out, until it is over. Whichever looks
+  // and answers were lost, the class has the newest of each thing that the teacher sees, and what was pressed last; the page
+  // goes to its robot once in a turn, and takes what it is given once.
   async pupil() {
     const page = freshPage();
     document.documentElement.dataset['class'] = '';
@@ -140,6 +141,8 @@ const PARTS = {
     await learns(page);
     const { Pupil } = await page.load('class/pupil.js');
     const { loadText } = await page.load('page/kept.js');
+    const { loadDoneLessons, storeDone } = await page.load('lesson/progress.js');
+    const { pageState } = await page.load('page/page_state.js');
     let room = null;
     playsFetch((_, { headers, body }) => room.asked(headers['X-TiniScript-Token'], JSON.parse(body)));
     const notes = [];
@@ -156,14 +159,22 @@ const PARTS = {
     const [join, , buttons] = box.children;
     const [ask, quit, connect] = buttons.children;
     const hand = page.byId('stop').placedBefore;
+    const { dataset } = document.documentElement;
+    /** What the teacher sees of it; whether a program is right is not known before it is checked. */
+    const shown = () => ({
+      text: work.text, robot: work.robot, lessons: [...loadDoneLessons()], own_robot: pageState.ownRobot.value,
+      ...(dataset['state'] === 'checked' && { is_right: Boolean(dataset['image']) }),
+    });
     let entries = 0;
     return async (chance, isGood) => {
       notes.length = 0;
       const began_ms = now();
       const token = `token ${(entries += 1)}`;
       panel.isFree = true;
-      work.text = 'F(1)';
-      const has = { text: '', place: -1, isUp: false };
+      [work.text, work.robot, dataset['state'], dataset['image']] = ['F(1)', 'tinibot', 'stale', ''];
+      pageState.ownRobot.set({ name: '', colour: 0 });
+      window.localStorage.removeItem('tiniscript.lessons');
+      const has = { fields: {}, place: -1, isUp: false };
       const wanted = { place: -1, isUp: false };
       let turns = 0;
       let joins = 0;
@@ -187,23 +198,35 @@ const PARTS = {
           notes.push([now() - began_ms, { ...request }]);
           if (over) late += 1;
           const isOut = ends === 'removed';
-          await later(isGood ? 5 : 5 + chance.below(900));
-          if (!isCalm && chance() < (isGood ? 0.4 : 0.2)) throw new Broken();
+          const travels = () => later(isCalm ? 5 : 5 + chance.below(900));
+          await travels();
+          const lost = !isCalm && chance() < (isGood ? 0.4 : 0.2) ? chance.of(['look', 'answer']) : '';
+          if (lost === 'look') throw new Broken();
           if (isOut) return { ok: false, status: 403 };
-          if (request.text !== undefined) has.text = request.text;
-          has.isUp = request.hand ?? has.isUp;
+          const { do: _, took, wants, hand: isUp = has.isUp, ...fields } = request;
+          Object.assign(has.fields, fields);
+          has.isUp = isUp;
           const before = has.place;
-          if (request.wants !== undefined) has.place = request.wants ? 0 : -1;
+          if (wants !== undefined) has.place = wants ? 0 : -1;
           if (has.place === 0 && before !== 0) turns += 1;
-          if (over) return answers({ over });
-          return answers({ place: has.place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: has.isUp, ...(told && !request.took && { given: told }) });
+          const answer = over ? { over } : { place: has.place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: has.isUp, ...(told && !took && { given: told }) };
+          await travels();
+          if (lost) throw new Broken();
+          return answers(answer);
         },
       };
+      const changes = {
+        writes: () => { work.text = `F(${chance.below(2)})`; },
+        robot: () => { work.robot = chance.of(['tinibot', 'liner']); },
+        lesson: () => storeDone(`lesson${chance.below(9)}`),
+        ownRobot: () => pageState.ownRobot.set({ name: '', colour: chance.below(2) }),
+        checks: () => { [dataset['state'], dataset['image']] = [chance.of(['stale', 'checked']), chance.of(['', '00'])]; },
+      };
       const presses = {
+        ...changes,
         ask: () => { wanted.place = 0; ask.click(); },
         quit: () => { wanted.place = -1; quit.click(); },
         hand: () => { wanted.isUp = hand.attributes['aria-pressed'] !== 'true'; hand.click(); },
-        writes: () => { work.text = `F(${chance.below(1000)})`; },
         nothing: () => {},
       };
       for (let k = chance.of([1, 2]); k > 0; k -= 1) join.dispatchEvent(new Event('submit', { cancelable: true }));
@@ -212,7 +235,7 @@ const PARTS = {
       if (hand.hidden) throw new Error('in a class nobody can ask for help');
       if (isGood && chance() < 0.5) presses.hand(); // before the class has said how it is
       await passes(500);
-      for (let k = 1 + chance.below(4); k > 0; k -= 1) {
+      for (let k = 1 + chance.below(12); k > 0; k -= 1) {
         presses[chance.of(Object.keys(presses))]();
         await passes(chance.of([2, chance.below(1500)]));
       }
@@ -222,15 +245,18 @@ const PARTS = {
       while (!isGood && join.hidden) await passes(50 + chance.below(50));
       if (!isGood && ![hand, ask, quit, connect].every(({ hidden }) => hidden)) throw new Error('outside of a class there are its buttons');
       if (!isGood) return { ends: [ends], seen: [] };
-      presses.writes();
-      await passes(2);
-      presses.writes(); // while the one before is on its way
+      for (let k = chance.below(3); k > 0; k -= 1) { // while the one before is on its way
+        changes[chance.of(Object.keys(changes))]();
+        await passes(2);
+      }
       isCalm = true;
       panel.isFree = chance() < 0.5;
-      await passes(3000);
+      await passes(6000);
       const seen = notes.map((each) => structuredClone(each));
       const does = (what) => notes.filter((each) => each === what || each[0] === what).length;
-      if (has.text !== work.text) throw new Error(`the class has ${has.text} in place of ${work.text}`);
+      for (const [name, value] of Object.entries(shown())) {
+        if (JSON.stringify(has.fields[name]) !== JSON.stringify(value)) throw new Error(`the teacher sees ${name} ${JSON.stringify(has.fields[name])}, and it is ${JSON.stringify(value)}`);
+      }
       if (has.place !== wanted.place || has.isUp !== wanted.isUp) throw new Error(`not what was pressed last: ${JSON.stringify([has, wanted])}`);
       if (does('to the robot') > turns || does('given') > 1) throw new Error(`${does('to the robot')} times to the robot in ${turns} turns, given ${does('given')} times`);
       if (connect.hidden !== (has.place !== 0 || !panel.isFree)) throw new Error('who cannot connect may, or who can may not');
@@ -618,30 +644,50 @@ const PARTS = {
     };
   },
 
-  // A check of a lesson, which may be ended at any time.
+  // A check of a lesson, which may be ended at any time. Whichever lessons are taken, in whichever order, the own program is
+  // as it was once they are left.
   async lessons() {
     const page = freshPage({ replaceOptions() {}, makePictureOption() {}, makeWorldPicture() {} });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Lessons } = await page.load('lesson/lessons.js');
-    const LESSONS = [1, 2].map((k) => ({ name: `lesson${k}`, title: 'L', block_title: 'L', robot: 'tinibot', worlds: 2, world: {} }));
+    const LESSONS = ['tinibot', 'liner', 'tinibot'].map((robot, k) => ({ name: `lesson${k}`, title: 'L', block_title: 'L', robot, worlds: 2, world: {} }));
     let late = () => 5;
     let verdict = '';
     let parts = 0;
     const python = {
       tryAgain() {},
-      async ask(request) {
+      async ask(request, bytes) {
         const isLast = request.do === 'lesson_go' && (parts -= 1) < 0;
         const own = verdict;
         await later(late());
         if (request.do === 'lesson_titles') return { lessons: LESSONS };
-        if (request.do === 'lesson_steps') return { steps: [{ blocks: [], hint: '' }], block_steps: [{ blocks: [], hint: '' }], taught: [] };
+        if (request.do === 'lesson_steps') return { steps: [{ blocks: [{ kind: 'program', rows: [[`F(${request.number})`]] }], hint: '' }], block_steps: [], taught: [] };
+        if (request.do === 'check') return { image: ['', request.robot].includes(/tinibot|liner|$/.exec(new TextDecoder().decode(bytes))[0]) ? '00' : '' };
         return { verdict: isLast ? own : '', seed: 1, worlds: 2, said: ['said'], block_said: ['said'], spoken: {}, run: isLast && own === 'failed' ? { seed: 1, until_ms: 9 } : null };
       },
     };
     let stops = () => {};
-    const driving = { showLesson: () => later(late()), stop: () => stops(), play: () => new Promise((resolve) => { stops = resolve; setTimeout(resolve, 200); }) };
-    new Lessons({ python, simulatorPanel: driving, put() {}, work: { text: '', robot: '', name: '', lesson: '', own: null } });
+    const driving = { showLesson: () => later(late()), leaveLesson() {}, stop: () => stops(), play: () => new Promise((resolve) => { stops = resolve; setTimeout(resolve, 200); }) };
+    const work = { text: '', robot: '', name: '', lesson: '', own: null };
+    pageState.view.set('text');
+    pageState.robotName.subscribe((robot) => { work.robot = robot; });
+    pageState.programText.subscribe((text) => { work.text = text; });
+    const opens = ({ text, robot, name, lesson = '' }) => {
+      pageState.robotName.set(robot);
+      Object.assign(work, { name, lesson, own: lesson ? work.own : null });
+      pageState.programText.set(text);
+    };
+    const inEditor = () => JSON.stringify([work.text, work.robot, work.name]);
+    let mine = ''; // the own program, which has stepped back
+    const given = (program) => {
+      if (program.lesson) mine ||= inEditor();
+      opens(program);
+      if (program.lesson) return;
+      if (inEditor() !== mine) throw new Error(`${inEditor()} comes back in place of ${mine}`);
+      mine = '';
+    };
+    const lessons = new Lessons({ python, simulatorPanel: driving, put: given, exchange: given, work });
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
     await passes(500);
@@ -651,6 +697,29 @@ const PARTS = {
       check: () => page.byId('lesson_check').click(),
       end: () => page.byId('lesson_end').click(),
       edit: () => pageState.programText.set('F(1)'),
+    };
+    const written = (chance) => `F(${chance.below(1000)}) ${chance.of(['', '// tinibot', '// liner'])}`; // and where it is right
+    const goesTo = (side) => {
+      page.byId('lessons').hidden = side !== 'side_lessons';
+      pageState.sideId.set(side);
+      page.byId(side).click();
+    };
+    const takes = { // lessons, in any order
+      chooses(chance) {
+        page.byId('lesson').value = String(1 + chance.below(LESSONS.length));
+        page.byId('lesson').dispatchEvent(new Event('change'));
+      },
+      uses: () => page.byId('lesson_step').children[0].children[1].click(),
+      writes: (chance) => pageState.programText.set(written(chance)),
+      empties: () => pageState.programText.set(''),
+      robot: (chance) => pageState.robotName.set(chance.of(['tinibot', 'liner'])),
+      goes: (chance) => goesTo(chance.of(['side_lessons', 'side_virtual'])),
+      checks: () => acts.check(),
+      leaves: () => lessons.leave(),
+      opens(chance) {
+        mine = '';
+        opens({ text: written(chance), robot: chance.of(['tinibot', 'liner']), name: `${chance.below(9)}.ts` });
+      },
     };
     return async (chance, isGood) => {
       late = () => (isGood ? 5 : 5 + chance.below(300));
@@ -672,7 +741,16 @@ const PARTS = {
       }
       acts.check();
       await passes(3000);
-      return { ends: [end], seen: [seen, said()] };
+      seen.push(said());
+      late = () => 5 + chance.below(300);
+      for (let k = 5 + chance.below(25); k > 0; k -= 1) {
+        takes[chance.of(['chooses', 'uses', 'writes', ...Object.keys(takes)])](chance);
+        await passes(chance.below(1000));
+      }
+      await passes(3000);
+      lessons.leave();
+      if (mine || work.lesson || work.own) throw new Error(`after all lessons there is ${work.lesson} ${inEditor()}, and the own program is ${mine}`);
+      return { ends: [end], seen };
     };
   },
 

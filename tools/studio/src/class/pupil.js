@@ -37,6 +37,7 @@ function newStayState() {
     refusedKey: '', // the key of work that is not to replace the program of the group
     runNumber: 0, // the newest question for a run
     isTakenUnconfirmed: false, // the class has yet to hear that this is here
+    isPolling: false,
     queuePlace: -1,
   };
 }
@@ -147,9 +148,12 @@ export class Pupil {
     this.#poll();
   }
 
+  /** One request at a time, for none is to overtake another; what is pressed meanwhile follows at once. */
   async #poll() {
     clearTimeout(this.#pollTimer);
     const stay = this.#stayState;
+    if (stay.isPolling) return;
+    stay.isPolling = true;
     const { wantsRobot, isHandWanted } = stay, takenWork = stay.isTakenUnconfirmed ? stay.takenWork : null;
     const fields = takenWork ? stay.sentFields : this.#currentFields(); // two programs may be too large
     /** @type {Record<string, unknown>} */
@@ -157,7 +161,11 @@ export class Pupil {
     if (takenWork) request['took'] = { key: takenWork.key, text: takenWork.text };
     if (wantsRobot !== null) request['wants'] = wantsRobot;
     if (isHandWanted !== null) request['hand'] = isHandWanted;
-    for (const [name, value] of Object.entries(fields)) if (stay.sentFields[name] !== value) request[name] = JSON.parse(value);
+    for (const [name, value] of Object.entries(fields)) {
+      if (stay.sentFields[name] === value) continue;
+      request[name] = JSON.parse(value);
+      delete stay.sentFields[name]; // where the answer is lost, nobody knows what the teacher sees
+    }
     let wait_ms = POLL_MS;
     try {
       const answer = /** @type {PupilState} */ (await post(request));
@@ -177,6 +185,7 @@ export class Pupil {
         giveRun(answer.run, this.#page.newestRun).catch(() => {}); // the teacher asks again
       }
       if (answer.place > 0 && answer.place <= answer.robots) wait_ms = SOON_MS;
+      if (stay.wantsRobot !== null || stay.isHandWanted !== null) wait_ms = 0;
     } catch (error) {
       if (stay !== this.#stayState) return;
       if (error instanceof ConnectionFailure && error.reason === 'host_other') {
@@ -185,7 +194,7 @@ export class Pupil {
       }
       this.#showStatus('class_silent');
     }
-    clearTimeout(this.#pollTimer);
+    stay.isPolling = false;
     this.#pollTimer = window.setTimeout(() => this.#poll(), wait_ms);
   }
 
