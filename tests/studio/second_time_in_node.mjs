@@ -1804,7 +1804,8 @@ const PARTS = {
     };
   },
 
-  // The programs that were in the editor, as they are kept: none is lost while there is room, and the oldest go first.
+  // The programs that were in the editor, as they are kept in a storage of any size: the newest that have room, and who loses
+  // one hears of it. One that was deleted may come back.
   async programs() {
     const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
     playsNavigator({});
@@ -1812,18 +1813,43 @@ const PARTS = {
     const { pageState } = await page.load('page/page_state.js');
     const { Programs } = await page.load('programs/programs.js');
     const { loadWork } = await page.load('programs/work.js');
-    const { MOST_CHARACTERS, loadVersions } = await page.load('programs/versions.js');
+    const { MOST_CHARACTERS, loadVersions, storeVersion } = await page.load('programs/versions.js');
     const { makeLink } = await page.load('programs/links.js');
+    const { text: textOf } = await page.load('page/texts.js');
     const { FIRST_PROGRAM } = await page.load('start/beginnings.js');
     const work = { text: FIRST_PROGRAM, robot: 'tinibot', world: 'obstacles', language: 'en', name: '', view: 'text', level: 'few', words: false, sound: true };
     const programs = new Programs({ python: { ask: async () => ({ text: 'a line' }) }, work, put: (program) => Object.assign(work, program), makePicture() {} });
     let count = 0;
-    const inForm = ({ text, robot, name }) => JSON.stringify([text, robot, name]);
+    let now_ms = 1e12;
+    Date.now = () => (now_ms += 1);
+    let told = '';
+    pageState.note.subscribe((said) => { told ||= said; });
+    const refusals = ['not_kept', 'kept_too_long'].map((key) => textOf(key));
+    const list = page.byId('versions');
+    list.append(document.createElement('li')); // with the button for a new one
+    const inForm = (versions) => JSON.stringify(versions.map(({ text, robot, name }) => [text, robot, name]));
+    const store = window.localStorage;
+    const fits = (versions) => versions.length <= 40 && JSON.stringify(versions).length <= store.roomFor('tiniscript.versions')
+      && (versions.length < 2 || versions.reduce((sum, { text }) => sum + text.length, 0) <= MOST_CHARACTERS);
+    /** The newest are kept, as many as there is room for; where not even one is, all stay that were there. @returns whether this one is there */
+    const keeps = (act, before, wanted, version) => {
+      let most = version?.text.length > MOST_CHARACTERS ? 0 : wanted.length;
+      while (most && !fits(wanted.slice(0, most))) most -= 1;
+      const kept = most || !wanted.length ? wanted.slice(0, most) : before;
+      if (inForm(loadVersions()) !== inForm(kept)) throw new Error(`${act}: ${loadVersions().length} are kept in place of ${kept.length} of ${wanted.length}`);
+      const isKept = !version || kept.includes(version);
+      if (refusals.includes(told) === isKept) throw new Error(`${act}: it is ${isKept ? '' : 'not '}kept, and the page says ${told}`);
+      return isKept;
+    };
+    const does = (act) => {
+      pageState.note.set('');
+      told = '';
+      return act();
+    };
     return async (chance, isGood) => {
-      const store = window.localStorage;
       const ends = new Set();
       const acts = {
-        writes: () => { work.text = `// ${(count += 1)}\n${'F(1);'.repeat(chance.of([1, 20, 30_000, 60_000, 90_000]))}`; },
+        writes: () => { work.text = `// ${(count += 1)}\n${'F(1);'.repeat(1 + chance.below(chance.of([20, 30_000, 90_000])))}`; },
         again: () => { work.text = chance.of(loadVersions())?.text ?? work.text; },
         blank: () => { work.text = ' '; },
         run: () => page.byId('run').click(),
@@ -1832,7 +1858,7 @@ const PARTS = {
         lesson: () => programs.replaceProgram({ text: `S; // ${(count += 1)}`, robot: chance.of(['tinibot', 'liner']), name: '' }),
         older: () => {
           page.byId('my_programs').click();
-          chance.of([...page.byId('versions').children, null])?.children[0].click();
+          chance.of([...list.children, null])?.children[0]?.click();
         },
         names: () => {
           page.byId('program_name').value = `name ${(count += 1)}`;
@@ -1853,31 +1879,30 @@ const PARTS = {
         },
       };
       const keeping = ['run', 'opens', 'new', 'lesson', 'older', 'names', 'hides', 'leaves', 'link'];
+      for (let k = chance.of([0, 0, 0, 0, 0, 38]); k > 0; k -= 1) storeVersion({ text: `W(${(count += 1)});`, robot: 'tinibot', name: '' });
       for (let k = 4 + chance.below(16); k > 0; k -= 1) {
-        if (chance() < 0.1) store.room = chance.of([Infinity, Infinity, 400_000, 100_000, 0]);
+        if (chance() < 0.2) store.room = [...store].reduce((sum, [, whole]) => sum + whole.length, 0) + chance.of([Infinity, 300_000, 100_000, 1000, 100, 0]);
         const act = chance.of(Object.keys(acts));
         const before = { ...work, ...(act === 'names' && { name: `name ${count + 1}.ts` }) };
         const kept = loadVersions();
-        pageState.note.set('');
-        let told = '';
-        pageState.note.subscribe((said) => { told ||= said; });
-        await acts[act]();
-        const now = loadVersions();
+        await does(acts[act]);
         if (!keeping.includes(act) || !before.text.trim() || before.text === FIRST_PROGRAM) continue;
         if (act === 'names' && store.room === Infinity && loadWork()?.name !== before.name) throw new Error(`its name is ${loadWork()?.name}`);
+        const version = { text: before.text, robot: before.robot, name: before.name, at_ms: now_ms };
         const others = kept.filter(({ text, robot }) => text !== before.text || robot !== before.robot);
-        const wanted = [before, ...others].map(inForm);
-        if (before.text.length > MOST_CHARACTERS || !now.length || inForm(now[0]) !== wanted[0]) {
-          if (before.text.length <= MOST_CHARACTERS && store.roomFor('tiniscript.versions') >= before.text.length + 1000) throw new Error(`${act} loses ${before.text.slice(0, 20)}`);
-          if (!told) throw new Error(`${act}: nobody says that it is not kept`);
-          ends.add('full');
-          continue;
-        }
-        const fits = now.length === wanted.length || now.length === 40 || store.room < Infinity
-          || now.reduce((sum, { text }) => sum + text.length, 0) + others[now.length - 1].text.length > MOST_CHARACTERS;
-        if (`${now.map(inForm)}` !== `${wanted.slice(0, now.length)}` || !fits) throw new Error(`${act}: ${now.length} are kept of ${wanted.length}`);
-        if (now.length > 40 || (now.length > 1 && now.reduce((sum, { text }) => sum + text.length, 0) > MOST_CHARACTERS)) throw new Error('too many are kept');
-        ends.add('kept');
+        ends.add(keeps(act, kept, [version, ...others], version) ? 'kept' : 'full');
+        if (act !== 'opens') continue;
+        const stored = loadVersions();
+        const number = chance.below(stored.length);
+        const row = list.children[1 + number];
+        if (!row?.children[1]) continue; // it is in the editor
+        const deleted = stored[number];
+        does(() => row.children[1].click());
+        keeps('deletes', stored, stored.filter((each) => each !== deleted));
+        if (chance() < 0.5) storeVersion({ text: `T(${(count += 1)});`.repeat(chance.of([1, 10_000])), robot: 'tinibot', name: '' }); // another tab does
+        const left = loadVersions();
+        does(() => row.children[0].click());
+        keeps('brings back', left, [...left, deleted].sort((first, second) => second.at_ms - first.at_ms), deleted);
       }
       store.room = Infinity;
       return { ends: [...ends], seen: [] };

@@ -41,15 +41,23 @@ export function deleteVersion({ text, robot: robotName }) {
 
 /** Keeps a program again that was deleted, where it was. @param {Version} version @returns {boolean} whether it is kept */
 export function restoreVersion(version) {
-  return storeAll([...loadVersions(), version].sort((first, second) => second.at_ms - first.at_ms));
+  return storeAll([...loadVersions(), version].sort((first, second) => second.at_ms - first.at_ms), version);
 }
 
-/** @param {Version[]} versions the newest first @returns {boolean} whether any is kept */
-function storeAll(versions) {
+/**
+ * Keeps as many as there is room for; where not even the newest has any, all stay that were there.
+ * @param {Version[]} versions the newest first
+ * @param {Version} [wanted] one of them
+ * @returns {boolean} whether that one is kept
+ */
+function storeAll(versions, wanted = versions[0]) {
   const newVersions = versions.slice(0, MOST_VERSIONS);
   while (newVersions.length > 1 && newVersions.reduce((sum, version) => sum + version.text.length, 0) > MOST_CHARACTERS) newVersions.pop();
-  while (!storeText(STORAGE_KEY, JSON.stringify(newVersions)) && newVersions.length) newVersions.pop();
-  return newVersions.length > 0;
+  while (!storeText(STORAGE_KEY, JSON.stringify(newVersions))) {
+    newVersions.pop();
+    if (!newVersions.length) return false;
+  }
+  return newVersions.some((version) => version === wanted);
 }
 
 /** Whether two programs differ in nothing that a robot does. @param {{text: string, robot: string}} first @param {{text: string, robot: string}} second */
