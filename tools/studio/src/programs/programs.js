@@ -14,7 +14,7 @@ import { isShippedProgram } from '../start/beginnings.js';
 import { showProgramInstead } from '../start/screens.js';
 import { pageState } from '../page/page_state.js';
 import { labelOf, currentLanguage, text } from '../page/texts.js';
-import { deleteVersion, isSameProgram, loadVersions, MOST_CHARACTERS, restoreVersion, storeVersion, versionTitle } from './versions.js';
+import { deleteVersion, loadVersions, MOST_CHARACTERS, restoreVersion, sameProgramAs, storeVersion, versionTitle } from './versions.js';
 import { makeThumbnail } from '../start/thumbnail.js';
 import { robotOf } from '../page/words.js';
 import { storeWork } from './work.js';
@@ -228,7 +228,7 @@ export class Programs {
   }
 
   #showVersions() {
-    const language = currentLanguage();
+    const language = currentLanguage(), isOpen = sameProgramAs(this.#page.work);
     const timeFormat = new Intl.DateTimeFormat(language, { dateStyle: 'short', timeStyle: 'short' });
     const rows = loadVersions().map((version, index, versions) => {
       const storedAt = new Date(version.at_ms);
@@ -243,7 +243,7 @@ export class Programs {
       }, makeThumbnail(version.text, version.robot), makeElement('strong', '', title), timeElement);
       openButton.title = `${title}, ${robotLabel}`;
       const row = makeElement('li', '', openButton);
-      if (isSameProgram(version, this.#page.work)) return row; // it is in the editor, and would be kept again
+      if (isOpen(version)) return row; // it is in the editor, and would be kept again
       const deleteButton = makeButton('', () => this.#deleteVersion(version, row), '×');
       deleteButton.className = 'delete';
       deleteButton.title = deleteButton.ariaLabel = text('program_delete', { name: title });

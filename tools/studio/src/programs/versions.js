@@ -30,7 +30,8 @@ export function loadVersions() {
 export function storeVersion({ text, robot: robotName, name }, at_ms = Date.now()) {
   if (!text.trim()) return true;
   if (text.length > MOST_CHARACTERS) return false;
-  const otherVersions = loadVersions().filter((version) => !isSameProgram(version, { text, robot: robotName }));
+  const isSame = sameProgramAs({ text, robot: robotName });
+  const otherVersions = loadVersions().filter((version) => !isSame(version));
   return storeAll([{ text, robot: robotName, name, at_ms }, ...otherVersions]);
 }
 
@@ -60,14 +61,19 @@ function storeAll(versions, wanted = versions[0]) {
   return newVersions.some((version) => version === wanted);
 }
 
-/** Whether two programs differ in nothing that a robot does. @param {{text: string, robot: string}} first @param {{text: string, robot: string}} second */
-export function isSameProgram(first, second) {
-  return first.robot === second.robot && essenceOf(first.text) === essenceOf(second.text);
+/**
+ * Returns what says whether another program differs from this one in nothing that a robot does.
+ * @param {{text: string, robot: string}} program
+ * @returns {(other: {text: string, robot: string}) => boolean}
+ */
+export function sameProgramAs({ text, robot: robotName }) {
+  const essence = essenceOf(text);
+  return (other) => other.robot === robotName && essenceOf(other.text) === essence;
 }
 
-/** A program without what changes nothing: spaces, empty lines, and what ends a line. @param {string} text */
+/** A program without what changes nothing: spaces, empty lines, and what ends a line. Each step takes as long as the text is. @param {string} text */
 function essenceOf(text) {
-  return text.replace(/[;\s]*(?:\n\s*|$)/g, '\n').replace(/[ \t]+/g, ' ').replace(/ ?([^\w ]) ?/g, '$1').trim();
+  return text.replace(/[^\S\n]+/g, ' ').replace(/ ?([^\w ]) ?/g, '$1').replace(/;+/g, ';').replace(/;?\n[;\n]*/g, '\n').replace(/^[;\n]+|[;\n]$/g, '').trim();
 }
 
 /**
