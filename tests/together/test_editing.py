@@ -2,7 +2,8 @@
 
 Two editors are typed into, character by character, while answers are on their way. What was typed
 meanwhile in another line stays; in the same line the answer is void, and the next one goes on from
-the one before. In the end both have the same text.
+the one before. A page may be loaded again at any time: what hangs on nothing stays in its text. In
+the end both have the same program.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import pytest
 
 from tests.together.world import FIRST
 from tiniscript.studio import page_together, worker
+from tiniscript.studio.block_reading import split_loose
 from tiniscript.together.form import change_of
 from tiniscript.together.layout import parse_tree, text_of
 from tiniscript.together.ordering import SharedProgram
@@ -31,13 +33,22 @@ class Editor:
 
     def __init__(self, name: str, program: SharedProgram) -> None:
         self.program = program
-        self.text, self.at, self.is_hot = "", 0, False
+        self.name = name
+        self.text = ""
+        self.begin(None)
+
+    def begin(self, kept: Json | None) -> None:
+        """Join the group, with what the page has kept of before it was loaded again."""
+        self.at, self.is_hot = 0, False
         self.keys: list[str] = []  # that are to be pressed
         self.news: list[Json] = []
         self.python: tuple[Any, Any] = (None, None)
-        self.shown = self.ask({"do": "group_begin", "news": {**program.news(name, -1, ""),
-                                                             "page": name}})  # fmt: skip
-        self.change(self.shown["changes"])
+        news = {**self.program.news(self.name, -1, ""), "page": self.name}
+        self.take(self.ask({"do": "group_begin", "news": news, "kept": kept}))
+
+    @property
+    def loose(self) -> list[str]:
+        return [row for row in split_loose(self.text.split("\n"))[1] if row]
 
     def ask(self, request: Json) -> Json:
         """Each page has a Python of its own."""
@@ -82,12 +93,17 @@ class Editor:
         self.news.append(json.loads(json.dumps(news)))
 
     def types(self, chance: Random) -> bool:
-        """Press a key, of an instruction below a line or any; return whether a line is finished."""
+        """Press a key, of an instruction below a line, of one that hangs on nothing, or any; return
+        whether a line is finished.
+        """
         if not self.keys and chance.random() < 0.7:
             end = self.text.find("\n", chance.randint(0, len(self.text)))
             self.goes_to(end if end >= 0 else len(self.text))
             self.keys = list(f"\n{chance.choice(('F', 'b', 'L'))}({chance.randint(1, 99)}, 50)")
             self.keys += ["\n"] * (chance.random() < 0.5)
+            if chance.random() < 0.2:
+                self.goes_to(len(self.text))
+                self.keys = list(f"\n/// F({chance.randint(1, 99)}, 50)")
         key, line = self.keys.pop(0) if self.keys else chance.choice(KEYS), self.line
         if key == BACK:
             self.text, self.at = (
@@ -112,6 +128,7 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
     program = SharedProgram(parse_tree(FIRST, lambda: f"i.{next(ids)}"), "e")
     editors = [Editor(name, program) for name in ("m1", "m2")]
     assert {editor.text for editor in editors} == {FIRST}
+    reloads = 0
     for _ in range(TURNS):
         editor = chance.choice(editors)
         for _ in range(chance.randint(1, 6)):
@@ -129,6 +146,11 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
         editor.take(answer)
         if editor.is_hot:  # nobody touches the line that is being typed
             assert editor.text.split("\n")[editor.line] == row
+        if chance.random() < 0.1:
+            loose = editor.loose
+            editor.begin(answer["kept"])
+            assert editor.loose[len(editor.loose) - len(loose) :] == loose
+            reloads += bool(loose)
     for editor in editors:
         editor.is_hot = False
         editor.take(editor.step())
@@ -137,7 +159,7 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
         for editor in editors:
             editor.hears()
             editor.take(editor.step())
-    assert program.number > 1
+    assert program.number > 1 and reloads
     for editor in editors:
         page = editor.python[0][1]
         assert page.base.checksum() == program.tree.checksum()

@@ -71,7 +71,8 @@ def step(fields: Json, data: bytes) -> Json:
     assert state.version == fields["from"], "no such answer"
     text, page, blocks = data.decode(), state.page.copy(), state.blocks
     caret, is_line_edited = fields["caret"], fields["hot"]
-    rows, loose = split_loose(_rows(text, caret if is_line_edited else None))
+    text_rows = _rows(text, caret if is_line_edited else None)
+    rows, loose = split_loose(text_rows)
     page.type(rows, caret, is_line_edited)
     page.flush()
     printed: Printed | None = None
@@ -85,7 +86,12 @@ def step(fields: Json, data: bytes) -> Json:
     if "back" in fields:
         (page.undo if fields["back"] == "undo" else page.redo)()
     _previous, _newest = state, State(_newest.version + 1, page, loose, blocks)
-    answer = _answer(_newest, text, caret if caret < len(rows) else None)
+    carets = None
+    if caret < len(rows):
+        carets = caret, page.caret
+    elif loose:  # which end both texts
+        carets = caret, caret - len(text_rows) + len(_all_rows(_newest))
+    answer = _answer(_newest, text, carets)
     if printed is not None:
         is_shown = _text(_newest) == printed.text
         answer |= {"places": printed.places, "is_shown": is_shown}
@@ -172,19 +178,23 @@ def _rows(text: str, edited_line: int | None) -> list[str]:
 
 def _text(state: State) -> str:
     """Return the whole text of an answer; it ends its last line."""
-    rows = [*state.page.lines, *([""] if state.loose and state.page.lines else []), *state.loose]
-    return "".join(f"{row}\n" for row in rows)
+    return "".join(f"{row}\n" for row in _all_rows(state))
 
 
-def _answer(state: State, text: str, caret: int | None) -> Json:
+def _all_rows(state: State) -> list[str]:
+    return [*state.page.lines, *([""] if state.loose and state.page.lines else []), *state.loose]
+
+
+def _answer(state: State, text: str, carets: tuple[int, int] | None) -> Json:
+    """`carets`: the line of the caret, in the editor's text and in that of the answer."""
     page = state.page
     new_text = _text(state)
-    is_open = caret is not None and not text.endswith("\n")
+    is_open = carets is not None and not text.endswith("\n")
     if is_open or new_text == "\n" or new_text.endswith("\n\n"):
         new_text = new_text[:-1]
     return {
         "version": state.version,
-        "changes": changes(text, new_text, None if caret is None else (caret, page.caret)),
+        "changes": changes(text, new_text, carets),
         "ids": page.ids_of_lines(),
         "pending": [data_of_change(change) for change in page.pending_changes[:MOST_CHANGES]],
         "since": -1 if page.is_astray else page.number,
@@ -197,20 +207,26 @@ def _answer(state: State, text: str, caret: int | None) -> Json:
 
 
 def changes(
-    old_text: str, new_text: str, caret: tuple[int, int] | None = None
+    old_text: str, new_text: str, carets: tuple[int, int] | None = None
 ) -> list[tuple[int, int, str]]:
     """Return what makes the new text of the old: from, to and what is put in, in units of UTF-16.
 
-    A line that has changed keeps what is the same in it, where its caret and its undo are. `caret`:
-    the line that the caret is in, in both; where that is the same, it is not touched.
+    A line that has changed keeps what is the same in it, where its caret and its undo are.
+    `carets`: the line that the caret is in, in both; where that is the same, it is not touched.
     """
     old_rows, new_rows = _with_ends(old_text), _with_ends(new_text)
-    if caret is None or old_rows[caret[0] : caret[0] + 1] != new_rows[caret[1] : caret[1] + 1]:
-        return _line_changes(old_rows, new_rows, 0)
-    i, j = caret
-    return _line_changes(old_rows[:i], new_rows[:j], 0) + _line_changes(
-        old_rows[i:], new_rows[j:], sum(map(_utf16_length, old_rows[:i]))
-    )
+    if carets is not None:
+        i, j = carets
+        old_row, new_row = ("".join(rows[k : k + 1]).rstrip("\n")
+                            for rows, k in ((old_rows, i), (new_rows, j)))  # fmt: skip
+        if old_row == new_row:  # its end is no part of it: lines may come below an open one
+            start = sum(map(_utf16_length, old_rows[:i])) + _utf16_length(old_row)
+            old_rest, new_rest = ("".join(rows[k:])[len(old_row) :]
+                                  for rows, k in ((old_rows, i), (new_rows, j)))  # fmt: skip
+            return _line_changes(old_rows[:i], new_rows[:j], 0) + _line_changes(
+                _with_ends(old_rest), _with_ends(new_rest), start
+            )
+    return _line_changes(old_rows, new_rows, 0)
 
 
 def _line_changes(
