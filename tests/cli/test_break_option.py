@@ -47,8 +47,8 @@ def program(tmp_path: Path, pty_robot: PtyRobot) -> Path:
 
 def at_a_terminal(robot: PtyRobot, program: Path, *lines: int) -> Terminal:
     breaks = [word for line in lines for word in ("--break", str(line))]
-    port = ("--port", robot.port)
-    return Terminal("upload", program, "--no-save", *port, *breaks, size=(100, 50))
+    port_option = ("--port", robot.port)
+    return Terminal("upload", program, "--no-save", *port_option, *breaks, size=(100, 50))
 
 
 def halt_output(terminal: Terminal) -> list[str]:

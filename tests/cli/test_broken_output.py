@@ -56,20 +56,20 @@ def test_upload_into_a_pipe_that_closes_stops_the_robot(
 
 def test_a_program_that_prints_nothing_is_stopped_too(pty_robot: PtyRobot) -> None:
     """It has no end, and tsc has nothing to write that could fail."""
-    port = ("--port", pty_robot.port)
+    port_option = ("--port", pty_robot.port)
     for words in (("upload", "-e", FOREVER), ("start",)):
-        code, err = after_lines(1, *words, *port)
+        code, err = after_lines(1, *words, *port_option)
         assert code == EXIT_OF_CLOSED_PIPE
         assert err.count("\n") == 1 and "stopped the robot" in err
         assert not pty_robot.moves
-    code, err = after_lines(0, "live", FOREVER.removeprefix("SI|"), *port)
+    code, err = after_lines(0, "live", FOREVER.removeprefix("SI|"), *port_option)
     assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in err
 
 
 def test_many_robots_that_show_nothing_are_stopped() -> None:
     with RobotFleet([robots.load("tinibot").kit] * 2) as room:
-        ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
-        code, _ = after_lines(0, "upload", "-e", FOREVER, *ports)
+        port_options = [word for pupil in room.pupils for word in ("--port", pupil.port)]
+        code, _ = after_lines(0, "upload", "-e", FOREVER, *port_options)
         assert code == EXIT_OF_CLOSED_PIPE
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
 
@@ -96,25 +96,28 @@ def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
 
 
 def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
-    port = ("--port", pty_robot.port)
-    assert after_lines(1, "upload", "-e", SHOWS, *port, both=True) == (EXIT_OF_CLOSED_PIPE, "")
+    port_option = ("--port", pty_robot.port)
+    assert after_lines(1, "upload", "-e", SHOWS, *port_option, both=True) == (
+        EXIT_OF_CLOSED_PIPE,
+        "",
+    )
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
-    code, err = after_lines(2, "start", *port)
+    code, err = after_lines(2, "start", *port_option)
     assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in err
-    code, err = after_lines(1, "live", "LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP", *port)
+    code, err = after_lines(1, "live", "LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP", *port_option)
     assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in err
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
 
 
 def test_what_goes_on_alone_goes_on(pty_robot: PtyRobot) -> None:
-    port = ("--port", pty_robot.port)
-    code, err = after_lines(0, "upload", "-e", SHOWS, "--detach", *port)
+    port_option = ("--port", pty_robot.port)
+    code, err = after_lines(0, "upload", "-e", SHOWS, "--detach", *port_option)
     assert (code, err) == (EXIT_OF_CLOSED_PIPE, "")
     assert pty_robot.moves
-    code, err = after_lines(0, "doctor", *port)
+    code, err = after_lines(0, "doctor", *port_option)
     assert (code, err) == (EXIT_OF_CLOSED_PIPE, "")
     assert pty_robot.moves
-    code, err = after_lines(2, "monitor", *port)
+    code, err = after_lines(2, "monitor", *port_option)
     assert code == EXIT_OF_CLOSED_PIPE and "stopped" not in err
     pty_robot.until(lambda: pty_robot.moves, "it drives on")
 
@@ -122,8 +125,8 @@ def test_what_goes_on_alone_goes_on(pty_robot: PtyRobot) -> None:
 def test_many_robots_are_stopped() -> None:
     """At once, and not only by themselves a second later."""
     with RobotFleet([robots.load("tinibot").kit] * 3) as room:
-        ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
-        code, _ = after_lines(4, "upload", "-e", SHOWS, *ports)
+        port_options = [word for pupil in room.pupils for word in ("--port", pupil.port)]
+        code, _ = after_lines(4, "upload", "-e", SHOWS, *port_options)
         assert code == EXIT_OF_CLOSED_PIPE
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
         for pupil in room.pupils:
@@ -254,8 +257,8 @@ def unread(*words: str) -> Command:
 @pytest.mark.parametrize("extra", [[], ["--json"]])
 def test_a_fleet_whose_output_nobody_reads_ends_with_ctrl_c(extra: list[str]) -> None:
     with RobotFleet([robots.load("tinibot").kit] * 3) as room:
-        ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
-        command = unread("upload", "-e", TALKS, *ports, *extra)
+        port_options = [word for pupil in room.pupils for word in ("--port", pupil.port)]
+        command = unread("upload", "-e", TALKS, *port_options, *extra)
         assert any(pupil.moves for pupil in room.pupils)
         command.signal(signal.SIGINT)
         assert command.process.wait(HANGS_S) == 2
@@ -270,10 +273,10 @@ def test_a_fleet_whose_output_nobody_reads_ends_with_ctrl_c(extra: list[str]) ->
 def test_a_command_whose_output_nobody_reads_ends_with_ctrl_c(
     pty_robot: PtyRobot, verb: str
 ) -> None:
-    port = ("--port", pty_robot.port)
+    port_option = ("--port", pty_robot.port)
     if verb == "monitor":
         assert on(pty_robot, "upload", "-e", TALKS, "--detach").code == 0
-    command = unread(verb, *port, *(("-e", TALKS) if verb == "upload" else ()))
+    command = unread(verb, *port_option, *(("-e", TALKS) if verb == "upload" else ()))
     command.signal(signal.SIGINT)
     assert command.process.wait(HANGS_S) in (0, 2)
     if verb == "upload":

@@ -55,19 +55,19 @@ class Class(list[Esp32PtyRobot]):
             assert claimed(robot).code == 0
             assert on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
             result = on(
-                robot, "set", "wifi", *self.place, "--user", "robots", data=SECRET + b"\n"
+                robot, "set", "wifi", *self.place_options, "--user", "robots", data=SECRET + b"\n"
             ).gives(0)
             assert (
                 "in the class 3b" in result.out and SECRET.decode() not in result.out + result.err
             )
 
     @property
-    def place(self) -> list[str]:
+    def place_options(self) -> list[str]:
         return ["--broker", f"127.0.0.1:{self.broker.port}", "--class", "3b"]
 
     @property
     def access(self) -> list[str]:
-        return [*self.place, "--user", "robots"]
+        return [*self.place_options, "--user", "robots"]
 
     def close(self) -> None:
         for robot in self:
@@ -143,8 +143,8 @@ def test_who_has_no_key_sees_and_stops(
     for data in (b"wrong\n", b"\n", b""):
         result = process("class", *room.access, data=data)
         assert result.code in (2, 3) and result.out == "" and "assword" in result.err, data
-    process("class", *room.place).gives(3, "does not let this computer in")
-    assert "no deja entrar" in process("class", *room.place, "--lang", "es").err
+    process("class", *room.place_options).gives(3, "does not let this computer in")
+    assert "no deja entrar" in process("class", *room.place_options, "--lang", "es").err
     tsc(room, "list").gives(0)
     result = tsc(room, "upload", "-e", DRIVES).gives(3)
     assert result.out.count("has an owner") == 2
@@ -325,15 +325,15 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
 def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
     """What a stranger retains reaches no terminal raw."""
     inside("class", "--broker", "127.0.0.1:1").gives(3, "no MQTT broker responds")
-    place = ("--broker", f"127.0.0.1:{broker.port}")
+    broker_option = ("--broker", f"127.0.0.1:{broker.port}")
     for words in ([], ["stop"], ["upload", "-e", DRIVES], ["show"]):
-        inside("class", *words, *place).gives(3, "no robot of the class class")
-    assert inside("class", "--tls", *place).code == 3
+        inside("class", *words, *broker_option).gives(3, "no robot of the class class")
+    assert inside("class", "--tls", *broker_option).code == 3
     stranger = broker.connected()
     for robot, data in (("00000001", b"+\x1b[2Jtsc: ok\n"), ("00000002", b"-\x9b2J\r")):
         stranger._client.publish(f"{ROOT}/class/{robot}", data, retain=True)
     stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)
-    result = process("class", *place).gives(3)
+    result = process("class", *broker_option).gives(3)
     assert not set(result.out + result.err) & set("\x1b\x9b\r")
     assert "is no longer connected to the broker: it is" in result.out
 
@@ -386,14 +386,14 @@ def keep(client: Broker, topic: str, payload: bytes) -> None:
 def test_a_large_message_that_a_broker_keeps_is_named_and_a_stop_is_told_as_sent(
     broker: Mosquitto,
 ) -> None:
-    place = ["--broker", f"127.0.0.1:{broker.port}", "--class", "3b"]
+    place_options = ["--broker", f"127.0.0.1:{broker.port}", "--class", "3b"]
     keep(broker.connected(), f"{ROOT}/3b/big", bytes(5000))
     named = ("bytes under tiniscript/3b/big", "no robot of the class 3b")
-    result = process("class", "list", *place).gives(3, *named)
+    result = process("class", "list", *place_options).gives(3, *named)
     assert "no answer of a broker" not in result.err
-    process("class", "stop", *place).gives(3, "the stop for all robots", *named)
+    process("class", "stop", *place_options).gives(3, "the stop for all robots", *named)
     keep(broker.connected(), f"{ROOT}/3b/0badcafe", b"-ANA")
-    process("class", "stop", *place, "--lang", "es").gives(3, "llegó al broker", "3b/big")
+    process("class", "stop", *place_options, "--lang", "es").gives(3, "llegó al broker", "3b/big")
 
 
 @drawn

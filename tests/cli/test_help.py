@@ -349,7 +349,8 @@ def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
 @each_row("words, english, spanish", [
     (["doctor", "--port"], "--port needs a value", "a --port le falta su valor"),
     (["doctor", "--json=3"], "--json takes no value: '3'", "--json no lleva valor: '3'"),
-    (["doctor", "x"], "x has no meaning here", "no conozco x"),
+    (["doctor", "x"], "x is not an option or argument of this command",
+     "x no es una opción ni un argumento de este comando"),
 ])  # fmt: skip
 def test_what_argparse_says_is_said_in_plain_words(
     tsc: Tsc, words: list[str], english: str, spanish: str

@@ -1,4 +1,4 @@
-"""What is at the other end of a port: each is told from the others, and nothing is disturbed."""
+"""What is at the other end of a port: every kind is recognized, and none is disturbed."""
 
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ class Between:
         self.zeros_ms: int | None = None
 
     def hears(self, data: bytes, now_ms: int) -> bytes:
-        """Return what the computer gets for what it has sent."""
+        """Return the bytes that the computer receives in reply to `data`."""
         replies = b""
         if b"\0\0\0\0" in data:
             if not self.cuts_stops:

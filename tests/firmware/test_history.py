@@ -457,7 +457,7 @@ def new_memory() -> bytes:
 
 
 @lru_cache(maxsize=1)
-def claimed() -> tuple[bytes, KeyRings]:
+def claimed_memory_and_keys() -> tuple[bytes, KeyRings]:
     """Return what a robot keeps that has an owner and a teacher, and everybody's keys."""
     table, keys = Owned(new_memory()), Keys()
     for which in (KEY_OWNER, KEY_TEACHER):
@@ -481,7 +481,7 @@ def check(seed: int, kind: str, before: str) -> int:
     """Compare a robot with its twin; return how much there was to be seen."""
     rng = random.Random(f"{seed} {kind} {before}")
     write_ms = rng.choice((3.4, 3.4, 12))
-    first, rings = deepcopy(claimed()) if before == "owners" else (new_memory(), {})
+    first, rings = deepcopy(claimed_memory_and_keys()) if before == "owners" else (new_memory(), {})
     scene = Scene(KINDS[kind], first, write_ms, clock(rng), rings)
     for _ in range(rng.choice((1, 2, 4, 8))):
         rng.choice(BEFORE[before].steps)(scene, rng, BEFORE[before].asks)

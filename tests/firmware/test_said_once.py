@@ -138,8 +138,8 @@ class Client:
         passed_ms = now_ms - self.confirmed_ms
         must = not self.causes or passed_ms > AGAIN_MS + 2
         self.stops.append(Stop(now_ms, must, None if self.causes else self.epoch))
-        may_be_clear = CLEAR in (asked for asked, _ in self.waiting.values())
-        if not self.causes or passed_ms >= AGAIN_MS - 2 or may_be_clear:
+        is_clear_pending = CLEAR in (asked for asked, _ in self.waiting.values())
+        if not self.causes or passed_ms >= AGAIN_MS - 2 or is_clear_pending:
             self.confirmed_ms = now_ms
         self.causes.append((now_ms, cause))
         self.cause = self.causes[0][1]

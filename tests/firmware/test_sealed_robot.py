@@ -50,7 +50,9 @@ UNPLUGGED = 8
 MOST_TIMES, SHOWN_MS = 3, 500  # each piece again, and a key is shown
 
 
-def recorded(table: Owned, session: Session, text: str) -> tuple[list[bytes], list[bytes]]:
+def upload_and_capture(
+    table: Owned, session: Session, text: str
+) -> tuple[list[bytes], list[bytes]]:
     """Have a program run; return the frames to the robot and those back."""
     return table.frames(session, session.upload(image_of(text), saves=False))
 
@@ -67,7 +69,7 @@ def opened(*defines: str) -> tuple[Owned, Session, Keys]:
 def test_a_firmware_without_seals_does_as_before() -> None:
     table, session, _ = opened("tiniscript_without_seals")
     assert session.robot and session.robot.values.features & (SEALS | OWNERS) == OWNERS
-    sent, _ = recorded(table, session, SHORT)
+    sent, _ = upload_and_capture(table, session, SHORT)
     assert not any(frame.is_sealed for frame in map(decode_frame, sent) if frame)
     sealed = Seal(bytes(16)).seal_frame(Frame(BY_NAME["START"].number, 1, 0, b"\0"))
     reply = table.answer(sealed)
@@ -77,7 +79,7 @@ def test_a_firmware_without_seals_does_as_before() -> None:
 def test_what_is_not_sealed_has_no_authority() -> None:
     """Who writes into the owner's line, in its epoch, with the next number."""
     table, session, _ = opened()
-    recorded(table, session, FOREVER)
+    upload_and_capture(table, session, FOREVER)
     open_to_all = {"HELLO", "PING", "STATUS", "STOP", "CLAIM", "AUTHENTICATE", "IDENTIFY"}
     for message in MESSAGES:
         if message.number >= FIRST_EVENT or message.name in {*open_to_all, *RADIO_MESSAGES}:
@@ -96,7 +98,7 @@ def test_what_is_not_sealed_has_no_authority() -> None:
 def test_an_answer_is_told_again_to_nobody_else() -> None:
     """The same number without a seal gets no receipt and no bytes of the program."""
     table, session, _ = opened()
-    recorded(table, session, SHORT)
+    upload_and_capture(table, session, SHORT)
     request = session.fetch()
     assert table.outcome(session, request) == "OK"
     frame = Frame(BY_NAME["FETCH"].number, session._seq, session._epoch, b"\0\0")
@@ -109,7 +111,7 @@ def test_a_stranger_keeps_no_program_running() -> None:
     ping, hello = BY_NAME["PING"].number, BY_NAME["HELLO"].number
     for is_greeting in (False, True):
         table, session, _ = opened()
-        recorded(table, session, FOREVER)
+        upload_and_capture(table, session, FOREVER)
         begun_ms = table.robot.now_ms
         if is_greeting:
             payload = bytes([MAJOR, *bytes(5), *b"abcd"])
@@ -125,7 +127,7 @@ def test_a_relay_cannot_say_that_it_worked() -> None:
     """Nothing reaches the robot, and what comes back is forged in all ways but with the key."""
     chance = random.Random(1)
     table, session, _ = opened()
-    sent, replies = recorded(table, session, SHORT)
+    sent, replies = upload_and_capture(table, session, SHORT)
     table.pass_time(session, 400)
     request = session.live(image_of(SHORT).code)
     for _ in range(25_000):
@@ -193,7 +195,7 @@ def test_no_refusal_of_a_stranger_takes_a_key(is_pending: bool, is_cut: bool) ->
 
 def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
     table, session, _ = opened()
-    recorded(table, session, FOREVER)
+    upload_and_capture(table, session, FOREVER)
     session.events()
     session.stop(table.robot.now_ms)
     stopped = Frame(BY_NAME["STOPPED"].number, 9, session._epoch + 1, b"\1", is_reply=True)
@@ -208,7 +210,7 @@ def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
     table.pass_time(session, 50)
     assert [event for event in session.events() if event.name == "STOPPED"]
     assert table.robot.is_latched
-    recorded(table, session, FOREVER)
+    upload_and_capture(table, session, FOREVER)
     table.robot.step(flags=PRESSED)
     assert table.robot.is_latched
 
@@ -220,7 +222,7 @@ def test_a_stop_whose_seal_is_wrong_stops_all_the_same(payload: bytes) -> None:
         if not is_claimed:
             table = Owned()
             session = table.session()
-        recorded(table, session, FOREVER)
+        upload_and_capture(table, session, FOREVER)
         table.answer(Frame(BY_NAME["STOP"].number, 1, 0, payload, is_sealed=True))
         assert table.robot.is_latched
 
@@ -311,7 +313,7 @@ def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
 
 def test_another_session_with_the_same_numbers_is_another_seal() -> None:
     table, session, keys = opened()
-    sent, _ = recorded(table, session, SHORT)
+    sent, _ = upload_and_capture(table, session, SHORT)
     table.pass_time(None, 3000)
     table.robot.did.clear()
     memory = table.robot.memory()
@@ -349,7 +351,7 @@ def attacked(frames: int, seed: int) -> Counter[str]:
     """
     chance = random.Random(seed)
     table, session, _keys = opened()
-    recorded_frames, _ = recorded(table, session, SHORT)
+    recorded_frames, _ = upload_and_capture(table, session, SHORT)
     old = recorded_frames[-1:]
     robot = table.robot
     thief = Thief(chance, old)
@@ -364,7 +366,7 @@ def attacked(frames: int, seed: int) -> Counter[str]:
                 counts["stops"] += 1
             thief.old += thief.sent[-3:]
             session = table.session(_keys, nonce=chance.getrandbits(32))
-            recorded_frames, replies = recorded(table, session, SHORT)
+            recorded_frames, replies = upload_and_capture(table, session, SHORT)
             thief.sent = [frame for frame in recorded_frames if _is_sealed(frame)]
             thief.replies = [data for data in replies if _is_sealed(data)]
             table.pass_time(session, 300)

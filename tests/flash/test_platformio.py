@@ -52,7 +52,7 @@ def changed(path: Path, *changes: tuple[str, str]) -> Iterator[None]:
         path.write_text(before, encoding="utf-8")
 
 
-def says_what_it_is(log: str) -> bool:
+def names_stand_in_if_used(log: str) -> bool:
     """Return whether a log names the stand-ins, or is one of PlatformIO's own platforms."""
     return not prepared()[0] or "Offline stand-in for PlatformIO's platform" in log
 
@@ -67,7 +67,7 @@ def test_tests_pass(native: Path) -> None:
     written = len(re.findall(r"^(?:TEST_)?CASE\(", files, re.MULTILINE))
     assert count and int(count[1]) == int(count[2]) == written > 300, log
     assert "\nPASSED: blocks: BREAK leaves the innermost loop\n" in log
-    assert says_what_it_is(log)
+    assert names_stand_in_if_used(log)
 
 
 def test_a_test_case_that_fails_is_one_and_has_its_name(native: Path) -> None:
@@ -136,7 +136,7 @@ def test_every_robot_has_a_sketch_for_its_board() -> None:
 @pytest.mark.parametrize("name", SKETCHES)
 def test_sketch_builds(project: Path, name: str) -> None:
     log = pio(project, "run", "-e", name).gives(0).out
-    assert says_what_it_is(log)
+    assert names_stand_in_if_used(log)
     assert "warning" not in log, log
     used = {name: int(size) for name, size in re.findall(r"(\w+): .*used (\d+) bytes", log)}
     assert 0 < used["Flash"] < (FLASH_BYTES if "mega" not in name else 7 * FLASH_BYTES)
@@ -175,19 +175,21 @@ def test_a_board_holds_what_its_fuses_leave(board: str, arduino: str) -> None:
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
-@pytest.mark.parametrize(("new", "old"), NEW_NANOS.items())
+@pytest.mark.parametrize(("new_env", "old_env"), NEW_NANOS.items())
 def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
-    project: Path, new: str, old: str
+    project: Path, new_env: str, old_env: str
 ) -> None:
     """What differs is how it is uploaded: as PlatformIO's board for such Nanos."""
     builds: list[bytes] = []
     held: list[int] = []
-    for name in (new, old):
+    for name in (new_env, old_env):
         log = pio(project, "run", "-e", name).gives(0).out
         held += map(int, re.findall(r"Flash: .*bytes from (\d+)", log))
         builds.append((project / ".pio" / "build" / name / "firmware.hex").read_bytes())
     assert builds[0] == builds[1]
-    assert "nanoatmega328new" in pio(project, "project", "config").out.partition(f"env:{new}\n")[2]
+    assert (
+        "nanoatmega328new" in pio(project, "project", "config").out.partition(f"env:{new_env}\n")[2]
+    )
     assert held == [30_720] * 2
 
 

@@ -14,7 +14,7 @@ import pytest
 
 from tests.machines.link import CppLink, cpp_link, link_library
 from tests.support.campaign import each_seed, wanted
-from tests.support.link_channel import World, one_upload, program
+from tests.support.link_channel import World, program, run_upload_scenario
 from tiniscript.bytecode.image import pack, unpack
 
 UNDOS = 100
@@ -38,7 +38,7 @@ def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> N
 
     Of large frames several are under way; some come twice or in another order.
     """
-    counts = Counter(one_upload(cpp_link(is_large), seed) for seed in range(count))
+    counts = Counter(run_upload_scenario(cpp_link(is_large), seed) for seed in range(count))
     assert counts["done"] > count * least, counts
 
 
@@ -46,7 +46,7 @@ def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> N
 @pytest.mark.parametrize(("is_large", "count", "least"), [(False, 150, 0.85), (True, 50, 0.6)])
 def test_uploads_in_pieces(is_large: bool, count: int, least: float) -> None:
     """After a second of silence the rest of a frame is text; the frame comes again."""
-    counts = Counter(one_upload(cpp_link(is_large), seed, Split) for seed in range(count))
+    counts = Counter(run_upload_scenario(cpp_link(is_large), seed, Split) for seed in range(count))
     assert counts["done"] > count * least, counts
 
 
@@ -90,6 +90,8 @@ def test_undos_over_a_bad_radio() -> None:
 if __name__ == "__main__":
     given = wanted(10_000, 1_000_000, "large", "undos", "pieces")
     one = (
-        one_undo if given.undos else partial(one_upload, world_of=Split if given.pieces else World)
+        one_undo
+        if given.undos
+        else partial(run_upload_scenario, world_of=Split if given.pieces else World)
     )
     each_seed(partial(one, link_library(given.large)), given)

@@ -16,7 +16,7 @@ import pytest
 from tests.machines.link import CppLink, cpp_link, link_library
 from tests.support.campaign import each_seed, wanted
 from tests.support.link_cases import KIT
-from tests.support.link_channel import World, damaged, one_upload, program
+from tests.support.link_channel import World, damaged, program, run_upload_scenario
 from tests.support.owners import Keys
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
@@ -141,7 +141,9 @@ class QuietWorld(SealedWorld):
 )
 def test_sealed_uploads_over_a_bad_radio(world: type[World], is_large: bool, least: float) -> None:
     """A stranger may end sessions; nothing wrong is done or believed, and much is still done."""
-    counts = Counter(one_upload(cpp_link(is_large), seed, world) for seed in range(UPLOADS))
+    counts = Counter(
+        run_upload_scenario(cpp_link(is_large), seed, world) for seed in range(UPLOADS)
+    )
     assert counts["done"] > UPLOADS * least, counts
 
 
@@ -172,4 +174,4 @@ def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:
 if __name__ == "__main__":
     given = wanted(10_000, 1, "large")
     robot = link_library(given.large)
-    each_seed(lambda seed: one_upload(robot, seed, SealedWorld), given)
+    each_seed(lambda seed: run_upload_scenario(robot, seed, SealedWorld), given)

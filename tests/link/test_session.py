@@ -36,7 +36,7 @@ from tiniscript.link.messages import (
 from tiniscript.link.outcomes import CANCELLED, DETAIL_MIDWAY, LOST, PlaceEvent, TextEvent
 from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.requests import SHORT_BYTES
-from tiniscript.link.round_trips import MOST_DOUBLED_MS, MOST_LIVELY_MS
+from tiniscript.link.round_trips import MOST_DOUBLED_MS, MOST_RETRY_MS
 from tiniscript.link.session import IDLE_HEARTBEAT_MS, Session
 from tiniscript.link.transmission import CONFIRM_MS, STOP_MS, TRIES
 
@@ -122,7 +122,7 @@ def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_en
         gaps = [
             b - a for a, b in pairwise([begun_ms, *(at for at, _ in sending(session, late_ms))])
         ]
-        assert gaps and max(gaps) <= MOST_LIVELY_MS < messages.DEAD_MAN_MS / 2
+        assert gaps and max(gaps) <= MOST_RETRY_MS < messages.DEAD_MAN_MS / 2
         session.receive(answer(data, {"state": 1, "run": 1, "place": b""}), late_ms)
 
 

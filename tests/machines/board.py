@@ -203,12 +203,15 @@ class Simulated:
         glitches_us: Iterable[tuple[float, float]] = (),
     ) -> None:
         """Say what a sensor answers to its pings; glitches are when after a ping, and how long."""
-        a, b = self.bit(trigger), self.bit(echo)
+        trigger_bit, echo_bit = self.bit(trigger), self.bit(echo)
         none = repeat((0.0, 0.0))
         for width_us, (at_us, span_us) in zip(widths_us, chain(glitches_us, none), strict=False):
             times = (460, width_us, at_us, span_us)
             cycles = " ".join(str(round(us * 16)) for us in times)
-            self.script.append(f"ping {a.port.upper()} {a.bit} {b.port.upper()} {b.bit} {cycles}")
+            self.script.append(
+                f"ping {trigger_bit.port.upper()} {trigger_bit.bit}"
+                f" {echo_bit.port.upper()} {echo_bit.bit} {cycles}"
+            )
 
     def simulated(self, elf: Path, ms: float) -> str:
         """Run it for so long; return what the simulator tells."""

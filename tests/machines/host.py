@@ -85,11 +85,11 @@ class Process:
 
     def __init__(self, command: Sequence[str | Path], who: str) -> None:
         self._who = who
-        self._errors = tempfile.TemporaryFile()  # noqa: SIM115
+        self._stderr_file = tempfile.TemporaryFile()  # noqa: SIM115
         self._process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._stderr_file
         )
-        self._closed = weakref.finalize(self, _close, self._process, self._errors)
+        self._closed = weakref.finalize(self, _close, self._process, self._stderr_file)
 
     def end(self) -> None:
         self._process.kill()
@@ -109,8 +109,8 @@ class Process:
     def report(self) -> str:
         """Return the last words of a process that has ended: the sanitizers' report."""
         status = self._process.wait()
-        self._errors.seek(0)
-        report = self._errors.read().decode(errors="replace")
+        self._stderr_file.seek(0)
+        report = self._stderr_file.read().decode(errors="replace")
         return f"{self._who} ended with status {status}:\n{report[:4000]}"
 
     def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:

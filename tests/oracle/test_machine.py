@@ -25,7 +25,7 @@ from tiniscript.bytecode.image import unpack
 MAX_MS, MAX_STEPS = 20_000, 5000
 
 
-def compare(code: bytes, number: int, readings: dict[str, list[int]], seed: int) -> str:
+def assert_same_trace(code: bytes, number: int, readings: dict[str, list[int]], seed: int) -> str:
     """Assert that both machines print the same; return the last line.
 
     Where one of them gives up a loop that takes no time is not part of the meaning: then what both
@@ -60,14 +60,14 @@ def codes(seed: int, count: int) -> Iterator[tuple[bytes, int, dict[str, list[in
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(4))
 def test_traces(seed: int) -> None:
-    endings = {compare(*code) for code in codes(seed, 500)}
+    endings = {assert_same_trace(*code) for code in codes(seed, 500)}
     assert {"DONE", "LIMIT", "FAULT OVERFLOW", "FAULT DIVIDE_BY_ZERO"} <= endings
 
 
 @each_row("seed", [1, 7, 2**31, 2**32 - 1])
 def test_random_numbers(seed: int) -> None:
     text = "LOOP(50); SHOW(RANDOM(1, 6)); SHOW(RANDOM(100, -1000.5)); END_LOOP"
-    assert compare(compile_text(text, KITS[0][1]).code, 0, {}, seed) == "DONE"
+    assert assert_same_trace(compile_text(text, KITS[0][1]).code, 0, {}, seed) == "DONE"
 
 
 def test_late_calls() -> None:
@@ -103,4 +103,4 @@ def test_a_watched_move_may_last_longer_than_the_clock() -> None:
 if __name__ == "__main__":
     given = wanted(10_000, 5000)
     for one in codes(given.seed, given.count):
-        compare(*one)
+        assert_same_trace(*one)

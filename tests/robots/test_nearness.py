@@ -18,7 +18,9 @@ BATTERY = '[[kit.sensors]]\nname = "BATTERY"\nkind = "number"\nunit = "V"\nrange
 
 @pytest.mark.parametrize("name", robots.names())
 def test_a_shipped_robot_is_nearest_to_itself(name: str) -> None:
-    """Those that share a kit are told apart by their boards; discs are no part of a kit's words."""
+    """Robots with the same kit are told apart by their boards. A kit does not say whether the
+    wheels have discs.
+    """
     nearest = nearest_to(robots.load(name))
     assert nearest.is_same and not nearest.devices_only_there and not nearest.devices_only_here
     kits = robots.load(name).kit, robots.load(nearest.name).kit

@@ -43,8 +43,8 @@ class Case(NamedTuple):
     @property
     def id(self) -> str:
         folder = self.path.parent.name
-        of_language = f"{folder}/" if folder in languages() else ""
-        return f"{of_language}{self.path.stem}: {self.title}"
+        language_prefix = f"{folder}/" if folder in languages() else ""
+        return f"{language_prefix}{self.path.stem}: {self.title}"
 
     @property
     def language(self) -> str:

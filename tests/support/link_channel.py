@@ -172,7 +172,7 @@ def program(draw: random.Random, is_large: bool = False) -> bytes:
     return b"".join(bytes((move, draw.randrange(256), draw.randrange(101))) for _ in range(count))
 
 
-def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
+def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
     """Upload a program over another one, then send lines and stop; return how the upload went."""
     draw = random.Random(seed)
     faults = draw.choice((0, 0.001, 0.01))

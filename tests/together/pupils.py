@@ -78,7 +78,7 @@ class Pupil:
             f"F({k}, 40) UNTIL(DISTANCE < 10)", f"SHOW({k})",
         )))  # fmt: skip
 
-    def _head(self) -> str:
+    def _make_head(self) -> str:
         k = next(self._numbers)
         return self._own(self._chance.choice((f"LOOP({k})", f"WHILE(X < {k})", f"IF(X > {k})")))
 
@@ -114,7 +114,7 @@ class Pupil:
         new = tuple(Subtree(self.page.new_id(), self._simple())
                     for _ in range(self._chance.choice((1, 1, 1, 2, 3))))  # fmt: skip
         if self._chance.random() < 0.25:
-            new = (Subtree(self.page.new_id(), self._head(), children=new),)
+            new = (Subtree(self.page.new_id(), self._make_head(), children=new),)
         return [Insert(self._at(view, one), new)]
 
     def _run(self, view: Tree, one: str, most: int, has_arms: bool = True) -> list[str]:
@@ -142,7 +142,7 @@ class Pupil:
 
     def _wrap(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
         run = self._run(view, one, 4, has_arms=False)
-        return [Wrap(tuple(run), Subtree(self.page.new_id(), self._head()))] if run else []
+        return [Wrap(tuple(run), Subtree(self.page.new_id(), self._make_head()))] if run else []
 
     def _unwrap(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
         blocks = [id for id in ids if view[id].kind == BLOCK]
@@ -279,7 +279,7 @@ class Pupil:
         return [first, *[more] * (len(rows) - 1)]
 
     def _plan_around(self) -> list[Stage]:
-        head = self._head()
+        head = self._make_head()
         end = {"L": "END_LOOP", "W": "END_WHILE", "I": "ENDIF"}[head[0]]
         size = self._chance.randint(1, 4)
 

@@ -142,7 +142,9 @@ def test_the_documents_name_the_newer_words(path: str) -> None:
 
 
 def test_each_release_has_its_programs() -> None:
-    """From the first one on that kept them, as CHANGELOG names them: a patch has no new ones."""
+    """Every minor release since the first that stored its programs, as listed in CHANGELOG; a patch
+    release adds none.
+    """
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     released = re.findall(r"(?m)^## (\d+\.\d+\.0) \(", text)
     assert released[released.index(FIRST_VERSION) :: -1] == versions(), (

@@ -236,7 +236,7 @@ def size(name: str, chip: str = AVR) -> Size:
 def _build(part: Part, statement: str, chip: str) -> Size:
     program = part.program.replace("USE", statement)
     if chip != AVR:
-        return Size(*chips.size(EMULATED_CHIPS[chip], program, *part.folders))
+        return Size(*chips.measure_size(EMULATED_CHIPS[chip], program, *part.folders))
     folders = sorted(("vm", *part.folders))
     source_paths = [
         path for folder in folders for path in sorted((SOURCE / folder).glob("*.[cS]*"))

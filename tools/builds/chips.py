@@ -125,7 +125,7 @@ def build(
         ])  # fmt: skip
 
 
-def size(chip: Chip, probe: str, *modules: str) -> tuple[int, int]:
+def measure_size(chip: Chip, probe: str, *modules: str) -> tuple[int, int]:
     """Return flash and RAM of a C++ program with a `main`, linked with what it uses of the machine.
 
     The program includes from `vm_arduino/src`, and may use these folders there too. Flash is text

@@ -27,7 +27,7 @@ _TABLE_HEADER = re.compile(r"\s*\[.*\]\s*(#.*)?")
 _QUOTES = re.compile(r'"""|\'\'\'')
 _TOML_PLACE = re.compile(r" \(at (line \d+, column \d+|end of document)\)$")
 
-Forms = dict[str, str]  # of a text: by their names, or one that has none
+Forms = dict[str, str]  # plural forms of a text, by name; one without plurals has one, under ""
 Problem = tuple[int, str]  # a line of a file, and a sentence
 
 

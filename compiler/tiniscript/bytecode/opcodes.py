@@ -117,8 +117,8 @@ OPERAND_KINDS = {kind.name: kind for kind in (
 )}
 
 # What an instruction is for the structure of a program; `verify` has a rule for each role. Those
-# from `plain` on stand between expressions and checks. Those of loops come in pairs: one that does
-# not count, one that does. What opens a routine comes before what closes it.
+# from `plain` on stand between expressions and checks. Those of loops come in pairs: one
+# for uncounted loops, one for counted ones. What opens a routine comes before what closes it.
 CONTROL_ROLES = {
     "end":       "ends the program",
     "value":     "part of an expression",
@@ -129,14 +129,14 @@ CONTROL_ROLES = {
     "watch":     "begins the check of an UNTIL",
     "if":        "opens a block that ends at `to`, or leaves the loop that ends there",
     "else":      "ends the block before it and opens one that ends at `to`",
-    "forever":   "opens a loop that does not count",
-    "count":     "opens a loop that counts",
-    "while":     "opens a loop that does not count and ends at `to`",
-    "loop":      "opens a loop that counts and ends at `to`",
-    "again":     "closes a loop that does not count",
-    "next":      "closes a loop that counts",
-    "break":     "leaves the innermost loop, one that does not count",
-    "drop":      "leaves the innermost loop, one that counts",
+    "forever":   "opens an uncounted loop",
+    "count":     "opens a counted loop",
+    "while":     "opens an uncounted loop that ends at `to`",
+    "loop":      "opens a counted loop that ends at `to`",
+    "again":     "closes an uncounted loop",
+    "next":      "closes a counted loop",
+    "break":     "leaves the innermost loop, an uncounted one",
+    "drop":      "leaves the innermost loop, a counted one",
     "call":      "calls a procedure that lies before it",
     "def":       "opens a procedure that ends at `to`",
     "return":    "closes a procedure",

@@ -172,7 +172,8 @@ def _missed_sentence(
 ) -> str:
     """Return the sentence for a place that the robot has missed.
 
-    `origin` is where it had to go there from; it was `nearest` at that point.
+    `origin`: the point from which the robot had to reach the place. `nearest`: the point at which
+    it came closest.
     """
     run, start = task.run, task.run.world.start
     if run.driven_cm < STILL_CM:

@@ -364,7 +364,7 @@ def connect(
 ) -> RobotConnection:  # fmt: skip
     """Connect to the robot on a port: /dev/ttyUSB0, COM5, ble://name, socket://host:port, ...
 
-    The default port is the last used one, else that of the only running virtual robot.
+    By default, the last port used, or else the port of the only running virtual robot.
     `robot` is the name or the path of the profile that texts are compiled for; its default is the
     profile of the robot that answers, if this computer knows it. `baud` is 300 to 2000000; its
     default is in the profile. Raises RobotError if the port does not open or no robot answers.
@@ -382,7 +382,10 @@ def connect(
 
 
 def _default_port(language: Language) -> str:
-    """Return the last used port, else that of the only virtual robot. Raises RobotError."""
+    """Return the last port used, or else the port of the only running virtual robot.
+
+    Raises RobotError if there is neither.
+    """
     if (usable_port := opening.usable_last_port()) is not None:
         return usable_port
     last_port = known_ports.remembered_ports().last_port

@@ -10,7 +10,7 @@ from __future__ import annotations
 ROUND_MS = 120  # round trip through two radios and a robot, without the bytes
 MOST_LEARNT_MS = 3000  # a timer that was learnt is no longer: somebody may have been suspended
 MOST_DOUBLED_MS = 1000  # doubling alone makes none longer
-MOST_LIVELY_MS = 400  # the longest timer where the robot has to hear us now and then
+MOST_RETRY_MS = 400  # the longest timer where the robot has to hear us now and then
 _MEAN, _VARIATION, _VARIATIONS = 1 / 8, 1 / 4, 4  # alpha, beta and K of the RFC
 
 
@@ -54,10 +54,10 @@ class RoundTrips:
         """Return how many bytes this line carries in a time at least, as far as answers tell."""
         return int(time_ms / max(10_000 / self._baud, self._byte_ms or 0))
 
-    def wait_ms(self, byte_count: int, is_lively: bool = False) -> int:
+    def wait_ms(self, byte_count: int, retries_soon: bool = False) -> int:
         """Return how long to wait for an answer that has, with its request, `byte_count` bytes.
 
-        `is_lively`: a robot that is silent is asked again soon, however long answers take.
+        `retries_soon`: a robot that is silent is asked again soon, however long answers take.
         """
         line_ms = ROUND_MS + -(-byte_count * 10_000 // self._baud)
         learnt_ms = ROUND_MS + byte_count * (self._byte_ms or 0)
@@ -66,4 +66,4 @@ class RoundTrips:
         needed_ms = max(line_ms, min(int(learnt_ms), MOST_LEARNT_MS))
         doubled_ms = needed_ms << min(self._doublings, 10)
         wait_ms = min(doubled_ms, max(MOST_DOUBLED_MS, needed_ms))
-        return max(line_ms, min(wait_ms, MOST_LIVELY_MS)) if is_lively else wait_ms
+        return max(line_ms, min(wait_ms, MOST_RETRY_MS)) if retries_soon else wait_ms

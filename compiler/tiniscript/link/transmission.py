@@ -32,13 +32,16 @@ LONG_TRIES = 1  # of a long frame, before it is sent more than once at a time
 
 class Transmission:
     def __init__(
-        self, round_trips: RoundTrips, answer_bytes: int = SMALL_FRAME, is_lively: bool = False
+        self,
+        round_trips: RoundTrips,
+        answer_bytes: int = SMALL_FRAME,
+        ends_when_silent: bool = False,
     ) -> None:
         """`answer_bytes` is how many bytes the frame of an answer has at most, before COBS;
-        `is_lively`: the robot runs a program that ends when it hears nothing.
+        `ends_when_silent`: the robot runs a program that ends when it hears nothing.
         """
         self._round_trips = round_trips
-        self._is_lively = is_lively
+        self._ends_when_silent = ends_when_silent
         self._answer_bytes = min(max(answer_bytes, SMALL_FRAME), LARGE_FRAME)
         self.frame: Frame | None = None
         self.seal: Seal | None = None
@@ -125,7 +128,9 @@ class Transmission:
                 self.frame if self.seal is None else self.seal.seal_frame(self.frame)
             )
         byte_count = len(wire) + self._answer_bytes + 2
-        self.due_ms = now_ms + self._round_trips.wait_ms(byte_count, self._is_lively or is_hello)
+        self.due_ms = now_ms + self._round_trips.wait_ms(
+            byte_count, self._ends_when_silent or is_hello
+        )
         return sender.prepare_frames(wire, now_ms, self.tries > 1 or is_hello)
 
     def _copy_count(self, wire_bytes: int) -> int:
@@ -135,7 +140,9 @@ class Transmission:
         """
         if wire_bytes <= SMALL_FRAME + WIRE_BYTES or self.tries <= LONG_TRIES:
             return 0
-        wait_ms = self._round_trips.wait_ms(wire_bytes + self._answer_bytes + 2, self._is_lively)
+        wait_ms = self._round_trips.wait_ms(
+            wire_bytes + self._answer_bytes + 2, self._ends_when_silent
+        )
         return max(0, self._round_trips.bytes_in(wait_ms // 2) // wire_bytes - 1)
 
 

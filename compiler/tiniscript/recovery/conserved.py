@@ -75,8 +75,7 @@ _COUNTED_AS = {
 }  # fmt: skip
 _QUESTION_TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
 _NEGATING_KINDS = ("no", "without", "unless", "different")
-# What frames a program and says nothing: its setup, the tags of a page, a function with no name;
-# and labels of lines.
+# Text that only surrounds a program: its setup, HTML tags, an anonymous function, line labels.
 _FRAME_PATTERN = re.compile(
     r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>|(?:\bfunction\s*\(\s*\)|\(\s*\)\s*=>)(?=\s*\{)"
 )

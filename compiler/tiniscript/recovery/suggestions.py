@@ -613,9 +613,10 @@ def _is_last(trailing: Trailing) -> bool:
 
 
 def _note_values(trailing: Trailing) -> dict[str, str]:
-    """Return how words after a whole instruction are written as a note, where they may be one.
+    """Return the message values that turn the words after an instruction into a note, or {} if they
+    may belong to it.
 
-    What has a number or a sign of a program, or is joined to the instruction, says more of it.
+    Words with a number, a sign or a word of a program, and words joined to the instruction, may.
     """
     is_joined = lexicon_meaning(
         trailing.row_tokens[0].text, "then", "and", "or"

@@ -175,13 +175,13 @@ def _align(
         else:
             j += 1
     # Two that differ, and one of which has an equal one elsewhere, are none: one was moved.
-    texts, new_texts = {old_tree[x].text for x in old_ids}, {new_tree[y].text for y in new_ids}
-    unmatched_texts = texts - {old_tree[x].text for x, _ in pairs}
+    old_texts, new_texts = {old_tree[x].text for x in old_ids}, {new_tree[y].text for y in new_ids}
+    unmatched_old_texts = old_texts - {old_tree[x].text for x, _ in pairs}
     unmatched_new_texts = new_texts - {new_tree[y].text for _, y in pairs}
     return [
         (x, y) for x, y in pairs
         if old_tree[x].text == new_tree[y].text
-        or not (new_tree[y].text in unmatched_texts or old_tree[x].text in unmatched_new_texts)
+        or not (new_tree[y].text in unmatched_old_texts or old_tree[x].text in unmatched_new_texts)
     ]  # fmt: skip
 
 
@@ -278,12 +278,14 @@ class _Script:
                 return id
         return self._make_id()
 
-    def _make_subtree(self, new_id: str, is_whole: bool = True, is_wrap: bool = False) -> Subtree:
+    def _make_subtree(
+        self, new_id: str, with_children: bool = True, is_wrap: bool = False
+    ) -> Subtree:
         node = self._new_tree[new_id]
         self._work_ids[new_id] = self._choose_id(new_id)
         if is_wrap and self._work_ids[new_id] in self._work:
             self._work_ids[new_id] = self._make_id()
-        children = tuple(map(self._make_subtree, node.children)) if is_whole else ()
+        children = tuple(map(self._make_subtree, node.children)) if with_children else ()
         return Subtree(self._work_ids[new_id], node.text, node.note, node.apart, node.end, children)
 
     def _is_new(self, new_id: str) -> bool:
@@ -349,9 +351,9 @@ class _Script:
             elif run or id in wanted_work_ids:
                 break
         if not run:
-            self._apply(Insert(place, (self._make_subtree(new_id, is_whole=False),)))
+            self._apply(Insert(place, (self._make_subtree(new_id, with_children=False),)))
             return
-        self._apply(Wrap(tuple(run), self._make_subtree(new_id, is_whole=False, is_wrap=True)))
+        self._apply(Wrap(tuple(run), self._make_subtree(new_id, with_children=False, is_wrap=True)))
         if self._work.previous_sibling(self._work_ids[new_id]) != place.previous:
             self._apply(Move((self._work_ids[new_id],), place))
 

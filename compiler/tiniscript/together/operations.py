@@ -326,7 +326,8 @@ def _unwrap(tree: Tree, operation: Unwrap) -> _Effect:
     node = tree[id]
     if node.kind != BLOCK or id == ROOT:
         raise Refused(BAD)
-    place, subtree = Place(node.parent, tree.previous_sibling(id)), tree.subtree(id, is_whole=False)
+    place = Place(node.parent, tree.previous_sibling(id))
+    subtree = tree.subtree(id, with_children=False)
     siblings = tree[node.parent].children
     k = siblings.index(id)
     siblings[k : k + 1] = node.children

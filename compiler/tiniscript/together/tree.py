@@ -206,10 +206,12 @@ class Tree:
 
     # -- as data ----------------------------------------------------------------------------------
 
-    def subtree(self, id: str, is_whole: bool = True) -> Subtree:
-        """Return a node, with its marks and what is in it if it `is_whole`."""
+    def subtree(self, id: str, with_children: bool = True) -> Subtree:
+        """Return a node with its marks, and its children if `with_children`."""
         node = self.node_by_id[id]
-        children = tuple(self.subtree(child_id) for child_id in node.children) if is_whole else ()
+        children = (
+            tuple(self.subtree(child_id) for child_id in node.children) if with_children else ()
+        )
         marks = tuple(node.marks.items())
         return Subtree(
             id, node.text, node.note, node.apart, node.end, children, node.creator_uid, marks

@@ -16,7 +16,7 @@ constexpr uint8_t kWindow = kHasLargeFrames ? kLargeWindow : 1;
 // Of text that nobody has taken yet, and one more.
 constexpr uint16_t kTextBytes = kHasLargeFrames ? 256 : 64;
 
-// Of a frame that is not sealed; a large one has a 0 before it.
+// Payload bytes of an unsealed frame. In a large frame, a 0 precedes the payload.
 constexpr uint8_t kPayloadBytes =
     kLargestFrame - kHeadBytes - kCrcBytes - (kHasLargeFrames ? 1 : 0);
 

@@ -55,12 +55,12 @@ constexpr uint8_t kOwnerBytes = kKeysAt + kOwnerKeys * kKeyRoom;
 
 // Where the slots begin. During a brown-out some chips write to address 0 by mistake, so nothing is
 // stored there.
-constexpr uint16_t kRecordsBegin = 4;
+constexpr uint16_t kRecordsAt = 4;
 constexpr uint16_t kRecordSlot = kBodyAt + kRecordBytes;
 constexpr uint8_t kSmallRecords = 4;  // slots of kRecordSlot
 constexpr uint8_t kFirstOwnerSlot = 2 + kSmallRecords;
-constexpr uint16_t kProgramsBegin = kRecordsBegin + kSmallRecords * kRecordSlot;
-constexpr uint16_t kProgramDistance = (kMemoryBytes - kProgramsBegin) / 2;
+constexpr uint16_t kProgramsAt = kRecordsAt + kSmallRecords * kRecordSlot;
+constexpr uint16_t kProgramDistance = (kMemoryBytes - kProgramsAt) / 2;
 
 // After each of the two programs is a slot of the record kOwner.
 constexpr uint8_t kOwnerSlot = kBodyAt + kOwnerBytes;
@@ -71,14 +71,14 @@ constexpr uint16_t kImageBytes = kProgramSlot - kBodyAt;
 constexpr uint16_t kStoredCodeBytes = kImageBytes - kHeaderBytes;
 
 constexpr uint16_t place_of(uint8_t slot) {
-  return static_cast<uint16_t>(slot < 2 ? kProgramsBegin + slot * kProgramDistance
+  return static_cast<uint16_t>(slot < 2 ? kProgramsAt + slot * kProgramDistance
                                : slot < kFirstOwnerSlot
-                                   ? kRecordsBegin + (slot - 2) * kRecordSlot
-                                   : kProgramsBegin + kProgramSlot +
+                                   ? kRecordsAt + (slot - 2) * kRecordSlot
+                                   : kProgramsAt + kProgramSlot +
                                          (slot - kFirstOwnerSlot) * kProgramDistance);
 }
 
-static_assert(kProgramsBegin >= kRecordsBegin + 4 * kRecordSlot, "no slot lies in another one");
+static_assert(kProgramsAt >= kRecordsAt + 4 * kRecordSlot, "no slot lies in another one");
 static_assert(place_of(kSlots - 1) + kOwnerSlot <= kMemoryBytes, "the slots fit in");
 static_assert(kStoredCodeBytes >= 384, "the code of a program has room");
 static_assert(kStoredCodeBytes <= kCodeBytes, "its length has room in the header");

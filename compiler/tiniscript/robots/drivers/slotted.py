@@ -1,4 +1,4 @@
-"""A slotted disc on each wheel and a sensor with one channel, as a FC-03 has."""
+"""A slotted disc on each wheel and a one-channel sensor, such as the FC-03."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ class TwoChannel(DiscDriver):
         ),
         "A, B",
         note_keys=("mind_two_channel", "mind_no_text"),
-        check_keys=("check_slotted",),
+        check_keys=("check_two_channel",),
     )
 
 

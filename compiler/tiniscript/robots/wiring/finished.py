@@ -114,11 +114,11 @@ class _FinishedDrawing:
 
     def _rows_svg(self) -> list[str]:
         """Return board, breadboard and batteries: boxes on the plate, from front to back."""
-        driver = self.plan.parts[0].title
+        motor_driver_title = self.plan.parts[0].title
         supplies = [part for part in self.plan.parts if _is_supply(part)]
         boxes = [
             (SIDES[self.plan.chip.name].name, self.text("on_top_usb"), LINE_COLOUR),
-            (driver, self.text("beside_driver"), LINE_COLOUR),
+            (motor_driver_title, self.text("beside_driver"), LINE_COLOUR),
             *((supply.title, supply.label, RAIL_COLOURS["M+"]) for supply in supplies),
             (self.text("power_bank"), self.text("for_the_board"), RAIL_COLOURS["5V"]),
         ]

@@ -384,9 +384,10 @@ class _Conditions:
         word: str,
         direction: str = "",
     ) -> str:
-        """Return a condition as it is written after `word`, asking the sensors themselves.
+        """Return the condition's text after `word`, with each variable replaced by the sensor it
+        was read from.
 
-        Nothing where it is none to write, as where a move in this direction never makes it true.
+        Return "" if there is none to write, as when a move in this direction never makes it true.
         """
         sensor_condition = self._condition_of_sensors(condition, sensor_of_variable)
         can_become_true = can_come_true(sensor_condition, direction, self._kit)

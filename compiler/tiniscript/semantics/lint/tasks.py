@@ -25,7 +25,7 @@ _INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call, ir
 def report_kept_motors(context: LintContext) -> None:
     """Warn of each task that waits for a higher TASK, or never drives again."""
     program = context.program
-    motors = _Motors(program)
+    motor_use = _MotorUse(program)
     statements_of = partial(ir.walk_with_calls, procedures=program.procedures)
     higher_bodies = [task.body for task in program.tasks if task.until is not None]
     tasks = [task for task in program.tasks if task.until is None]
@@ -37,7 +37,7 @@ def report_kept_motors(context: LintContext) -> None:
             for body in higher_bodies
             for statement in statements_of(body)
         )
-        if not is_stopped and motors.are_kept(task.body):
+        if not is_stopped and motor_use.keeps_motors(task.body):
             line = str(context.source.position(task.span.start)[0])
             for body in lower_bodies:
                 waiting_move = next(filter(_is_move, statements_of(_endless_part(body))), None)
@@ -65,11 +65,11 @@ def _take_turns(tasks: list[ir.Body], context: LintContext) -> None:
         context.report(codes.NO_MOTORS, move.span, **values)
 
 
-class _Motors:
+class _MotorUse:
     def __init__(self, program: ir.Program) -> None:
         self._procedures = program.procedures
 
-    def are_kept(self, body: ir.Body) -> bool:
+    def keeps_motors(self, body: ir.Body) -> bool:
         """Whether a task surely drives for ever at its end, and never lets the motors go there."""
         endless_part = _endless_part(body)
         if not any(
