@@ -63,7 +63,7 @@ void* memset(void*, int, size_t);
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("library") / "TiniScript"
     assert library.main([str(folder), "--url", URL]) == 0
     return folder
@@ -100,9 +100,9 @@ def elf(built: Path, example: str, board: str, folder: Path) -> Path:
 @pytest.mark.parametrize("board", ["uno", "mega"])
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_an_example_builds_and_fits(
-    path: Path, example: str, board: str, tmp_path_factory: pytest.TempPathFactory
+    built: Path, example: str, board: str, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    program = elf(path, example, board, shared(tmp_path_factory))
+    program = elf(built, example, board, shared(tmp_path_factory))
     text, data, zeros = map(int, boards.run("avr-size", program).splitlines()[1].split()[:3])
     flash, ram = (32_256, 2_048) if board == "uno" else (253_952, 8_192)
     assert text + data <= flash
@@ -126,8 +126,8 @@ def test_library_and_examples_compile_for_a_chip_of_esp_boards(
         chips.compile_one(chips.CHIPS[name], path, str(tmp_path / "one.o"), flags)
 
 
-def test_an_image_in_flash_drives(path: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
-    program = elf(path, "ImageInFlash", "uno", shared(tmp_path_factory))
+def test_an_image_in_flash_drives(built: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    program = elf(built, "ImageInFlash", "uno", shared(tmp_path_factory))
     with Uno(program, names={"left": "D5", "back": "D7"}) as uno:
         uno.run_ms(500)
         assert uno.pins.history("left")[-1].state == "pwm"
@@ -140,10 +140,10 @@ def test_an_image_in_flash_drives(path: Path, tmp_path_factory: pytest.TempPathF
 
 @pytest.mark.long
 def test_the_link_of_an_example_conforms(
-    path: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+    built: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     have_kit()
-    program = elf(path, "Link", "uno", shared(tmp_path_factory))
+    program = elf(built, "Link", "uno", shared(tmp_path_factory))
     with Uno(program, baud=115_200, tells_sleep=False) as uno:
         uno.go()
         result = process("doctor", "--conform", "--port", uno.pty, "--baud", "115200")
@@ -153,7 +153,7 @@ def test_the_link_of_an_example_conforms(
         assert "1 + 1 2" in result.out, result.out + result.err
 
 
-def test_platformio_packs_it(path: Path, tmp_path: Path) -> None:
+def test_platformio_packs_it(built: Path, tmp_path: Path) -> None:
     """Its list of licences comes from the internet, so one stands in for it."""
     pytest.importorskip("platformio")
     code = (
@@ -164,7 +164,7 @@ def test_platformio_packs_it(path: Path, tmp_path: Path) -> None:
         "from platformio.__main__ import main\n"
         "sys.exit(main(['pio', 'pkg', 'pack', sys.argv[1], '-o', sys.argv[2]]))\n"
     )
-    completed = subprocess.run([sys.executable, "-c", code, path, tmp_path], capture_output=True,
+    completed = subprocess.run([sys.executable, "-c", code, built, tmp_path], capture_output=True,
                           text=True, check=False)  # fmt: skip
     assert completed.returncode == 0, completed.stdout + completed.stderr
     (packed,) = tmp_path.glob("*.tar.gz")
