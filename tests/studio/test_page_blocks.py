@@ -832,7 +832,7 @@ def test_a_fault_is_said_at_its_block(page: Page) -> None:
     assert fault.count() == 1 and "show" in str(fault.text_content())
     assert fault.locator(".blocklyIconGroup").count() == 1
     speak(page, "es")
-    page.locator("#doing", has_text="Línea 2: algo se divide entre 0.").wait_for()
+    page.locator("#doing", has_text="“muestra 1 ÷ X”: algo se divide entre 0.").wait_for()
     shown(page)
     fault.wait_for()  # the blocks are others now
     page.click("#view_text")
