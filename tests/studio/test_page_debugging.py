@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.page_breakpoints import COUNTING_PROGRAM, press_margin
-from tests.support.page_robot import running, value
+from tests.support.page_robot import running, value, wait_for_running
 from tests.support.studio import checked, colors_of, in_phase, noted, shown, write
 from tiniscript import run
 
@@ -95,7 +95,7 @@ def test_one_line_has_several_breakpoints(page: Page) -> None:
     assert page.locator(".cm-breakpoint").count() == 2
     page.click("#run")
     for part in ("SHOW(2)", "SHOW(3)"):
-        page.locator(".cm-running", has_text=part).wait_for()
+        wait_for_running(page, part)
         in_phase(page, "paused")
         page.click("#pause")
     in_phase(page, "ended")
@@ -127,7 +127,7 @@ def test_breakpoints_are_seen_and_set_at_blocks(page: Page) -> None:
 def test_a_breakpoint_can_be_set_and_taken_away_while_it_runs(page: Page) -> None:
     write(page, "LOOP(FOREVER);\n  F(0.2, 80);\n  SHOW(1);\nEND_LOOP")
     page.click("#run")
-    page.locator(".cm-running").first.wait_for()
+    wait_for_running(page)
     press_margin(page, 3)
     held(page, 3)
     press_margin(page, 3)

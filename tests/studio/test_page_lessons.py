@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.page_lessons import check_answer, choose_lesson
+from tests.support.page_robot import wait_for_nothing_running, wait_for_running
 from tests.support.sampling import some_of
 from tests.support.studio import (
     SETTLED,
@@ -130,9 +131,6 @@ def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
         assert page.locator("#lesson_end").is_hidden()
 
 
-RUNNING = ".blocklyBlockCanvas .running, .cm-running"
-
-
 def test_nothing_is_lit_once_a_run_is_over(page: Page, pytestconfig: pytest.Config) -> None:
     """Whether it has come to its end, to what it missed, or was skipped or stopped."""
     choose_lesson(page, 4)
@@ -143,11 +141,12 @@ def test_nothing_is_lit_once_a_run_is_over(page: Page, pytestconfig: pytest.Conf
         page.click(view)
         page.click("#lesson_check")
         page.locator("#lesson_end", has_text="Skip").wait_for()
-        page.locator(RUNNING).first.wait_for(state="attached")
+        wait_for_running(page)
         if end:
             page.click(end)
         page.locator("#lesson_said[data-verdict=failed]").wait_for()
-        page.locator(RUNNING).first.wait_for(state="detached", timeout=10_000)
+        wait_for_nothing_running(page)
+        page.locator(".blocklyBlockCanvas .running").wait_for(state="detached", timeout=10_000)
 
 
 # Names of lessons that the list does not show whole, if they are chosen.

@@ -24,6 +24,7 @@ from tests.support.page_link import (
     upload_until_it_runs,
     wait_for_message,
 )
+from tests.support.page_robot import running, wait_for_nothing_running, wait_for_running
 from tests.support.page_screens import LOOK, SCREENS
 from tests.support.pty_robot import PtyRobot
 from tests.support.sampling import some_of
@@ -433,13 +434,9 @@ def test_a_run_is_recorded_and_played_on_the_virtual_robot_beside(page: Page) ->
 DRIVE = "F(3, 80);\nR(3, 60)"  # parts that differ, and longer than a busy page is late
 
 
-def marked(page: Page, part: str) -> None:
-    page.locator(".cm-running", has_text=part).wait_for(state="attached")
-
-
 def unmarked(page: Page) -> None:
-    for mark in (".cm-running", "#blocks .running"):
-        page.locator(mark).wait_for(state="detached")
+    wait_for_nothing_running(page)
+    page.locator("#blocks .running").wait_for(state="detached")
 
 
 @pytest.mark.usefixtures("unhurried")
@@ -450,7 +447,7 @@ def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
     shown(page)
     page.click("#link_upload")
     for part in DRIVE.split(";\n"):
-        marked(page, part)
+        wait_for_running(page, part)
         assert page.locator("#blocks .blocklyDraggable.running").count() == 1
     page.click("#view_text")
     wait_for_message(page, "Done.")
@@ -461,7 +458,7 @@ def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
 def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> None:
     write(page, "F(600, 80)")
     page.click("#link_upload")
-    page.locator(".cm-running").wait_for()
+    wait_for_running(page)
     page.locator(".cm-content").focus()
     page.keyboard.press("Control+End")
     page.keyboard.insert_text(";\nW(1)")
@@ -469,7 +466,7 @@ def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> 
     checked(page)
     unmarked(page)
     page.keyboard.press("Control+z")
-    page.locator(".cm-running").wait_for()
+    wait_for_running(page)
     page.click("#link_leave")
     unmarked(page)
 
@@ -498,7 +495,7 @@ def upload_until_told(page: Page, at: int) -> None:
 def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:
     write(page, "F(60, 80)")
     upload_until_told(page, 60_000)
-    assert page.locator(".cm-running").count() == 0
+    assert running(page) == ""
 
 
 @drawn
@@ -514,17 +511,17 @@ def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
     page.click("#side_real")
     page.click("#link_upload")
     page.locator("html[data-halt='read']").wait_for()
-    marked(page, first)
+    wait_for_running(page, first)
     page.click("#link_go_on")
-    marked(page, second)
+    wait_for_running(page, second)
     page.click("#side_virtual")
-    marked(page, first)
+    wait_for_running(page, first)
     page.click("#pause")  # goes on
-    marked(page, second)
+    wait_for_running(page, second)
     page.click("#stop")
     breakpoint.click()  # no later program is to halt
     page.click("#side_real")
     page.click("#link_upload")
-    marked(page, second)
+    wait_for_running(page, second)
     page.click("#link_leave")
     unmarked(page)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.support.page_robot import wait_for_running
 from tests.support.studio import (
     SETTLED,
     Pages,
@@ -173,6 +174,9 @@ def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
     in_phase(phone, "ended")
 
 
+TRANSPARENT = "rgba(0, 0, 0, 0)"
+
+
 @drawn
 def test_what_is_chosen_and_runs_is_seen_without_backgrounds(page: Page) -> None:
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
@@ -183,7 +187,11 @@ def test_what_is_chosen_and_runs_is_seen_without_backgrounds(page: Page) -> None
         assert (page.locator(name).evaluate(style) == "solid") == is_chosen, name
         assert not is_chosen or page.locator(name).evaluate(width) >= 3
     page.click("#run")
-    assert page.locator(".cm-running").first.evaluate(style) == "solid"
+    wait_for_running(page)
+    mark = "(e) => getComputedStyle(e, '::highlight(running)').backgroundColor"
+    field = "(e) => getComputedStyle(e.closest('.cm-editor')).backgroundColor"
+    part = page.locator(".cm-line").first
+    assert part.evaluate(mark) not in (part.evaluate(field), TRANSPARENT)
     page.click("#view_blocks")
     shown(page)
     page.locator("#blocks .running").wait_for()

@@ -9,7 +9,12 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.support.page_robot import running, value
+from tests.support.page_robot import (
+    running,
+    value,
+    wait_for_nothing_running,
+    wait_for_running,
+)
 from tests.support.page_screens import SCREENS
 from tests.support.rows import each_row
 from tests.support.studio import (
@@ -78,7 +83,7 @@ def test_the_list_is_the_trace_of_the_command(page: Page) -> None:
 def test_stop_stops_it(page: Page, how: str, is_paused: bool) -> None:
     write(page, FOREVER)
     page.click("#run")
-    page.locator(".cm-running").first.wait_for()
+    wait_for_running(page)
     if is_paused:
         page.dblclick("#pause")
         in_phase(page, "paused")
@@ -101,7 +106,7 @@ def test_step_goes_to_the_next_part_of_the_program(page: Page) -> None:
     page.click("#step")
     in_phase(page, "paused")
     for part in ("F(1, 80)", "R(0.5, 60)", "B(1, 70)"):
-        page.locator(".cm-running", has_text=part).wait_for()
+        wait_for_running(page, part)
         assert running(page) == part
         page.click("#step")
     in_phase(page, "ended")
@@ -109,7 +114,7 @@ def test_step_goes_to_the_next_part_of_the_program(page: Page) -> None:
     write(page, "W(50);\nS")  # STOP comes through in the middle of a long step
     page.click("#step")
     in_phase(page, "paused")
-    page.locator(".cm-running").wait_for()
+    wait_for_running(page)
     page.click("#step")
     page.click("#stop")
     page.locator("#doing").filter(has_text="Stopped.").wait_for()
@@ -119,7 +124,7 @@ def test_step_goes_to_the_next_part_of_the_program(page: Page) -> None:
 def test_a_change_of_the_text_ends_the_mark(page: Page) -> None:
     write(page, FOREVER)
     page.click("#step")
-    page.locator(".cm-running").wait_for()
+    wait_for_running(page)
     page.locator(".cm-content").focus()
     page.keyboard.type(" ")
     checked(page)
@@ -209,7 +214,7 @@ def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) ->
         page.locator("#push").wait_for()
         assert page.evaluate(PLACES) == before
         page.click("#push")
-        page.locator(".cm-running").first.wait_for(state="attached")
+        wait_for_running(page)
         page.locator("#values").get_by_text("X", exact=True).wait_for()
         assert page.evaluate(PLACES) == before
         page.click("#stop")
@@ -223,19 +228,19 @@ def test_a_fault_is_named_where_it_is(page: Page) -> None:
     page.select_option("#speed", "20")
     page.click("#run")
     page.locator("#doing").filter(has_text="Line 2: the program divided by 0.").wait_for()
-    assert page.locator(".cm-running").all_inner_texts() == ["SHOW(1 / X)"]
+    assert running(page) == "SHOW(1 / X)"
     write(page, "X = 0;\nSHOW(1 / Y)")
-    page.locator(".cm-running").wait_for(state="detached")
+    wait_for_nothing_running(page)
 
 
 def test_another_world_or_robot_begins_again(page: Page) -> None:
     write(page, FOREVER)
     page.click("#run")
-    page.locator(".cm-running").first.wait_for()
+    wait_for_running(page)
     page.select_option("#world", "line")
     page.locator("#doing").filter(has_text="Collect the flags").wait_for()
     page.click("#run")
-    page.locator(".cm-running").first.wait_for()
+    wait_for_running(page)
     page.select_option("#robot", "liner")
     checked(page)
     assert value(page, "left line sensor") == "–"

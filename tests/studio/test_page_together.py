@@ -20,6 +20,7 @@ from tests.support.class_pages import (
     wait_for_status,
 )
 from tests.support.page_link import events
+from tests.support.page_robot import wait_for_nothing_running, wait_for_running
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import Class, Pages, checked, drives, image, noted, write
 from tests.support.waiting import until
@@ -254,12 +255,12 @@ def test_all_of_a_group_see_what_its_robot_does(two: tuple[Page, Page], taught: 
         ana.click("#link_upload")
         for row in ("F(3, 80)", "R(3, 60)"):
             for page in two:
-                page.locator(".cm-running", has_text=row).wait_for(state="attached")
+                wait_for_running(page, row)
         assert luz.locator("#link_shown").inner_text() == "SPEED 5\nSPEED + 1 6"
         assert not luz.locator("#link_upload").is_visible()
         ana.click("#stop")
         for page in two:
-            page.locator(".cm-running").wait_for(state="detached")
+            wait_for_nothing_running(page)
         luz.locator("#link_said", has_text="stopped").wait_for()
         luz.locator("#record_play:visible").wait_for()
         assert events(luz) == events(ana) == ["SHOW 5", "SHOW 6", "STOPPED"]
@@ -269,11 +270,11 @@ def test_all_of_a_group_see_what_its_robot_does(two: tuple[Page, Page], taught: 
         ana.keyboard.press("Enter")
         ana.locator("#link_shown", has_text="7").wait_for()
         ana.click("#link_upload")
-        luz.locator(".cm-running", has_text="F(3, 80)").wait_for(state="attached")
+        wait_for_running(luz, "F(3, 80)")
         assert "7" not in luz.locator("#link_shown").inner_text()
         taught.room.teach({"do": "class_robot", "port": robot.port, "gives": False})
         for page in two:
-            page.locator(".cm-running").wait_for(state="detached")
+            wait_for_nothing_running(page)
 
 
 def test_another_program_is_the_group_s_only_if_somebody_wants_that(

@@ -13,6 +13,11 @@ process.on('unhandledRejection', (why) => unhandled.push(String(why?.stack ?? wh
 process.on('uncaughtException', (why) => unhandled.push(String(why.stack)));
 Date.now = () => 0;
 globalThis.innerWidth = 1366;
+globalThis.CSS = { highlights: new Map() };
+globalThis.Highlight = Set;
+globalThis.StaticRange = class {
+  constructor(ends) { Object.assign(this, ends); }
+};
 
 // -- the text editor of a browser: CodeMirror's own states in a view that draws nothing
 
@@ -22,6 +27,7 @@ const { Transaction } = await import(pathToFileURL(`${sources}/../node_modules/@
 let view = null;
 class EditorView {
   hasFocus = false;
+  lines = {}; // any update may draw them anew
   #isUpdating = false;
 
   constructor({ state }) {
@@ -34,11 +40,14 @@ class EditorView {
     const startState = this.state;
     const transaction = specs[0] instanceof Transaction ? specs[0] : startState.update(...specs);
     this.state = transaction.state;
+    this.lines = {};
     this.#isUpdating = true;
     const update = { view: this, state: this.state, startState, transactions: [transaction], changes: transaction.changes, docChanged: transaction.docChanged };
     for (const hears of this.state.facet(codemirror.EditorView.updateListener)) hears(update);
     this.#isUpdating = false;
   };
+
+  domAtPos = (offset) => ({ node: this.lines, offset });
 
   focus() { this.hasFocus = true; }
 }
@@ -335,12 +344,10 @@ async function beginsAnew(tab) {
 
 /** Where the text editor marks what runs, by their lines. */
 function runningLines() {
-  const lines = [];
-  for (const marks of view.state.facet(codemirror.EditorView.decorations)) {
-    if (typeof marks === 'function') continue;
-    marks.between(0, view.state.doc.length, (from, _, { spec }) => { if (spec.class === 'cm-running') lines.push(view.state.doc.lineAt(from).number); });
-  }
-  return lines;
+  return Array.from(CSS.highlights.get('running'), ({ startContainer, startOffset }) => {
+    if (startContainer !== view.lines) throw new Error('a mark is of lines that have been drawn anew');
+    return view.state.doc.lineAt(startOffset).number;
+  });
 }
 
 function diagnosticLines() {

@@ -7,6 +7,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+# A highlight's range is static: what it holds is read by one that is not.
+RUNNING_SCRIPT = """() => [...CSS.highlights.get('running')].map((mark) => {
+  const range = document.createRange();
+  range.setStart(mark.startContainer, mark.startOffset);
+  range.setEnd(mark.endContainer, mark.endOffset);
+  return range.toString();
+})"""
+
 
 def value(page: Page, name: str) -> str:
     return (
@@ -19,4 +27,16 @@ def value(page: Page, name: str) -> str:
 
 def running(page: Page) -> str:
     """Return which part of the text is marked."""
-    return " ".join(page.locator(".cm-running").all_inner_texts())
+    return " ".join(page.evaluate(RUNNING_SCRIPT))
+
+
+def wait_for_running(page: Page, part: str = "") -> None:
+    """Wait until a part with this in its text is marked."""
+    page.wait_for_function(
+        f"(part) => ({RUNNING_SCRIPT})().some((it) => it.includes(part))", arg=part
+    )
+
+
+def wait_for_nothing_running(page: Page) -> None:
+    """Wait until nothing in the text is marked."""
+    page.wait_for_function(f"() => !({RUNNING_SCRIPT})().length")

@@ -7,8 +7,8 @@ import { autocompletion, completionKeymap } from '@codemirror/autocomplete';
 import { defaultKeymap, history, historyKeymap, invertedEffects, isolateHistory, redo, redoDepth, undo, undoDepth } from '@codemirror/commands';
 import { bracketMatching } from '@codemirror/language';
 import { lintGutter, lintKeymap, setDiagnostics } from '@codemirror/lint';
-import { Compartment, EditorState, Prec, StateEffect, StateField } from '@codemirror/state';
-import { Decoration, EditorView, highlightActiveLine, keymap, lineNumbers } from '@codemirror/view';
+import { Compartment, EditorState, Prec, StateEffect } from '@codemirror/state';
+import { EditorView, highlightActiveLine, keymap, lineNumbers } from '@codemirror/view';
 import { breakpointExtension, offsetsIn, breakpointsIn, onMarginPress, setBreakpoints } from './breakpoints.js';
 import { highlighting, completionsForRobot, languageOfRobot } from './language.js';
 import { messageWithFix } from './messages.js';
@@ -19,22 +19,6 @@ import { text, textsOf } from '../page/texts.js';
 /** @import { Finding, Change } from '../python.js' */
 /** @typedef {{line: number, column: number, end_line: number, end_column: number}} Range */
 /** @typedef {string} LayoutText where blocks stand, as only they read it */
-
-/** @type {import('@codemirror/state').StateEffectType<{from: number, to: number}[]>} */
-const setRunningEffect = StateEffect.define();
-const runningField = StateField.define({
-  create: () => Decoration.none,
-  update(marks, transaction) {
-    let decorations = transaction.docChanged ? Decoration.none : marks;
-    for (const effect of transaction.effects) {
-      if (!effect.is(setRunningEffect)) continue;
-      const marks = effect.value.filter(({ from, to }) => from < to);
-      decorations = Decoration.set(marks.map(({ from, to }) => Decoration.mark({ class: 'cm-running' }).range(from, to)), true);
-    }
-    return decorations;
-  },
-  provide: (field) => EditorView.decorations.from(field),
-});
 
 /** Blocks were put elsewhere: a step of the same undo as the text's. @type {import('@codemirror/state').StateEffectType<{before: LayoutText, after: LayoutText}>} */
 const setLayoutEffect = StateEffect.define();
@@ -48,8 +32,8 @@ const theme = EditorView.theme({
   '.cm-gutters': { backgroundColor: 'var(--pale)', color: 'var(--soft)', border: 'none' },
   '.cm-content': { caretColor: 'var(--ink)' },
   '.cm-activeLine, .cm-activeLineGutter': { backgroundColor: 'var(--line)' },
-  '.cm-running, .cm-running *': { backgroundColor: '#ffd84d', color: '#1b2733' },
-  '@media (forced-colors: active)': { '.cm-running': { outline: '2px solid Highlight' } },
+  '.cm-line::highlight(running), .cm-line *::highlight(running)': { backgroundColor: '#ffd84d', color: '#1b2733' },
+  '@media (forced-colors: active)': { '.cm-line::highlight(running), .cm-line *::highlight(running)': { backgroundColor: 'Highlight', color: 'HighlightText' } },
   '.cm-breakpoint': { boxShadow: 'inset 3px 0 #a8200f' },
   '.cm-breakpoints': { width: '1.3em', color: '#a8200f', cursor: 'pointer', textAlign: 'center' },
   '.cm-lineNumbers': { cursor: 'pointer' },
@@ -74,6 +58,9 @@ export class Editor {
   /** Where parts of the newest text begin; null while it is not compiled. @type {import('./parts.js').Places | null} */
   #places = null;
   #markedKey = ''; // what runs
+  /** Of what runs. @type {{from: number, to: number}[]} */
+  #runningOffsets = [];
+  #runningHighlight = 'Highlight' in globalThis ? new Highlight() : null; // a browser of before 2025 may mark nothing
   #heldOffset = -1; // where the program is held, and the editor has been scrolled to
   /** Hears where blocks stand again. @type {(stand: LayoutText) => void} */
   #onLayout = () => {};
@@ -82,6 +69,7 @@ export class Editor {
   constructor(parent) {
     /** @type {(offset: number, isLine: boolean) => void} */
     const toggle = (offset, isLine) => this.#toggleAt(offset, isLine);
+    if (this.#runningHighlight) CSS.highlights.set('running', this.#runningHighlight);
     const root = parent.attachShadow({ mode: 'open' });
     const container = document.createElement('div');
     container.style.cssText = 'position: absolute; inset: 0; overflow: hidden'; // laid out without the rest of the page
@@ -95,8 +83,10 @@ export class Editor {
             if (update.docChanged) {
               this.#places = null;
               this.#markedKey = '';
+              this.#runningOffsets = [];
               pageState.programText.set(this.text);
             }
+            this.#markRunning(); // in lines that were drawn anew
             for (const transaction of update.transactions.filter((transaction) => transaction.isUserEvent('undo') || transaction.isUserEvent('redo'))) {
               for (const effect of transaction.effects) if (effect.is(setLayoutEffect)) this.#onLayout(effect.value.after);
             }
@@ -114,7 +104,6 @@ export class Editor {
           bracketMatching(),
           highlightActiveLine(),
           lintGutter(),
-          runningField,
           highlighting,
           theme,
           EditorView.lineWrapping,
@@ -288,11 +277,20 @@ export class Editor {
     if (markedKey === this.#markedKey) return;
     this.#markedKey = markedKey;
     const [offsets] = allOffsets;
-    /** @type {StateEffect<unknown>[]} */
-    const effects = [setRunningEffect.of(allOffsets)];
-    if (offsets && isHeld && offsets.from !== this.#heldOffset) effects.push(EditorView.scrollIntoView(offsets.from, { y: 'nearest', yMargin: 24 }));
+    const isElsewhere = offsets && isHeld && offsets.from !== this.#heldOffset;
     this.#heldOffset = offsets && isHeld ? offsets.from : -1;
-    this.#view.dispatch({ effects });
+    this.#runningOffsets = allOffsets.filter(({ from, to }) => from < to);
+    this.#markRunning();
+    if (isElsewhere) this.#view.dispatch({ effects: EditorView.scrollIntoView(offsets.from, { y: 'nearest', yMargin: 24 }) });
+  }
+
+  /** Marks what runs where it is drawn. A decoration of CodeMirror would have the page laid out anew. */
+  #markRunning() {
+    this.#runningHighlight?.clear();
+    for (const { from, to } of this.#runningOffsets) {
+      const start = this.#view.domAtPos(from), end = this.#view.domAtPos(to);
+      this.#runningHighlight?.add(new StaticRange({ startContainer: start.node, startOffset: start.offset, endContainer: end.node, endOffset: end.offset }));
+    }
   }
 
   /**
