@@ -151,24 +151,25 @@ def test_of_files_some_are_whole_and_each_of_them_some_time(tmp_path: Path) -> N
     assert len(counts) == 3 * len(SIDES)
     assert drawn[7] == drawn[20]
     left = f"{tmp_path / 'test_left.py'}"
-    for commit in commits:
-        ((collected_names, _),) = collected(tmp_path, left, of=None, commits=[commit])
+    for collected_names, _ in collected(tmp_path, left, of=None, commits=commits):
         assert "test_more_of_left" in collected_names  # it was named
     ((collected_names, _),) = collected(tmp_path, "--whole", of=None)
     assert sum(side in name for name in collected_names for side in SIDES) == 3 * len(SIDES)
 
 
 def test_a_tenth_of_the_long_tests_is_drawn_and_each_of_them_some_time(tmp_path: Path) -> None:
-    def long_tests(*words: str, of: str | None = None, commit: str = "7") -> list[str]:
-        ((names, _),) = collected(tmp_path, *words, of=of, commits=[commit])
-        return [name for name in names if name.startswith("test_long")]
+    def long_tests(
+        *words: str, of: str | None = None, commits: Sequence[str] = ("7",)
+    ) -> list[list[str]]:
+        drawn = collected(tmp_path, *words, of=of, commits=commits)
+        return [[name for name in names if name.startswith("test_long")] for names, _ in drawn]
 
-    assert long_tests() == []
-    assert len(long_tests("--whole")) == len(long_tests(of="")) == 20
-    drawn = [long_tests("--tenth", commit=str(commit)) for commit in range(60)]
+    assert long_tests() == [[]]
+    assert [len(names) for names in (*long_tests("--whole"), *long_tests(of=""))] == [20, 20]
+    drawn = long_tests("--tenth", commits=[*map(str, range(60))])
     assert {len(names) for names in drawn} == {2}
     assert len({name for names in drawn for name in names}) == 20
-    assert drawn[7] == long_tests("--tenth")
+    assert long_tests("--tenth") == [drawn[7]]
 
 
 def test_all_rows_of_one_test_run_and_each_that_fails_is_named() -> None:
