@@ -138,7 +138,11 @@ class Part extends Heard {
   hidden = false;
   disabled = false;
   attributes = {};
-  classList = { toggle() {}, add() {}, remove() {} };
+  classList = {
+    add: (...names) => { this.className = [...new Set([...this.className.split(' ').filter(Boolean), ...names])].join(' '); },
+    remove: (...names) => { this.className = this.className.split(' ').filter((each) => !names.includes(each)).join(' '); },
+    toggle: (name, isOn = !this.className.split(' ').includes(name)) => (isOn ? this.classList.add(name) : this.classList.remove(name)),
+  };
   style = { setProperty() {}, removeProperty() {} };
 
   get src() { return this.attributes['src'] ?? ''; }

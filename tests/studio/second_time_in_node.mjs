@@ -272,11 +272,14 @@ const PARTS = {
   // Pictures of pupils' programs.
   async pictures() {
     let story = null;
+    let drawing = 0, most = 0; // at once
     class Blocks {
       constructor() { if (story.breaks()) throw new Broken(); }
       updateLanguage() {}
       async pictureOfForm(form) {
+        most = Math.max(most, (drawing += 1));
         await later(20);
+        drawing -= 1;
         if (story.breaks()) throw new Broken();
         return form.text;
       }
@@ -313,6 +316,7 @@ const PARTS = {
         await passes(chance.below(300));
       }
       await passes(8000);
+      if (most > 1) throw new Error(`${most} pictures are made at once, for which a STOP waits`);
       return { ends: [...new Set(ends)], seen: came };
     };
   },
@@ -879,9 +883,10 @@ const PARTS = {
     };
   },
 
-  // The wall of the teacher's page, over a network that loses some: the tiles are of who is in the class, with pictures of
-  // what they have now, and no other picture is kept; what is seen large is as it is now, or closed; a run is played,
-  // though an earlier one never came.
+  // The teacher's page, over a network that loses some: its bar and its tiles tell of the class as it is now, never as it
+  // was before what is seen, with pictures of what pupils have now, and no other picture is kept; what is seen large is as it
+  // is now, or closed. What is pressed is done once, to whom it says. A run is played, though an earlier one never came. Once
+  // nothing is lost, the class is asked once a second.
   async wall() {
     const page = freshPage({
       generate: () => ({ toCanvas() {} }), correction: {},
@@ -906,78 +911,198 @@ const PARTS = {
     let room = async () => { throw new Broken(); };
     playsFetch((_, { body }) => room(JSON.parse(body)));
     const { pageState } = await page.load('page/page_state.js');
+    const { text } = await page.load('page/texts.js');
     const { Teacher } = await page.load('class/teacher.js');
     const python = { ready: Promise.resolve(), ask: async (_, data) => { await later(10); return { text: new TextDecoder().decode(data) }; } };
     let played = 0;
     new Teacher({ python, openRun: async () => { played += 1; } });
     await passes(10);
-    const wall = page.byId('class').children.at(-2);
-    const large = document.body.children.find(({ id }) => id === 'big_pupil');
-    const giving = document.body.children.find(({ id }) => id === 'class_giving');
-    let versions = 0;
-    /** Who is in the class, by name. @type {Map<string, {number: number, text: string, version: number}>} */
-    const here = new Map();
-    const kept = new Map();
+    const [bar, wall] = page.byId('class').children;
+    const [status, chips, giveBack, anew] = bar.children;
+    const [large, giving, settings] = ['big_pupil', 'class_giving', 'class_window'].map((id) => document.body.children.find((each) => each.id === id));
+    const [robotList, lines] = [settings.children[1].children[1], settings.children[1].children];
+    const [port, lends] = [lines[2].children[0].children.at(-1), lines[2].children[1]], [minutes, places] = [3, 4].map((k) => lines[k].children[0].children.at(-1));
+    const within = (part, className) => part.children.find((each) => each.className?.split(' ').includes(className));
+    let numbers = 0;
+    let states = 0; // told; a class's code is the number of the newest
+    /** Who is in the class, by name, and what is kept of others. */
+    const here = new Map(), kept = new Map(), groups = new Map(), robots = new Map();
+    let room_ = { turn_s: 60, places: 2, goes_on: false };
+    const groupOf = (number) => [...groups].find(([, { pupils }]) => pupils.includes(number))?.[0];
     const seenLarge = () => large.open && [large.querySelectorAll('h2')[0].textContent, large.children[1].children[1].textContent, open.get(large.children[1].children[0].children[0].src)];
     return async (chance, isGood) => {
       let lost = false;
+      let isClosed = !large.open; // by somebody
+      let newest = 0; // of the states that have come
       let isLate = () => !isGood;
+      let asked = []; // besides what is asked again and again
+      let polls = 0;
+      const does = {
+        class_hand: ({ pupil }) => { const found = [...here.values()].find(({ number }) => number === pupil); if (found) found.hand = 0; },
+        class_next: ({ pupil }) => { const found = [...here.values()].find(({ number }) => number === pupil); if (found) found.robot = ''; },
+        class_remove: ({ pupil }) => { for (const [who, { number }] of here) if (number === pupil) here.delete(who); },
+        class_forget: ({ key }) => kept.delete(key),
+        class_robot: ({ port: id, gives }) => (gives ? robots.set(id, { name: '', pupil: '', left_s: 0 }) : robots.delete(id)),
+        class_turn: ({ seconds }) => { room_.turn_s = seconds; },
+        class_places: ({ places: count }) => { room_.places = count; },
+      };
+      const REPEATED = ['class', 'class_text', 'class_run', 'ports'];
       room = async (request) => {
-        const [pupils, works] = [[...here], [...kept]].map((all) => structuredClone(all));
+        if (request.do === 'class') polls += 1;
+        if (!REPEATED.includes(request.do)) asked.push(request);
+        const isLost = isLate() && chance() < 0.5;
+        if (!isLost) does[request.do]?.(request);
+        const [pupils, works, shared, lent] = [here, kept, groups, robots].map((all) => structuredClone([...all]));
+        const state = { ...room_, code: String((states += 1)) };
         await later(isLate() ? chance.below(300) : 5);
-        if (isLate() && chance() < 0.5) {
+        if (isLost) {
           lost ||= request.do === 'class_text';
           throw new Broken();
         }
+        if (request.do === 'ports') return answers({ ports: [{ port: 'p1', name: '' }, { port: 'p2', name: 'Bo' }] });
         if (request.do === 'class_run') return answers({ run: isLate() ? chance.of(['', null, null]) : 'its file' });
         if (request.do === 'class_text') {
-          const [, found] = [...pupils, ...works].find(([name, { number }]) => (request.pupil ? number === request.pupil : name === request.key)) ?? [];
-          return answers({ text: found?.text ?? '', robot: 'tinibot', version: found?.version ?? 0 });
+          const [, found] = [...pupils, ...works, ...shared].find(([name, { number }]) => (request.pupil ? number === request.pupil : name === (request.key ?? request.group))) ?? [];
+          return answers({ text: found?.text ?? '', robot: 'tinibot', version: found?.version ?? 0, history: found?.pupils ? [`made ${found.text}`] : [] });
         }
-        const rows = pupils.map(([name, { number, version }]) => ({ number, name, silent_s: 0, place: 0, robot: '', left_s: 0, version, is_right: true, hand: 0, lessons: [] }));
+        newest = Math.max(newest, state.code);
         const keptRows = works.map(([name]) => ({ key: name, name, lessons: [], given: 0, alike: [] }));
-        return answers({ code: '1', turn_s: 60, places: 2, over: '', goes_on: false, lessons: 1, kept: keptRows, pupils: rows, robots: [] });
+        return answers({
+          ...state, over: '', lessons: 2, kept: keptRows, pupils: pupils.map(([name, row]) => ({ name, ...row })),
+          groups: shared.map(([key, { pupils: members, version }]) => ({ key, name: key, pupils: members, version })), robots: lent.map(([id, row]) => ({ port: id, ...row })),
+        });
       };
       const name = () => chance.of(['Ana', 'Luz', 'Teo', 'Eva']);
+      const pupil = () => here.get(name());
+      const changes = (fields) => () => { const found = pupil(); if (found) Object.assign(found, fields()); };
+      const presses = (part, wanted) => {
+        if (!part || part.hidden || part.disabled) return;
+        const before = asked.length;
+        part.click();
+        const [request, ...more] = asked.slice(before);
+        if (more.length || !request || !wanted(request)) throw new Error(`${JSON.stringify([request, ...more])} is asked by ${part.className || part.dataset['text']}`);
+      };
+      const tileOf = () => chance.of([...wall.children, null]);
+      const numberOf = (tile) => here.get(tile?.children[0].textContent.split(' · ')[0])?.number;
+      const tilePresses = (className, what) => () => {
+        const tile = tileOf(), number = numberOf(tile);
+        if (number) presses(within(tile, className), (request) => request.do === what && request.pupil === number);
+      };
       const acts = {
-        comes: () => { const who = name(); if (!here.has(who)) here.set(who, { number: (versions += 1), text: '', version: 0 }); },
-        writes: () => { const found = here.get(name()); if (found) Object.assign(found, { text: chance() < 0.2 ? '' : `W(${versions})`, version: (versions += 1) }); },
+        comes: () => { const who = name(); if (!here.has(who)) here.set(who, { number: (numbers += 1), text: '', version: 0, silent_s: 0, place: 0, robot: '', left_s: 0, is_right: true, hand: 0, lessons: [], own_robot: { name: '', colour: 0 } }); },
+        writes: changes(() => ({ text: chance() < 0.2 ? '' : `W(${numbers})`, version: (numbers += 1) })),
+        waves: changes(() => ({ hand: chance.below(3), place: chance.below(3), silent_s: chance.of([0, 9]), is_right: chance() < 0.5 })),
+        drives: changes(() => ({ robot: chance.of(['', 'Bo']), left_s: chance.below(99) })),
+        learns: changes(() => ({ lessons: ['1 one', '2 two'].slice(chance.below(3)), own_robot: { name: chance.of(['', 'Zip']), colour: 0 } })),
         goes: () => { here.delete(name()); },
-        kept: () => { const key = `old ${name()}`; if (!kept.delete(key)) kept.set(key, { text: `S(${versions})`, version: 0 }); },
+        kept: () => { const key = `old ${name()}`; if (!kept.delete(key)) kept.set(key, { text: `S(${numbers})`, version: 0 }); },
+        joins: () => {
+          const found = pupil();
+          for (const group of groups.values()) group.pupils = group.pupils.filter((number) => number !== found?.number);
+          if (found && chance() < 0.7) groups.set(chance.of(['red', 'tan']), { text: `G(${numbers})`, version: (numbers += 1), pupils: [found.number] });
+        },
+        robots: () => robots.set(chance.of(['p1', 'p2']), { name: chance.of(['', 'Bo']), pupil: chance.of(['', 'Ana']), left_s: chance.below(99) }),
+        rules: () => { room_ = { turn_s: 60 * (1 + chance.below(9)), places: 1 + chance.below(9), goes_on: chance() < 0.5 }; },
         speaks: () => { languages += 1; pageState.language.set('en'); },
-        looks: () => { const tile = chance.of([...wall.children, null]); tile?.children.find(({ className }) => className === 'see').click(); },
-        plays: () => chance.of([...wall.children, null])?.children.find(({ className }) => className === 'play').click(),
-        closes: () => large.close(),
+        looks() {
+          const tile = tileOf();
+          if (!tile) return;
+          within(tile, 'see').click();
+          if (!large.open) throw new Error('nobody is seen large');
+          isClosed = false;
+        },
+        plays: () => tileOf()?.children.find(({ className }) => className === 'play').click(),
+        closes() {
+          large.close();
+          isClosed = true;
+        },
+        steps: () => large.open && chance.of([large.children[0].children[0], large.children[0].children[2]]).click(),
         gives: () => giving.showModal(),
+        lowers: tilePresses('hand', 'class_hand'),
+        removes: tilePresses('out', 'class_remove'),
+        forgets() {
+          const tile = tileOf(), key = tile?.children[0].textContent;
+          if (kept.has(key)) presses(within(tile, 'out'), (request) => request.do === 'class_forget' && request.key === key);
+        },
+        ends() { // of who is seen large
+          const number = here.get(seenLarge()[0])?.number;
+          const [what, button] = chance.of(Object.entries({ class_hand: 4, class_stop: 5, class_next: 6, class_remove: 7 }));
+          if (!number) return;
+          presses(large.children[0].children[button], (request) => request.do === what && request.pupil === number);
+          if (what === 'class_remove' && large.open) throw new Error('who is removed is seen large');
+          isClosed ||= what === 'class_remove';
+        },
+        takes: () => presses(chance.of([...robotList.children, null])?.children[2], (request) => request.do === 'class_robot' && !request.gives),
+        lends() {
+          port.value = chance.of(['', 'p1', 'p2']);
+          const before = asked.length;
+          lends.click();
+          if (asked.length - before !== Number(port.value !== '')) throw new Error(`${JSON.stringify(asked.slice(before))} is asked for ${port.value}`);
+        },
+        sets() {
+          [minutes.value, places.value] = [String(1 + chance.below(9)), String(1 + chance.below(9))];
+          const before = asked.length;
+          for (const field of [minutes, places]) field.dispatchEvent(new Event('change'));
+          if (`${asked.slice(before).map(({ seconds, places: count }) => seconds / 60 || count)}` !== `${[minutes, places].map(({ value }) => value)}`) throw new Error('what is set is not asked for');
+        },
         waits: () => {},
       };
-      for (let k = 3 + chance.below(12); k > 0; k -= 1) {
-        acts[chance.of([...Object.keys(acts), 'comes', 'writes', 'writes'])]();
+      for (let k = 5 + chance.below(25); k > 0; k -= 1) {
+        const act = chance.of([...Object.keys(acts), 'comes', 'comes', 'comes', 'writes', 'writes', 'looks']);
+        acts[act]();
+        if (act === 'looks' && chance() < 0.5) acts.ends();
         await passes(chance.of([20, 1050, chance.below(1500)]));
+        if (large.open && isClosed) throw new Error('what was closed is seen large again');
+        if (newest && Number(page.byId('class_come')?.textContent || newest) < newest) throw new Error('the class of before is seen');
       }
       if (!isGood) return { ends: [lost ? 'lost' : 'came'], seen: false };
       isLate = () => false;
-      const isLarge = large.open;
       await passes(16_000); // also what nobody answers is over
-      const all = [...here, ...kept].sort(([one], [other]) => one.localeCompare(other));
-      const tiles = wall.children.map(({ children }) => [children[0].textContent, open.get(children[1].children[0].src), children[1].children[0].src]);
-      const wanted = all.map(([who, { text }]) => [who, text && (languages ? `${text} words ${languages}` : `${text} words`)]);
-      if (`${tiles.map(([who, picture = '']) => [who, picture])}` !== `${wanted}`) throw new Error(`${JSON.stringify(tiles)} in place of ${JSON.stringify(wanted)}`);
+      polls = 0;
+      await passes(10_000);
+      if (polls < 9 || polls > 10) throw new Error(`${polls} times in 10 s the class is asked`);
+      const clock = (seconds) => `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;
+      const members = [...groups].map(([key, group]) => [key, { ...group, all: [...here].filter(([, { number }]) => group.pupils.includes(number)) }]).filter(([, { all }]) => all.length);
+      const joined = members.map(([key, { text: program, all }]) => [key, {
+        text: program, isGroup: true, own_robot: { name: all.map(([who]) => who).join(', ') }, lessons: all.flatMap(([, { lessons }]) => lessons),
+        silent_s: Math.min(...all.map(([, row]) => row.silent_s)), is_right: all.every(([, row]) => row.is_right),
+        hand: Math.max(...all.map(([, row]) => row.hand)), place: Math.max(...all.map(([, row]) => row.place)), ...(({ robot, left_s }) => ({ robot, left_s }))((all.find(([, { robot }]) => robot) ?? all[0])[1]),
+      }]);
+      const all = [...[...here].filter(([, { number }]) => !members.some(([, { pupils }]) => pupils.includes(number))), ...joined, ...kept].sort(([one], [other]) => one.localeCompare(other));
+      const isSame = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
+      const wordsIn = (part) => (typeof part === 'string' ? part : part.textContent + part.children.map(wordsIn).join(''));
+      isSame(wall.children.map((tile) => [tile.children[0].textContent, tile.dataset['state'], tile.children[2].children[1].textContent, !within(tile, 'badge').hidden && wordsIn(within(tile, 'badge')), tile.children[2].children[0].children.filter(({ className }) => className).length, ...['hand', 'play', 'out', 'join'].map((each) => !within(tile, each).hidden)]),
+        all.map(([who, { own_robot, silent_s, is_right, robot, left_s, place, lessons = [], hand, isGroup = false }]) => {
+          const state = !own_robot ? 'gone' : silent_s ? 'away' : is_right ? 'right' : 'wrong';
+          return [[who, own_robot?.name].filter(Boolean).join(' · '), state, state === 'right' ? '✓' : text(`class_is_${state}`), robot ? `${robot} ${clock(left_s)}` : place ? text('class_place_short', { place }) : false, new Set(lessons).size, Boolean(hand), !isGroup && ['right', 'wrong'].includes(state), !isGroup, isGroup];
+        }), 'the tiles');
+      const hands = [...here].filter(([, { hand }]) => hand).sort(([, one], [, other]) => one.hand - other.hand).map(([who]) => who).join(', ');
+      const said = [text('class_count', { pupils: here.size, robots: robots.size, waiting: [...here.values()].filter(({ place }) => place).length }), hands && text('class_hands', { names: hands })].filter(Boolean).join(' ');
+      if (!status.textContent.startsWith(said) || (room_.goes_on && said === status.textContent)) throw new Error(`${status.textContent} in place of ${said}`);
+      isSame([giveBack.hidden, anew.hidden, wall.hidden, minutes.value, places.value], [!kept.size || !here.size, !room_.goes_on, !all.length, String(room_.turn_s / 60), String(room_.places)], 'the bar');
+      isSame([chips.hidden, chips.children.map((chip) => [...chip.children.slice(1).map(wordsIn), chip.className])], [!robots.size, [...robots].map(([id, row]) => [row.name || id, row.pupil ? text('class_held', { name: row.pupil, time: clock(row.left_s) }) : text('class_free'), row.pupil ? 'held' : ''])], 'the robots');
+      isSame(robotList.children.map((row) => wordsIn(row.children[0])), [...robots].map(([id, row]) => [row.name, id].filter(Boolean).join(' · ')), 'the list of robots');
+      const tiles = wall.children.map(({ children }) => [children[0].textContent.split(' · ')[0], open.get(children[1].children[0].src), children[1].children[0].src]);
+      const wanted = all.map(([who, { text: program }]) => [who, program && (languages ? `${program} words ${languages}` : `${program} words`)]);
+      isSame(tiles.map(([who, picture = '']) => [who, picture]), wanted, 'the pictures');
       if (tiles.some(([, picture, address]) => address && !picture)) throw new Error('a picture that is kept no more is in a tile');
       const shown = new Set(tiles.map(([, , address]) => address).filter(Boolean));
       if (shown.size !== open.size) throw new Error(`${open.size} pictures are kept, and ${shown.size} are seen`);
-      if (large.open && !isLarge) throw new Error('what was closed is seen large again');
+      if (large.open && isClosed) throw new Error('what was closed is seen large again');
       const big = seenLarge();
       const own = big && all.find(([who]) => who === big[0]);
       if (big && !own) throw new Error(`${big[0]} is seen large, and is not here`);
-      if (own && own[1].text && (big[1] !== own[1].text || big[2] !== wanted[all.indexOf(own)][1])) throw new Error(`${big} is seen large in place of ${own[1].text}`);
+      if (own) {
+        const { text: program, robot = '', hand = 0, isGroup, own_robot } = own[1], [, , , said_, lower, stop, next, remove] = large.children[0].children;
+        if (program) isSame(big.slice(1), [program, wanted[all.indexOf(own)][1]], 'what is seen large');
+        isSame([said_.textContent.startsWith(text('class_drives', { robot })), lower.hidden, stop.hidden, next.hidden, remove.hidden, large.children[1].children[2].hidden, large.children[1].children[0].hidden], [Boolean(robot), !hand, !robot, !robot, Boolean(isGroup), !isGroup, !program], `beside ${own[0]}, who is seen large ${Boolean(own_robot)}`);
+      }
       if (giving.open && !kept.size) throw new Error('there is nothing to give');
-      const tile = wall.children[all.findIndex(([, { number }]) => number)], before = played;
+      const tile = wall.children.find((each) => numberOf(each) && !within(each, 'play').hidden), before = played;
       tile?.children.find(({ className }) => className === 'play').click();
       await passes(500);
       if (tile && played === before) throw new Error('a run is not played');
-      here.clear();
-      kept.clear();
+      for (const each of [here, kept, groups, robots]) each.clear();
       large.close();
       giving.close();
       await passes(5000);
