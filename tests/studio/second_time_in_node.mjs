@@ -2025,10 +2025,10 @@ const PARTS = {
         const deleted = stored[number];
         does(() => row.children[1].click());
         keeps('deletes', stored, stored.filter((each) => each !== deleted));
-        if (chance() < 0.5) storeVersion({ text: `T(${(count += 1)});`.repeat(chance.of([1, 10_000])), robot: 'tinibot', name: '' }); // another tab does
-        const left = loadVersions();
+        if (chance() < 0.5) storeVersion(chance.of([{ text: `T(${(count += 1)});`.repeat(chance.of([1, 10_000])), robot: 'tinibot', name: '' }, deleted])); // another tab does
+        const left = loadVersions(), again = left.find(({ text, robot }) => text === deleted.text && robot === deleted.robot);
         does(() => row.children[0].click());
-        keeps('brings back', left, [...left, deleted].sort((first, second) => second.at_ms - first.at_ms), deleted);
+        keeps('brings back', left, again ? left : [...left, deleted].sort((first, second) => second.at_ms - first.at_ms), again ?? deleted);
       }
       store.room = Infinity;
       return { ends: [...ends], seen: [] };

@@ -135,8 +135,8 @@ def ask(data: bytes, **fields: object) -> dict[str, Any]:
 
 @pytest.mark.parametrize("seed", range(10))
 def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Out of a list, or out of a claim: the page keeps the newest of each robot and person, and the
-    session with a robot that is connected has the same.
+    """Out of a list, here or in another tab, or out of a claim: the page keeps the newest of each
+    robot and person, and the session with a robot that is connected has the same.
     """
     monkeypatch.setattr(page_line, "_robot", None)
     chance, kept = Random(seed), ""
@@ -151,6 +151,14 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
                 ask(kept.encode(), do="connect", robot="tinibot", language="en")
                 new_keys = []
             case "import":
+                others = PageKeys(kept.encode())  # in another tab
+                others.add(
+                    keys.encode_keys(
+                        [RobotKey(chance.randrange(5, 9), OWNER, chance.randbytes(KEY_BYTES))]
+                    )
+                )
+                kept = others.file()
+                newest_keys |= {key.slot: key.key for key in others.keys}
                 kept = ask(keys.encode_keys(new_keys), do="import_keys", kept=kept)["keys"]
             case "claim" | "link" as does if page_line._robot:
                 new_keys = new_keys[: does == "claim"]

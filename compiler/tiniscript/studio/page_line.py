@@ -44,6 +44,16 @@ class PageKeys(KeyRing):
         self._change_keys(lambda stored_keys: with_keys_added(stored_keys, new_keys))
         return len(new_keys)
 
+    def add_kept(self, data: bytes) -> None:
+        """Take what the page keeps now: another tab may have added to it. Raises BadKeys."""
+        kept_keys = decode_keys(data) if data else []
+        places = {(key.slot, key.is_pending) for key in kept_keys}
+        self._change_keys(
+            lambda keys: (
+                [key for key in keys if (key.slot, key.is_pending) not in places] + kept_keys
+            )
+        )
+
     def _stored_keys(self) -> list[RobotKey]:
         return self.keys
 
@@ -154,7 +164,8 @@ def _link(fields: Json, data: bytes) -> Json:
 def _import_keys(fields: Json, data: bytes) -> Json:
     """Add the keys of a file, `data`, to those of the page, whose file is `kept`."""
     try:
-        keys = PageKeys(fields["kept"].encode()) if _robot is None else _robot.keys
+        keys = PageKeys(b"") if _robot is None else _robot.keys
+        keys.add_kept(fields["kept"].encode())
         count = keys.add(data)
     except BadKeys:
         return {"count": None}

@@ -40,9 +40,10 @@ export function deleteVersion({ text, robot: robotName }) {
   storeAll(loadVersions().filter((version) => version.text !== text || version.robot !== robotName));
 }
 
-/** Keeps a program again that was deleted, where it was. @param {Version} version @returns {boolean} whether it is kept */
+/** Keeps a program again that was deleted, where it was, unless another tab has. @param {Version} version @returns {boolean} whether it is kept */
 export function restoreVersion(version) {
-  return storeAll([...loadVersions(), version].sort((first, second) => second.at_ms - first.at_ms), version);
+  const otherVersions = loadVersions();
+  return otherVersions.some(sameProgramAs(version)) || storeAll([...otherVersions, version].sort((first, second) => second.at_ms - first.at_ms), version);
 }
 
 /**
