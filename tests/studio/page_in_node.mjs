@@ -24,6 +24,7 @@ const PLAYED = {
   '@codemirror/view': ['Decoration', 'EditorView', 'GutterMarker', 'WidgetType', 'gutter', 'highlightActiveLine', 'keymap', 'lineNumbers'],
   pyodide: ['loadPyodide'],
   'lean-qr': ['generate', 'correction'],
+  'blockly/core': ['blockly'], // all that it has
 };
 /** What is played now; other modules are the page's own. */
 let played = {};
@@ -43,7 +44,8 @@ registerHooks({
   load(url, context, next) {
     const [kind, name] = url.replace(/\?page=\d+$/, '').split(/:(.*)/s);
     if (kind === 'played') {
-      const source = PLAYED[name].map((each) => `export const ${each} = globalThis.played.${each};`).join('\n');
+      const [first] = PLAYED[name], whole = first === 'blockly';
+      const source = (whole ? Object.keys(played.blockly) : PLAYED[name]).map((each) => `export const ${each} = globalThis.played.${whole ? 'blockly.' : ''}${each};`).join('\n');
       return { format: 'module', source, shortCircuit: true };
     }
     if (kind === 'made') return { format: 'module', source: `export default ${readFileSync(`${made}/${name}`, 'utf-8')}`, shortCircuit: true };
@@ -212,6 +214,7 @@ class Part extends Heard {
   }
   closest(selector) { return this.matches(selector) ? this : this.parent?.closest(selector) ?? null; }
   querySelectorAll(selector) { return this.children.filter((each) => each instanceof Part).flatMap((each) => [...each.matches(selector) ? [each] : [], ...each.querySelectorAll(selector)]); }
+  querySelector(selector) { return this.querySelectorAll(selector)[0] ?? null; }
   checkVisibility() { return !this.hidden && (this.parent?.checkVisibility() ?? true); }
   insertBefore(part, next) {
     this.children = this.children.filter((each) => each !== part);

@@ -4,6 +4,7 @@
 
 import { readFileSync } from 'node:fs';
 import { pathToFileURL } from 'node:url';
+import { blocklyInNode } from './blockly_in_node.mjs';
 import { chanceOf, compared, freshPage, later, learns, noting, now, passes, playsFetch, playsNavigator, PROGRAM, settles, sources, virtualRobot, words } from './page_in_node.mjs';
 
 const [part, seeds] = words;
@@ -2980,6 +2981,319 @@ const PARTS = {
       if (hasFailed) ends.add('failed');
       await rests();
       return { ends: [...ends], seen: isGood && [all, past] };
+    };
+  },
+
+  // Blocks of one program after another: each has the looks, the messages, the marks and the list that belong to what is
+  // seen now, stands where it was put, and keeps the focus; what the page shows is no change, and what somebody does is. What
+  // runs is in view, and a run leaves the view as it was, or as somebody has scrolled it meanwhile.
+  async blocks() {
+    globalThis.innerWidth = 1366;
+    const { blockly, seen } = blocklyInNode();
+    const page = freshPage({ blockly });
+    playsNavigator({});
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    pageState.robotName.set('tinibot');
+    globalThis.CSSStyleSheet = class { replaceSync() {} };
+    document.adoptedStyleSheets = [];
+    const { Blocks } = await page.load('blocks/blocks.js');
+    const { formOf } = await page.load('blocks/form.js');
+    const container = page.byId('blocks');
+    Object.assign(container, { clientWidth: 600, clientHeight: 400 });
+    let changes = 0;
+    let tried = null;
+    const toggled = [];
+    const blocks = new Blocks(container, 'tinibot', 'few', {
+      onChange: () => { changes += 1; },
+      toggleBreakpoint: (place) => toggled.push(place.line),
+      tryAlone: () => new Promise((resolve) => { tried = resolve; }),
+      playTone() {},
+    });
+    const workspace = () => seen.workspaces.at(-1);
+    await passes(100);
+    const all = () => workspace().getAllBlocks(true).filter((block) => !block.isShadow());
+    return async (chance, isGood) => {
+      const number = () => [['NUMBER', String(1 + chance.below(9))]];
+      const plain = () => chance.of([
+        () => ({ kind: 'move', word: chance.of(['F', 'B']), values: [number(), number()] }),
+        () => ({ kind: 'wait', word: 'W', values: [number()] }),
+        () => ({ kind: 'assign', word: chance.of(['X', 'Y']), values: [number()] }),
+        () => ({ kind: 'call', word: 'D', values: [number()] }),
+      ])();
+      const block = (depth = 0) => {
+        const made = depth < 2 && chance() < 0.3 ? { kind: 'loop', word: 'LOOP', values: [number()], bodies: [body(depth + 1)] } : plain();
+        return { bodies: [], note: '', is_apart: false, ...made };
+      };
+      const body = (depth = 0) => Array.from({ length: chance.below(4) }, () => block(depth));
+      /** A program, whose blocks each have a line. */
+      const makeForm = () => {
+        const form = { start: 'SI', note: '', is_one_line: false, body: body(), loose: chance() < 0.3 ? [{ body: [block(2)], value: [] }] : [] };
+        if (chance() < 0.5) form.body.push({ kind: 'def', word: 'D', values: [[['NAME', 'A']]], bodies: [body(1)], note: '', is_apart: false });
+        let line = 0;
+        const places = (each) => {
+          each.place = [(line += 1), 1, 0, 9];
+          each.bodies.forEach((inner) => inner.forEach(places));
+          each.place[2] = line;
+        };
+        form.body.forEach(places);
+        return form;
+      };
+      const flat = (list) => list.flatMap((each) => [each, ...each.bodies.flatMap(flat)]);
+      const essence = (form) => JSON.stringify([form.body, form.loose.map((each) => each.body)], ['kind', 'word', 'values', 'bodies', 'body', '0', '1', '2', '3', '4', '5']);
+      let form = makeForm();
+      const has = { robot: 'tinibot', level: 'few', findings: [], running: [], fault: null, points: [], mates: [] };
+      let isAlone = ''; // which block is tried alone
+      let closed = ''; // the message that somebody has put away
+      const line = () => 1 + chance.below(Math.max(1, flat(form.body).length));
+      const at = (count) => Array.from({ length: chance.below(count + 1) }, () => ({ line: line(), column: 1 }));
+      const says = {
+        findings: () => blocks.showFindings(has.findings),
+        running: () => blocks.showRunning(has.running),
+        fault: () => blocks.showFault(has.fault, has.fault ? `why ${has.fault.line}` : ''),
+        points: () => blocks.showBreakpoints(has.points),
+        mates: () => blocks.showMates(has.mates),
+      };
+      const acts = {
+        shows() {
+          if (chance() < 0.5) form = makeForm();
+          blocks.show(form);
+          isAlone = '';
+          for (const name of Object.keys(says)) says[name](); // as views.js does
+        },
+        findings() {
+          has.findings = at(2).map((place) => ({ ...place, severity: chance.of(['mistake', 'warning']), message: 'm', on_blocks: { message: `at ${place.line}`, fix: '', spoken: {} } }));
+          says.findings();
+        },
+        running() { has.running = at(2); says.running(); },
+        fault() { [has.fault = null] = at(1); says.fault(); },
+        points() { has.points = at(2); says.points(); },
+        mates() { has.mates = at(2).map((place) => ({ ...place, color: '#000', said: 'Luz' })); says.mates(); },
+        level() { blocks.setLevel(has.level = chance.of(['few', 'usual', 'all'])); },
+        robot() { blocks.setRobot(has.robot = chance.of(['tinibot', 'liner'])); },
+        speaks() {
+          blocks.updateLanguage();
+          isAlone = '';
+          for (const name of Object.keys(says)) says[name]();
+        },
+        resizes: () => blocks.resize(),
+        begins: () => blocks.beginProgram(),
+        scrolls() {
+          container.dispatchEvent(new Event('wheel'));
+          workspace().scroll(-chance.below(300), -chance.below(300));
+        },
+        stays() { // what is seen, whatever is shown anew
+          acts.scrolls();
+          const before = viewOf();
+          blocks.show(form);
+          isAlone = '';
+          for (const name of Object.keys(says)) if (name !== 'running') says[name]();
+          has.running = [];
+          if (`${viewOf()}` !== `${before}`) throw new Error(`the view is ${viewOf()}, and was ${before}`);
+          acts.speaks();
+          if (`${viewOf()}` !== `${before}`) throw new Error(`in another language the view is ${viewOf()}, and was ${before}`);
+        },
+        focuses() { // which stays at its block
+          const { lines } = blocks;
+          if (!lines.length) return;
+          const number = chance.below(lines.length);
+          document.activeElement = container;
+          seen.focused = workspace().getBlockById(lines[number][0]);
+          blockly.ShortcutRegistry.registry.getRegistry()['breakpoint'].callback();
+          if (toggled.at(-1) !== lines[number][1] || blocks.focusedLine !== lines[number][1]) throw new Error(`a breakpoint is set at ${toggled.at(-1)}, and the focus is at ${lines[number][1]}`);
+          blocks.show(form);
+          isAlone = '';
+          for (const name of Object.keys(says)) says[name]();
+          if (blocks.focusedLine !== lines[number][1]) throw new Error(`the focus goes to ${blocks.focusedLine} from ${lines[number][1]}`);
+          document.activeElement = document.body;
+        },
+        puts() { // what hangs on nothing stays where it was put
+          const loose = workspace().getTopBlocks(false).find(({ type }) => !['program', 'def'].includes(type));
+          if (!loose) return;
+          const place = { x: chance.below(300), y: chance.below(200) };
+          loose.moveTo(place);
+          blocks.readForm();
+          const before = blocks.layoutText;
+          if (chance() < 0.5) { // and undo brings it back
+            loose.moveTo({ x: 400, y: 400 });
+            blocks.readForm();
+            blocks.layoutText = before;
+          }
+          blocks.show(form);
+          isAlone = '';
+          for (const name of Object.keys(says)) says[name]();
+          if (blocks.layoutText !== before) throw new Error(`blocks stand at ${blocks.layoutText} in place of ${before}`);
+        },
+        async names() { // of the values of one's own word
+          const def = workspace().getBlocksByType('def')[0];
+          if (!def) return;
+          const before = changes;
+          chance.of([() => def.more(), () => def.less(), () => def.names().length && def.setFieldValue(`Z${chance.below(99)}`, 'P0')])();
+          await passes(100);
+          const calls = workspace().getBlocksByType('call');
+          for (const call of calls) {
+            const labels = def.names().map((_, k) => call.getFieldValue(`L${k}`));
+            if (changes > before && (call.count !== def.names().length || `${labels}` !== `${def.names()}`)) throw new Error(`a call has ${call.count}, ${labels} of ${def.names()}`);
+          }
+          takes();
+        },
+        async runs() {
+          has.running = [];
+          says.running();
+          await passes(3000);
+          if (chance() < 0.5) acts.scrolls();
+          let before = viewOf(), isLeft = false;
+          for (let k = chance.below(6); k > 0; k -= 1) {
+            has.running = [{ line: line(), column: 1 }];
+            says.running();
+            const box = workspace().getBlockById(blocks.lines[innermost(has.running[0])]?.[0])?.getBoundingRectangleWithoutChildren();
+            const { left, top, width, height } = workspace().getMetricsManager().getViewMetrics(true);
+            if (box && !isLeft && (box.left < left || box.right > left + width || box.top < top || box.bottom > top + height)) throw new Error(`what runs is at ${box.left} ${box.top}, and ${[left, top, width, height]} is seen`);
+            if (box && chance() < 0.2) {
+              acts.scrolls();
+              [before, isLeft] = [viewOf(), true];
+            }
+            await passes(chance.below(500));
+          }
+          has.running = [];
+          says.running();
+          await passes(3000);
+          if (`${viewOf()}` !== `${before}`) throw new Error(`after a run the view is ${viewOf()}, and was ${before}`);
+        },
+        async grows() { // the robot, and is small again
+          has.running = [];
+          says.running();
+          await passes(3000);
+          acts.scrolls();
+          const before = viewOf(), { room } = workspace();
+          const seenNow = (slack) => workspace().getTopBlocks(false).filter((top) => viewRect(slack).contains(...(({ left, top: y }) => [left, y])(top.getBoundingRectangle()))).length;
+          const count = seenNow(0);
+          document.documentElement.dataset['big'] = '';
+          workspace().nextRoom = { width: 300, height: 400 };
+          blocks.resize();
+          if (workspace().scale > 0.4 && seenNow(1) < count) throw new Error(`${seenNow(1)} of ${count} stacks are seen beside a large robot ${viewOf()} ${workspace().getTopBlocks(false).map((top) => [top.type, ...Object.values(top.getBoundingRectangle())])}`);
+          delete document.documentElement.dataset['big'];
+          workspace().nextRoom = room;
+          blocks.resize();
+          if (`${viewOf()}` !== `${before}`) throw new Error(`beside a small robot the view is ${viewOf()}, and was ${before}`);
+        },
+        async closes() { // a message, which is said again only where the mistake is made again
+          const wrong = () => all().find((each) => each.classes?.has('wrong'));
+          const openOf = (each) => Boolean(each?.getIcon(blockly.icons.WarningIcon.TYPE)?.getBubble());
+          const tells = async (findings) => {
+            has.findings = findings;
+            says.findings();
+            await passes(10);
+          };
+          has.fault = null;
+          says.fault();
+          await tells([]);
+          const mistake = [{ line: 1, column: 1, severity: 'mistake', message: 'm', on_blocks: { message: `${chance()}`, fix: '', spoken: {} } }];
+          workspace().scroll(0, 0);
+          for (let k = 2; k > 0; k -= 1) {
+            await tells(mistake);
+            if (!wrong() || wrong().type === 'program') return;
+            if (!openOf(wrong())) throw new Error('nobody says what is wrong');
+            await wrong().getIcon(blockly.icons.WarningIcon.TYPE).setBubbleVisible(false);
+            workspace().fireChangeListener(Object.assign(Object.create(blockly.Events.BubbleOpen.prototype), { type: 'bubble_open', isUiEvent: true, isOpen: false, blockId: wrong().id }));
+            await tells(mistake);
+            if (openOf(wrong())) throw new Error('what was put away is said again');
+            await tells([]);
+          }
+        },
+        async edits() {
+          const moves = all().filter(({ type }) => type === 'move');
+          if (!moves.length) return;
+          const before = changes;
+          const move = chance.of(moves);
+          move.setFieldValue(move.getFieldValue('WORD') === 'L' ? 'R' : 'L', 'WORD');
+          await passes(100);
+          if (changes === before) throw new Error('nobody hears of a change of the blocks');
+          takes();
+        },
+        tries() {
+          const [first] = all().filter(({ type }) => type !== 'program');
+          if (!first) return;
+          tried?.();
+          workspace().fireChangeListener?.(Object.assign(Object.create(blockly.Events.Click.prototype), { type: 'click', isUiEvent: true, targetType: 'block', blockId: first.id }));
+          isAlone = first.id;
+        },
+        async ends() {
+          tried?.();
+          await settles();
+          isAlone = '';
+        },
+        goes: () => blocks.goTo({ line: line(), column: 1 }),
+        waits: () => passes(1500),
+      };
+      const viewOf = () => [workspace().scale, workspace().scrollX, workspace().scrollY].map((each) => Math.round(100 * each) / 100);
+      const viewRect = (slack) => (({ left, top, width, height }) => new blockly.utils.Rect(top - slack, top + height + slack, left - slack, left + width + slack))(workspace().getMetricsManager().getViewMetrics(true));
+      /** What somebody has done is the program now. */
+      const takes = () => {
+        const found = blocks.readForm();
+        form = found.form;
+        blocks.setRanges(found.ids, flat(form.body).map((each, k) => (each.place = [k + 1, 1, k + 1, 9])));
+        for (const name of ['running', 'fault', 'points', 'findings', 'mates']) {
+          has[name] = name === 'fault' ? null : [];
+          says[name]();
+        }
+      };
+      const wordsOf = (each) => [...each.classes ?? []].sort().join(' ');
+      const innermost = (place) => {
+        const bodies = flat(form.body), found = bodies.findLastIndex(({ place: [first, , last] }) => place.line >= first && place.line <= last);
+        return found;
+      };
+      const checks = (act) => {
+        const { ids } = blocks.readForm(), list = flat(form.body);
+        const idAt = (place) => ids[innermost(place)];
+        const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`after ${act} ${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
+        is(essence(formOf(workspace()).form), essence(form), 'the blocks');
+        is(blocks.lines.length, list.length, 'their lines');
+        const wanted = new Map();
+        const looks = (id, look) => id && wanted.set(id, [...new Set([...wanted.get(id) ?? [], look])]);
+        for (const place of has.running) looks(idAt(place), 'running');
+        for (const place of has.points) looks(idAt(place), 'breakpoint');
+        if (has.fault) looks(idAt(has.fault), 'fault');
+        for (const each of has.findings) if (each.severity === 'mistake') looks(idAt(each), 'wrong');
+        if (isAlone) looks(isAlone, 'alone');
+        for (const top of workspace().getTopBlocks(false)) if (!['program', 'def'].includes(top.type)) looks(top.id, 'loose');
+        for (const each of all()) {
+          if (each.type === 'program') continue;
+          is(wordsOf(each), (wanted.get(each.id) ?? []).sort().join(' '), `the looks of ${each.type}`);
+          const said = [...has.fault && idAt(has.fault) === each.id ? [`why ${has.fault.line}`] : [], ...has.findings.filter((found) => idAt(found) === each.id).map((found) => found.on_blocks.message)].join('\n\n');
+          is(each.getIcon(blockly.icons.WarningIcon.TYPE)?.getText() ?? '', said, `what is said at ${each.type}`);
+        }
+        is(all().flatMap((each) => each.getSvgRoot().children.filter(({ attributes }) => attributes?.class === 'mate_mark').map(() => each.id)).sort(), has.mates.flatMap(({ line: wantedLine }) => ids[list.findIndex(({ place }) => place[0] === wantedLine)] ?? []).sort(), 'whoever else is here');
+        const used = JSON.stringify(workspace().list).includes('"Y"');
+        if (has.level !== 'few' && used !== flat([...form.body, ...form.loose.flatMap((each) => each.body)]).some(({ kind, word }) => kind === 'assign' && word === 'Y')) throw new Error(`the list ${used ? 'has' : 'lacks'} a name of the program`);
+        if (!container.querySelectorAll('.search').length || container.querySelectorAll('.search').length > 1) throw new Error('the search is not there once');
+      };
+      const ends = new Set();
+      if (isGood) {
+        tried?.();
+        await passes(3000);
+        blocks.beginProgram();
+        acts.level();
+        acts.robot();
+        acts.shows();
+        for (const name of ['running', 'fault', 'points', 'findings', 'mates']) acts[name]();
+        await passes(3000);
+      } else acts.shows();
+      const noted = [];
+      for (let k = 4 + chance.below(10); k > 0; k -= 1) {
+        const act = chance.of([...Object.keys(acts), 'shows', 'running', 'running']);
+        ends.add(act);
+        const before = changes;
+        await acts[act]();
+        await passes(chance.of([0, chance.below(900)]));
+        if (!['edits', 'names', 'puts'].includes(act) && changes !== before) throw new Error(`${act} is told as a change`);
+        checks(act);
+        noted.push([act, workspace().scale, workspace().scrollX, workspace().scrollY, JSON.parse(blocks.layoutText).length, structuredClone(workspace().list)]);
+      }
+      has.running = [];
+      says.running();
+      await passes(3000);
+      return { ends: [...ends], seen: isGood && noted };
     };
   },
 

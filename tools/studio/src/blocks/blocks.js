@@ -72,6 +72,7 @@ export class Blocks {
   /** The ids of the blocks with each look. @type {Record<string, Set<string>>} */
   #markedIds = {};
   #faultAt = { id: '', said: '' };
+  #tryCount = 0; // of blocks that were tried: the look is that of the newest one
   /** @type {Search | null} */
   #search = null;
   /** @type {HTMLElement | null} */
@@ -171,11 +172,12 @@ export class Blocks {
   async #tryAlone(listener, block, isAsked) {
     let triedBlock = block;
     while (triedBlock.isShadow()) triedBlock = triedBlock.getParent() ?? triedBlock;
+    const tryNumber = ++this.#tryCount;
     this.#setMarked('alone', [triedBlock.id]);
     try {
       await listener.tryAlone(formOfOne(triedBlock), isAsked);
     } finally {
-      if (this.#markedIds['alone']?.has(triedBlock.id)) this.#setMarked('alone', []);
+      if (tryNumber === this.#tryCount) this.#setMarked('alone', []);
     }
   }
 
