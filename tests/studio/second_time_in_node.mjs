@@ -1383,6 +1383,219 @@ const PARTS = {
     };
   },
 
+  // The editor of one group after another, while others write, too, and requests are lost, late or refused: what was
+  // written is there once, for all; the class knows where the page is, and the page where the others are; one request
+  // waits for news and one brings changes, at a time; who has left asks and hears nothing more.
+  async together() {
+    const page = freshPage();
+    playsNavigator({});
+    playsFetch(async () => { throw new Broken(); });
+    await learns(page);
+    const cm = (name) => import(pathToFileURL(`${sources}/../node_modules/@codemirror/${name}/dist/index.js`).href);
+    const [{ EditorState, StateEffect, Transaction }, { EditorView }] = [await cm('state'), await cm('view')];
+    const { SharedEditor } = await page.load('class/together.js');
+    const view = {
+      state: EditorState.create(), hasFocus: true, composing: false,
+      dispatch(...specs) {
+        const startState = this.state, transaction = startState.update(...specs);
+        this.state = transaction.state;
+        this.tells({ startState, transactions: [transaction], changes: transaction.changes, docChanged: transaction.docChanged, focusChanged: false });
+      },
+      tells(fields) {
+        const update = { view: this, state: this.state, startState: this.state, transactions: [], docChanged: false, ...fields };
+        for (const hears of this.state.facet(EditorView.updateListener)) hears(update);
+      },
+      looks(hasFocus) {
+        const focusChanged = this.hasFocus !== hasFocus;
+        this.hasFocus = hasFocus;
+        this.tells({ focusChanged });
+      },
+    };
+    let undo = null;
+    const editor = {
+      setUndoHandler: (does) => { undo = does; },
+      extend(extension) {
+        view.state = view.state.update({ effects: StateEffect.appendConfig.of(extension) }).state;
+        return view;
+      },
+    };
+    let count = 0; // of lines that somebody has written
+    const linesIn = (text) => (text === '' ? [] : text.split('\n'));
+    return async (chance, isGood) => {
+      const key = `class ${(count += 1)}`;
+      const room = { lines: [], log: [], version: 0, others: [], caret: null, told: 0, refuses: 0, open: { waits: 0, changes: 0 }, isGone: false };
+      const textOf = (lines) => lines.map(({ text }) => text).join('\n');
+      const apply = (lines, { kind, id, after, text }) => {
+        const index = lines.findIndex((each) => each.id === id);
+        if (kind === 'delete') { if (index >= 0) lines.splice(index, 1); } else if (index < 0) lines.splice(lines.findIndex((each) => each.id === after) + 1, 0, { id, text });
+      };
+      let late = () => chance.below(isGood ? 30 : 300), isLost = () => !isGood && chance() < 0.2;
+      let afterwards = 0; // asked once it has left
+      let isOver = false, isCalm = false, wrong = '';
+      playsFetch(async (_, { body }) => {
+        const { changes, waits, at, writes, since, ran: [known, heard] } = JSON.parse(body);
+        if (isOver) afterwards += 1;
+        const what = waits ? 'waits' : changes ? 'changes' : '';
+        if (what && (room.open[what] += 1) > 1) wrong = `${room.open[what]} requests at once`;
+        try {
+          await later(late());
+          const lost = isLost() ? chance.of(['look', 'answer']) : '';
+          if (lost === 'look') throw new Broken();
+          let slow = false;
+          if (changes && (slow = !isCalm && chance() < 0.1)) room.slow_ms = now();
+          else if (changes && now() - room.slow_ms < 1500) wrong = 'it does not wait until it may';
+          else {
+            for (const change of changes ?? []) {
+              if (room.log.some(({ uid }) => uid === change.uid)) continue; // it has come before
+              room.log.push(change);
+              apply(room.lines, change);
+            }
+          }
+          if (at !== undefined) room.caret = { at, writes };
+          if (waits) for (let k = 0; k < 8 && room.log.length === since; k += 1) await later(50);
+          if (lost) throw new Broken();
+          const runs = Array.from({ length: room.told }, (__, k) => ({ number: k + 1 })).filter(({ number }) => known !== key || number > heard);
+          return answers({ saw: 1, ran: [key, room.told], runs, others: structuredClone(room.others), changes: room.log.slice(since), since: room.log.length, left: room.isGone, slow });
+        } finally {
+          if (what) room.open[what] -= 1;
+        }
+      });
+      // As much of the worker as knows lines: what was changed is sent until the class has it.
+      const known = { decided: [], lines: [], pending: [], since: 0, ids: 0 };
+      let stepped = 0;
+      const versions = new Map([[0, []]]); // what each answer has shown
+      let worker = Promise.resolve(); // it does one thing after the other
+      const python = {
+        async ask({ do: what, from: version, news, caret, hot, back, kept: stored }, bytes) {
+          if (isOver) afterwards += 1;
+          const text = new TextDecoder().decode(bytes);
+          await (worker = worker.then(() => later(late())));
+          if (what === 'group_begin') news = [];
+          else {
+            const shown = versions.get(version), written = linesIn(text), had = shown.map((each) => each.text); // what this page has made its text of
+            let from = 0, to = 0;
+            while (from < Math.min(written.length, had.length) && written[from] === had[from]) from += 1;
+            while (to < Math.min(written.length, had.length) - from && written.at(-1 - to) === had.at(-1 - to)) to += 1;
+            const isTyped = hot && caret >= from && caret < written.length - to;
+            if (back && isCalm && (known.pending.length || isTyped)) wrong = 'what comes before an undo is not decided';
+            if (!isTyped) {
+              const changes = shown.slice(from, shown.length - to).map(({ id }) => ({ kind: 'delete', id }));
+              let after = shown[from - 1]?.id;
+              for (const line of written.slice(from, written.length - to)) {
+                changes.push({ kind: 'insert', id: `${key} ${(known.ids += 1)}`, after, text: line });
+                after = changes.at(-1).id;
+              }
+              for (const change of changes) {
+                change.uid = `${key} ${(known.ids += 1)}`;
+                known.pending.push(change);
+                apply(known.lines, change);
+              }
+            } else news = []; // they come once the line is finished
+          }
+          for (const { changes, since } of news) {
+            if (since <= known.since) continue;
+            for (const change of changes.slice(changes.length - (since - known.since))) {
+              apply(known.decided, change);
+              known.pending = known.pending.filter(({ uid }) => uid !== change.uid);
+            }
+            known.since = since;
+          }
+          known.lines = structuredClone(known.decided);
+          for (const change of known.pending) apply(known.lines, change);
+          const isHeld = what !== 'group_begin' && textOf(known.lines) !== text && hot && news.length === 0;
+          const next = isHeld ? text : textOf(known.lines);
+          let [from, end] = [0, 0];
+          while (from < Math.min(next.length, text.length) && next[from] === text[from]) from += 1;
+          while (end < Math.min(next.length, text.length) - from && next.at(-1 - end) === text.at(-1 - end)) end += 1;
+          const changes = next === text ? [] : [[from, text.length - end, next.slice(from, next.length - end)]];
+          versions.set((stepped += 1), isHeld ? versions.get(version) : structuredClone(known.lines));
+          return { version: stepped, changes, ids: linesIn(next).map((line, k) => known.lines[k]?.id ?? ''), pending: structuredClone(known.pending), since: known.since, epoch: key, told: room.refuses, why: 'why', count: 0, kept: { name: `page ${stored ?? ''}${stepped}` } };
+        },
+      };
+      const heard = { answers: null, places: [], others: [], refused: 0, left: 0, runs: 0, kept: null };
+      const shared = new SharedEditor(python, editor, {
+        fails: (why) => { wrong = `it fails: ${why?.stack}`; }, left: () => { heard.left += 1; }, others: (others) => { heard.others = others; }, refused: () => { heard.refused += 1; }, keep: (kept) => { heard.kept = kept; },
+        answers: (is) => { heard.answers = is; }, places: (places) => { heard.places = places; }, runs: () => { heard.runs += 1; }, isBusy: () => false,
+      });
+      const { doc: { length } } = view.state;
+      view.dispatch({ changes: { from: 0, to: length }, annotations: Transaction.addToHistory.of(false) });
+      shared.showProgram({}, null);
+      await passes(400);
+      const mine = [], theirs = [];
+      const writes = (text, at) => view.dispatch({ changes: { from: at, insert: text }, selection: { anchor: at + text.length }, userEvent: 'input.type' });
+      const acts = {
+        types() { // a line, sign by sign
+          const name = `m${(count += 1)}`;
+          mine.push(name);
+          const { length: end } = view.state.doc;
+          if (end) writes('\n', end);
+          for (const sign of name) writes(sign, view.state.doc.length);
+        },
+        adds() { // by a block, or a repair
+          const name = `b${(count += 1)}`;
+          mine.push(name);
+          view.dispatch({ changes: { from: 0, insert: view.state.doc.length ? `${name}\n` : name }, userEvent: 'input.blocks' });
+        },
+        moves: () => view.dispatch({ selection: { anchor: chance.below(view.state.doc.length + 1) } }),
+        blurs: () => view.looks(!view.hasFocus),
+        finishes() { shared.finishEdit(); },
+        async undoes() {
+          isCalm = isGood;
+          undo('undo');
+          await passes(2500);
+          isCalm = false;
+        },
+        others() {
+          const name = `t${(count += 1)}`;
+          theirs.push(name);
+          room.log.push({ uid: name, kind: 'insert', id: name, after: chance.of(room.lines)?.id, text: name });
+          apply(room.lines, room.log.at(-1));
+        },
+        stand() { room.others = ['Luz', 'Teo'].slice(chance.below(3)).map((name, mark) => ({ name, mark, at: chance.of(room.lines)?.id ?? '', writes: chance() < 0.5 })); },
+        drives() { room.told += 1; },
+        refuses() { room.refuses += 1; },
+        blocks: () => shared.chooseLine(chance.below(view.state.doc.lines + 1), chance() < 0.5),
+        waits: () => {},
+      };
+      for (let k = 4 + chance.below(14); k > 0; k -= 1) {
+        await acts[chance.of(['types', 'types', 'others', ...Object.keys(acts)])]();
+        await passes(chance.of([0, chance.below(100), chance.below(1500)]));
+        if (wrong) throw new Error(wrong);
+      }
+      isLost = () => false;
+      late = () => 5;
+      shared.finishEdit();
+      await passes(9000);
+      shared.chooseLine(0, false);
+      view.dispatch({ selection: { anchor: chance.below(view.state.doc.length + 1) } });
+      shared.finishEdit();
+      await passes(9000);
+      if (wrong) throw new Error(wrong);
+      const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
+      const lines = linesIn(view.state.doc.toString());
+      is(lines, room.lines.map(({ text }) => text), 'the program');
+      for (const name of [...mine, ...theirs]) if (lines.filter((line) => line === name).length !== 1) throw new Error(`${name} is ${lines.filter((line) => line === name).length} times in ${lines}`);
+      is(heard.places.map(({ line, said }) => [line, said]), room.others.map(({ at, name, writes: isWriting }) => [room.lines.findIndex(({ id }) => id === at) + 1, isWriting ? `${name} …` : name]).filter(([line]) => line), 'where the others are');
+      is(heard.others, room.others, 'who is here');
+      if (lines.length) is(room.caret, { at: room.lines[view.state.doc.lineAt(view.state.selection.main.head).number - 1].id, writes: false }, 'where this page is');
+      is([heard.answers, heard.runs, heard.left, heard.refused > 0 || !room.refuses], [true, room.told, 0, true], 'what was heard');
+      const before = view.state.doc.toString();
+      if (chance() < 0.5) shared.end();
+      else room.isGone = true;
+      isOver = !room.isGone;
+      await passes(1500);
+      is([heard.left, undo, heard.places.length], [Number(room.isGone), null, 0], 'once it is over');
+      isOver = true;
+      acts.others();
+      view.dispatch({ changes: { from: 0, insert: 'x' }, userEvent: 'input.type' });
+      acts.moves();
+      await passes(5000);
+      if (afterwards) throw new Error(`${afterwards} times something is asked outside of the group`);
+      is(view.state.doc.toString(), `x${before}`, 'the text of who has left');
+      return { ends: [room.isGone ? 'gone' : 'left'], seen: [] };
+    };
+  },
+
   // What a page of a group hears from its class, which has begun anew: each event of the robot once, in its order, whatever
   // answers are lost or late; who else is here is as the class has it; and who has heard all says so, or the class would
   // answer at once, again and again.

@@ -371,8 +371,10 @@ export class SharedEditor {
     if (caretKey === this.#sentCaret || !this.#pythonState.kept.name) return;
     this.#sentCaret = caretKey;
     clearTimeout(this.#caretTimer);
-    this.#caretTimer = window.setTimeout(() => {
-      if (!this.#isOver) this.#postRequest({ at: lineId, writes });
+    this.#caretTimer = window.setTimeout(async () => {
+      if (this.#isOver || await this.#postRequest({ at: lineId, writes }) || this.#isOver || caretKey !== this.#sentCaret) return;
+      this.#sentCaret = ''; // it is lost
+      this.#sendCaret();
     }, CARET_INTERVAL_MS);
   }
 }
