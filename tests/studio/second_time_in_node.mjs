@@ -1431,10 +1431,11 @@ const PARTS = {
       };
       let late = () => chance.below(isGood ? 30 : 300), isLost = () => !isGood && chance() < 0.2;
       let afterwards = 0; // asked once it has left
-      let isOver = false, isCalm = false, wrong = '';
+      let isOver = false, isCalm = false, isBroken = false, asked = 0, wrong = '';
       playsFetch(async (_, { body }) => {
         const { changes, waits, at, writes, since, ran: [known, heard] } = JSON.parse(body);
         if (isOver) afterwards += 1;
+        asked += 1;
         const what = waits ? 'waits' : changes ? 'changes' : '';
         if (what && (room.open[what] += 1) > 1) wrong = `${room.open[what]} requests at once`;
         try {
@@ -1442,7 +1443,7 @@ const PARTS = {
           const lost = isLost() ? chance.of(['look', 'answer']) : '';
           if (lost === 'look') throw new Broken();
           let slow = false;
-          if (changes && (slow = !isCalm && chance() < 0.1)) room.slow_ms = now();
+          if (changes && !lost && (slow = !isCalm && chance() < 0.1)) room.slow_ms = now();
           else if (changes && now() - room.slow_ms < 1500) wrong = 'it does not wait until it may';
           else {
             for (const change of changes ?? []) {
@@ -1470,6 +1471,7 @@ const PARTS = {
           if (isOver) afterwards += 1;
           const text = new TextDecoder().decode(bytes);
           await (worker = worker.then(() => later(late())));
+          if (isBroken) throw new Broken();
           if (what === 'group_begin') news = [];
           else {
             const shown = versions.get(version), written = linesIn(text), had = shown.map((each) => each.text); // what this page has made its text of
@@ -1512,17 +1514,29 @@ const PARTS = {
           return { version: stepped, changes, ids: linesIn(next).map((line, k) => known.lines[k]?.id ?? ''), pending: structuredClone(known.pending), since: known.since, epoch: key, told: room.refuses, why: 'why', count: 0, kept: { name: `page ${stored ?? ''}${stepped}` } };
         },
       };
-      const heard = { answers: null, places: [], others: [], refused: 0, left: 0, runs: 0, kept: null };
-      const shared = new SharedEditor(python, editor, {
-        fails: (why) => { wrong = `it fails: ${why?.stack}`; }, left: () => { heard.left += 1; }, others: (others) => { heard.others = others; }, refused: () => { heard.refused += 1; }, keep: (kept) => { heard.kept = kept; },
-        answers: (is) => { heard.answers = is; }, places: (places) => { heard.places = places; }, runs: () => { heard.runs += 1; }, isBusy: () => false,
-      });
+      const place = { line: 0, writes: false }; // in the blocks
+      const heard = { answers: null, places: [], others: [], refused: 0, left: 0, fails: 0, runs: 0, kept: null };
       const { doc: { length } } = view.state;
       view.dispatch({ changes: { from: 0, to: length }, annotations: Transaction.addToHistory.of(false) });
-      shared.showProgram({}, null);
-      await passes(400);
+      const shared = new SharedEditor(python, editor, {
+        fails: (why) => { if (isBroken) heard.fails += 1; else wrong = `it fails: ${why?.stack}`; }, left: () => { heard.left += 1; }, others: (others) => { heard.others = others; }, refused: () => { heard.refused += 1; }, keep: (kept) => { heard.kept = kept; },
+        answers: (is) => { heard.answers = is; }, places: (places) => { heard.places = places; }, runs: () => { heard.runs += 1; }, isBusy: () => false,
+      });
+      let hasBegun = false;
+      shared.showProgram({}, null).then(() => { hasBegun = true; });
+      await passes(chance.below(60));
       const mine = [], theirs = [];
+      const marks = () => { // lines that somebody else is in
+        const found = [];
+        for (const each of view.state.facet(EditorView.decorations)) if (typeof each !== 'function') each.between(0, view.state.doc.length, (from, _, { spec }) => { if (/cm-beside/.test(spec.class)) found.push(view.state.doc.lineAt(from).number); });
+        return found;
+      };
       const writes = (text, at) => view.dispatch({ changes: { from: at, insert: text }, selection: { anchor: at + text.length }, userEvent: 'input.type' });
+      for (let k = chance.below(4); k > 0; k -= 1) { // which the group's program replaces
+        view.dispatch({ changes: { from: 0, insert: 'w' }, userEvent: chance.of(['input.type', 'input.blocks']) });
+        await passes(chance.below(60));
+      }
+      for (let k = 0; !hasBegun && k < 100; k += 1) await passes(50);
       const acts = {
         types() { // a line, sign by sign
           const name = `m${(count += 1)}`;
@@ -1553,8 +1567,11 @@ const PARTS = {
         },
         stand() { room.others = ['Luz', 'Teo'].slice(chance.below(3)).map((name, mark) => ({ name, mark, at: chance.of(room.lines)?.id ?? '', writes: chance() < 0.5 })); },
         drives() { room.told += 1; },
-        refuses() { room.refuses += 1; },
-        blocks: () => shared.chooseLine(chance.below(view.state.doc.lines + 1), chance() < 0.5),
+        refuses() {
+          room.refuses += 1;
+          acts.adds();
+        },
+        blocks: () => shared.chooseLine(place.line = chance.below(view.state.doc.lines + 1), place.writes = chance() < 0.5),
         waits: () => {},
       };
       for (let k = 4 + chance.below(14); k > 0; k -= 1) {
@@ -1562,14 +1579,19 @@ const PARTS = {
         await passes(chance.of([0, chance.below(100), chance.below(1500)]));
         if (wrong) throw new Error(wrong);
       }
+      if (chance() < 0.3) { // the class is silent for a while
+        isLost = () => true;
+        [asked, heard.answers] = [0, true];
+        await passes(7000);
+        if (asked > 50 || heard.answers) throw new Error(`a class that is silent is asked ${asked} times, and answers: ${heard.answers}`);
+      }
       isLost = () => false;
       late = () => 5;
-      shared.finishEdit();
+      chance.of([() => { shared.finishEdit(); }, () => view.looks(!view.hasFocus), () => view.dispatch({ selection: { anchor: 0 } })])();
+      if (view.state.doc.lineAt(view.state.selection.main.head).number === view.state.doc.lines) view.looks(false);
       await passes(9000);
-      shared.chooseLine(0, false);
-      view.dispatch({ selection: { anchor: chance.below(view.state.doc.length + 1) } });
-      shared.finishEdit();
-      await passes(9000);
+      if (chance() < 0.5) shared.chooseLine(place.line = 1, place.writes = true);
+      await passes(5000);
       if (wrong) throw new Error(wrong);
       const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
       const lines = linesIn(view.state.doc.toString());
@@ -1577,14 +1599,18 @@ const PARTS = {
       for (const name of [...mine, ...theirs]) if (lines.filter((line) => line === name).length !== 1) throw new Error(`${name} is ${lines.filter((line) => line === name).length} times in ${lines}`);
       is(heard.places.map(({ line, said }) => [line, said]), room.others.map(({ at, name, writes: isWriting }) => [room.lines.findIndex(({ id }) => id === at) + 1, isWriting ? `${name} …` : name]).filter(([line]) => line), 'where the others are');
       is(heard.others, room.others, 'who is here');
-      if (lines.length) is(room.caret, { at: room.lines[view.state.doc.lineAt(view.state.selection.main.head).number - 1].id, writes: false }, 'where this page is');
+      const line = place.line || view.state.doc.lineAt(view.state.selection.main.head).number;
+      if (room.lines[line - 1]) is(room.caret, { at: room.lines[line - 1].id, writes: place.line ? place.writes : false }, 'where this page is');
+      is(marks(), [...heard.places.map(({ line: each }) => each)].sort((a, b) => a - b), 'who is marked in the text');
       is([heard.answers, heard.runs, heard.left, heard.refused > 0 || !room.refuses], [true, room.told, 0, true], 'what was heard');
-      const before = view.state.doc.toString();
-      if (chance() < 0.5) shared.end();
-      else room.isGone = true;
-      isOver = !room.isGone;
+      const before = view.state.doc.toString(), end = chance.of(['left', 'gone', 'fails']);
+      if (end === 'left') shared.end();
+      room.isGone = end === 'gone';
+      isBroken = end === 'fails';
+      if (isBroken) shared.finishEdit();
+      isOver = end === 'left';
       await passes(1500);
-      is([heard.left, undo, heard.places.length], [Number(room.isGone), null, 0], 'once it is over');
+      is([heard.left, heard.fails, undo, heard.places.length, marks().length], [Number(end === 'gone'), Number(end === 'fails'), null, 0, 0], 'once it is over');
       isOver = true;
       acts.others();
       view.dispatch({ changes: { from: 0, insert: 'x' }, userEvent: 'input.type' });
@@ -1592,7 +1618,7 @@ const PARTS = {
       await passes(5000);
       if (afterwards) throw new Error(`${afterwards} times something is asked outside of the group`);
       is(view.state.doc.toString(), `x${before}`, 'the text of who has left');
-      return { ends: [room.isGone ? 'gone' : 'left'], seen: [] };
+      return { ends: [end], seen: [] };
     };
   },
 

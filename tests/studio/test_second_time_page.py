@@ -58,7 +58,7 @@ ENDS = {
     "languages": {"en", "es", "pt"},
     "builds": {"installed", "lost"},
     "kept": {"forgets"},
-    "together": {"gone", "left"},
+    "together": {"gone", "left", "fails"},
     "blocks": {"shows", "edits", "tries", "runs", "grows", "puts", "closes", "speaks"},
     "presses": {"run", "step", "stop", "edits"},
     "watching": {"told", "silent"},

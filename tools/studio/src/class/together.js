@@ -157,15 +157,22 @@ export class SharedEditor {
 
   /** Shows the program of a group. @param {any} news of the class @param {unknown} storedPage by this page, before it was loaded again */
   async showProgram(news, storedPage) {
+    const beginning = this.#begin(news, storedPage);
+    this.#lastStep = beginning.catch(() => {}); // before that no step knows which text it is of
+    await beginning;
+    this.#listenForNews();
+  }
+
+  /** @param {any} news @param {unknown} storedPage */
+  async #begin(news, storedPage) {
     for (;;) {
       const { doc } = this.#view.state;
       const answer = await this.#python.ask({ do: 'group_begin', news, kept: storedPage }, new TextEncoder().encode(doc.toString()));
       if (this.#isOver) return; // it was left meanwhile
       if (doc !== this.#view.state.doc) continue; // somebody has typed meanwhile
       this.#applyAnswer(answer, doc.length, null);
-      break;
+      return;
     }
-    this.#listenForNews();
   }
 
   /** The group is left; the text stays. */
