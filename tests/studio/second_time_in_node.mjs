@@ -133,7 +133,8 @@ const PARTS = {
 
   // A pupil in a class, and in another one, or again after a teacher has taken them out, until it is over. Whichever looks
   // and answers were lost, the class has the newest of each thing that the teacher sees, and what was pressed last; the page
-  // goes to its robot once in a turn, and takes what it is given once.
+  // goes to its robot once in a turn, takes what it is given once, and gives its newest run once each time it is asked for.
+  // It sees the groups of this class, and stops its group's robot while somebody else drives it, and only then.
   async pupil() {
     const page = freshPage();
     document.documentElement.dataset['class'] = '';
@@ -192,9 +193,20 @@ const PARTS = {
             await later(20);
             return answers({ token });
           }
-          if (by !== token) { // a look of the class before
+          if (by !== token || !by) { // a look of the class before
+            if (request.do === 'stop') strays += 1;
             await later(1);
             return { ok: false, status: 403 };
+          }
+          if (request.do === 'stop') {
+            stops.push(request.group_stops);
+            await later(chance.below(300));
+            if (!isCalm && chance() < 0.5) throw new Broken();
+            return answers({ stops: stops.length });
+          }
+          if (request.do === 'run') {
+            given.push(request.asked);
+            return answers({});
           }
           notes.push([now() - began_ms, { ...request }]);
           if (over) late += 1;
@@ -210,11 +222,22 @@ const PARTS = {
           const before = has.place;
           if (wants !== undefined) has.place = wants ? 0 : -1;
           if (has.place === 0 && before !== 0) turns += 1;
-          const answer = over ? { over } : { place: has.place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: has.isUp, ...(told && !took && { given: told }) };
+          const answer = over ? { over } : { ...group, place: has.place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: has.isUp, ...(told && !took && { given: told }) };
           await travels();
           if (lost) throw new Broken();
+          if (!over) [driver, runAsked] = [answer.driver, answer.run];
           return answers(answer);
         },
+      };
+      const group = { groups: [], driver: '', run: '' }; // as the class tells of it
+      let driver = '', runAsked = ''; // as the page has heard
+      let strays = 0; // stops that no class has
+      const stops = [], given = [];
+      const pressesStop = async () => {
+        const before = stops.length + strays, isDriven = driver !== '' && !over && ends === 'goes on';
+        page.byId('stop').click();
+        await settles();
+        if (stops.length + strays - before !== Number(isDriven)) throw new Error(`${stops.length + strays - before} stops are sent, and ${driver || 'nobody'} drives`);
       };
       const changes = {
         writes: () => { work.text = `F(${chance.below(2)})`; },
@@ -228,6 +251,10 @@ const PARTS = {
         ask: () => { wanted.place = 0; ask.click(); },
         quit: () => { wanted.place = -1; quit.click(); },
         hand: () => { wanted.isUp = hand.attributes['aria-pressed'] !== 'true'; hand.click(); },
+        groups: () => { group.groups = ['red', 'tan'].slice(chance.below(3)).map((name) => ({ name, members: ['Luz', 'Teo'].slice(chance.below(3)) })); },
+        drives: () => { group.driver = chance.of(['', 'Luz']); },
+        run: () => { group.run = `run ${(entries += 1)}`; },
+        stops: pressesStop,
         nothing: () => {},
       };
       for (let k = chance.of([1, 2]); k > 0; k -= 1) join.dispatchEvent(new Event('submit', { cancelable: true }));
@@ -237,14 +264,17 @@ const PARTS = {
       if (isGood && chance() < 0.5) presses.hand(); // before the class has said how it is
       await passes(500);
       for (let k = 1 + chance.below(12); k > 0; k -= 1) {
-        presses[chance.of(Object.keys(presses))]();
+        await presses[chance.of(Object.keys(presses))]();
         await passes(chance.of([2, chance.below(1500)]));
       }
       if (!isGood && chance() < 0.7) chance.of([ask, quit, hand]).click(); // whose answer may come after the end
       ends = end;
       for (let k = chance.below(isGood ? 1 : 4); k > 0; k -= 1) chance.of([ask, quit, hand]).click();
       while (!isGood && join.hidden) await passes(50 + chance.below(50));
-      if (!isGood && ![hand, ask, quit, connect].every(({ hidden }) => hidden)) throw new Error('outside of a class there are its buttons');
+      if (!isGood) {
+        if (![hand, ask, quit, connect, page.byId('side_class')].every(({ hidden }) => hidden)) throw new Error('outside of a class there are its buttons');
+        await pressesStop();
+      }
       if (!isGood) return { ends: [ends], seen: [] };
       for (let k = chance.below(3); k > 0; k -= 1) { // while the one before is on its way
         changes[chance.of(Object.keys(changes))]();
@@ -260,6 +290,12 @@ const PARTS = {
       }
       if (has.place !== wanted.place || has.isUp !== wanted.isUp) throw new Error(`not what was pressed last: ${JSON.stringify([has, wanted])}`);
       if (does('to the robot') > turns || does('given') > 1) throw new Error(`${does('to the robot')} times to the robot in ${turns} turns, given ${does('given')} times`);
+      await pressesStop();
+      const listed = page.byId('class').children[0].children[2].children.map(({ children: [name] }) => name);
+      const wantedGroups = group.groups.map(({ name, members }) => (members.length ? `${name} (${members.join(', ')})` : name));
+      if (page.byId('side_class').hidden || `${listed}` !== `${wantedGroups}`) throw new Error(`the groups ${listed} are seen in place of ${wantedGroups}`);
+      if (runAsked && given.filter((each) => each === runAsked).length !== 1) throw new Error(`${runAsked} is given ${given.filter((each) => each === runAsked).length} times`);
+      if (stops.some((number, k) => number < stops[k - 1])) throw new Error(`stops are counted ${stops}`);
       if (connect.hidden !== (has.place !== 0 || !panel.isFree)) throw new Error('who cannot connect may, or who can may not');
       seen.push([document.documentElement.dataset['pupil'], join.hidden, hand.attributes]);
       over = chance.of(['', 'kept', 'erased']);
