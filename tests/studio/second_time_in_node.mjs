@@ -3572,6 +3572,123 @@ const PARTS = {
     };
   },
 
+  // How large the robot is seen, and from where, as a model has it: whoever writes, presses, reads or leaves gets the room
+  // back that a run has taken, and no sooner; the browser fills its screen as long as the page does.
+  async stage() {
+    const page = freshPage();
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { Stage } = await page.load('virtual/stage.js');
+    const root = document.documentElement;
+    let late = () => 5;
+    document.fullscreenElement = null;
+    const fills = async (part) => {
+      await later(late());
+      if (document.fullscreenElement === part) return;
+      document.fullscreenElement = part;
+      document.dispatchEvent(new Event('fullscreenchange'));
+    };
+    root.requestFullscreen = () => fills(root);
+    document.exitFullscreen = () => fills(null);
+    let camera = '', stops = 0, isOver = false; // the mouse the program
+    document.querySelector = (selector) => (isOver && selector === '#writing:hover' ? writing : null);
+    page.byId('runs_open').parent = new (page.byId('runs_open').constructor)();
+    const stage = new Stage({ look: (from) => { camera = from; }, stop: () => { stops += 1; } });
+    const [cameraButton, fullButton] = page.byId('runs_open').parent.children;
+    const [writing, lessons] = ['writing', 'lessons'].map(page.byId);
+    const is = { full: false, big: false, held: false, turns: 0 };
+    const shrinks = () => { is.big &&= ['running', 'paused'].includes(root.dataset['phase']); };
+    const key = (name, isTyped = false) => dispatchEvent(Object.assign(new Event('keydown'), { key: name, composedPath: () => (isTyped ? [Object.assign(document.createElement('textarea'))] : []) }));
+    const moves = () => dispatchEvent(Object.assign(new Event('pointermove'), { pointerType: 'mouse', buttons: 0 }));
+    let sides = 0;
+    return async (chance) => {
+      late = () => chance.below(30);
+      const acts = {
+        runs() { root.dataset['phase'] = 'running'; stage.enlarge(); is.big = true; },
+        pauses() { if (root.dataset['phase'] === 'running') root.dataset['phase'] = 'paused'; },
+        async ends() {
+          root.dataset['phase'] = 'ended';
+          isOver = chance() < 0.5;
+          moves();
+          stage.runEnded();
+          await passes(250);
+          if (isOver) is.big = false;
+          isOver = false;
+        },
+        async rests() { // a mouse
+          isOver = true;
+          for (const ms of [10, 150, 150]) {
+            moves();
+            writing.dispatchEvent(new Event('pointermove'));
+            await passes(ms);
+            if (('big' in root.dataset) !== is.big) throw new Error('the room changes under a mouse that moves');
+          }
+          await passes(100);
+          shrinks();
+          isOver = false;
+        },
+        screens: () => pageState.screen.set(chance.of(['studio', 'other'])),
+        types() { writing.dispatchEvent(new Event('focusin')); if (!is.held) shrinks(); },
+        holds() { writing.dispatchEvent(new Event('pointerdown')); is.held = true; },
+        async lets() {
+          dispatchEvent(new Event(chance.of(['pointerup', 'pointercancel'])));
+          if (is.held && root.dataset['big'] !== undefined && !is.big) throw new Error('it is small before a press is over');
+          await passes(1);
+          if (is.held) shrinks();
+          is.held = false;
+        },
+        reads() { lessons.dispatchEvent(new Event('click')); is.big = false; },
+        worlds() { stage.showWhole(); shrinks(); },
+        home() {
+          pageState.screen.set('start');
+          pageState.screen.set('studio');
+          is.full = is.big = false;
+        },
+        same: () => pageState.sideId.set(pageState.sideId.value),
+        other() { pageState.sideId.set(`side ${(sides += 1)}`); is.full = false; },
+        fills() { if (chance() < 0.5) fullButton.click(); else key('f'); is.full = !is.full; },
+        letter: () => key('f', true),
+        escape() { key('Escape'); is.full = false; },
+        async leaves() { // the browser's Escape, of which the page hears nothing else
+          await passes(100);
+          const before = stops, wasFilled = document.fullscreenElement !== null;
+          fills(null);
+          await passes(100);
+          if (stops - before !== Number(wasFilled && is.full)) throw new Error(`${stops - before} stops are pressed by leaving`);
+          if (wasFilled) is.full = false;
+        },
+        turns() { const before = camera; cameraButton.click(); is.turns += 1; if (camera === before) throw new Error('the camera stays'); },
+        async peeks() {
+          const over = stage.peek();
+          if (chance() < 0.5) over();
+          await passes(chance.below(2000));
+          const isNewest = stage.peek();
+          await passes(1600);
+          if (!('peek' in root.dataset)) throw new Error('the robot is not in its corner');
+          over();
+          isNewest();
+        },
+        waits: () => passes(300),
+      };
+      const ends = new Set();
+      for (let k = 10 + chance.below(30); k > 0; k -= 1) {
+        const act = chance.of(Object.keys(acts));
+        ends.add(act);
+        await acts[act]();
+        if (stage.isFull !== is.full || ('big' in root.dataset) !== is.big) throw new Error(`after ${act} it is ${Object.keys(root.dataset)} in place of ${JSON.stringify(is)}`);
+        if (!is.turns && camera !== (is.full || is.big || 'peek' in root.dataset ? 'near' : 'whole')) throw new Error(`after ${act} it is seen from ${camera}`);
+        await passes(chance.below(60));
+        if (chance() < 0.7) continue;
+        await passes(200);
+        if (Boolean(document.fullscreenElement) !== is.full) throw new Error(`after ${act} the screen is filled`);
+      }
+      await acts.lets();
+      await passes(9000);
+      if ('peek' in root.dataset) throw new Error('the robot stays in its corner');
+      return { ends: [...ends], seen: [] };
+    };
+  },
+
   // Run and STOP are pressed at any time: the last one counts.
   async presses() {
     const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], rivals: [], rings: [], seconds: 0, name: 'w' };

@@ -59,6 +59,7 @@ ENDS = {
     "builds": {"installed", "lost"},
     "kept": {"forgets"},
     "together": {"gone", "left", "fails"},
+    "stage": {"runs", "leaves", "peeks", "rests", "home", "lets", "ends"},
     "blocks": {"shows", "edits", "tries", "runs", "grows", "puts", "closes", "speaks"},
     "presses": {"run", "step", "stop", "edits"},
     "watching": {"told", "silent"},
