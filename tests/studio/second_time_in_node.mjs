@@ -2749,10 +2749,12 @@ const PARTS = {
     let late = () => 5;
     let breaks = () => false;
     let given = []; // to the session
+    let wrong = '';
     let bytes = [];
     const python = {
       async ask({ do: what, asked = [] }, data) {
         given.push(...asked);
+        if (asked.filter((each) => each.do === 'keys').length > 1) wrong = 'what was held before is sent, too';
         if (what === 'link') bytes.push(...data);
         await later(late());
         if (breaks()) throw new Broken();
@@ -2772,11 +2774,17 @@ const PARTS = {
       const ended = [];
       let asks = 0;
       let stopped = 0; // asks before the newest STOP
+      let held = 0; // the newest of what was held
       breaks = () => !isGood && chance() < 0.02;
       const acts = {
         asks() {
           const number = (asks += 1);
           robot.ask({ do: 'start', number }).then(() => ended.push(number), () => ended.push(number));
+        },
+        presses() {
+          const number = (asks += 1);
+          held = number;
+          robot.press({ keys: number, number }).then(() => ended.push(number), () => ended.push(number));
         },
         hears() {
           came.push(came.length % 256);
@@ -2797,9 +2805,12 @@ const PARTS = {
         const old = given.find(({ number }) => number <= stopped);
         if (old) throw new Error(`${old.number} of ${stopped} is done after a STOP`);
         if (new Set(given).size < given.length) throw new Error('something is done twice');
+        if (wrong) throw new Error(wrong);
       }
       await passes(3000);
       if ([...ended].sort((one, other) => one - other).join() !== Array.from({ length: asks }, (_, k) => k + 1).join()) throw new Error(`${asks} were asked, and ${ended} have ended`);
+      const told = given.filter((each) => each.do === 'keys').map(({ number }) => number);
+      if (!robot.isOver && held > stopped && told.at(-1) !== held) throw new Error(`${held} is held, and the robot hears ${told}`);
       if (!robot.isOver && `${bytes}` !== `${came}`) throw new Error(`${bytes} of ${came}`);
       if (robot.isOver) end = 'broken';
       robot.leave();
@@ -3686,6 +3697,65 @@ const PARTS = {
       await passes(9000);
       if ('peek' in root.dataset) throw new Error('the robot stays in its corner');
       return { ends: [...ends], seen: [] };
+    };
+  },
+
+  // A tab is loaded again and again, by an address with a code or without one, while other users' workers may read what it
+  // asks, answers are lost and nothing can be kept: it asks with the token of its newest code, or says why it has none.
+  async entering() {
+    let kept = [], isFull = false;
+    return async (chance, isGood) => {
+      let ends = '', again = ''; // the address of a page that loads itself again
+      if (isGood) [kept, isFull] = [[], false];
+      for (let k = 1 + chance.below(5); k > 0; k -= 1) {
+        const page = freshPage();
+        const store = window.sessionStorage;
+        for (const [key, value] of kept) store.setItem(key, value);
+        if (isFull) store.room = 0;
+        const code = again || (chance() < 0.6 ? Array.from({ length: 32 }, () => chance.of([...'0123456789abcdef'])).join('') : '');
+        const isAgain = code !== '' && store.getItem('tiniscript.loaded') === code;
+        location.hash = code ? `#code=${code}` : chance.of(['', '#code=12', '#other']);
+        const { hash } = location, before = store.getItem('tiniscript.token') ?? '';
+        let isForeign = chance() < 0.4, reloads = 0;
+        location.reload = () => { reloads += 1; };
+        const registration = () => ({ active: {}, unregister: async () => { isForeign = false; } });
+        playsNavigator({ serviceWorker: { getRegistrations: async () => (isForeign ? [registration()] : []) } });
+        globalThis.caches = { keys: async () => [], delete: async () => true };
+        ends = chance.of(['given', 'given', 'used', 'lost']);
+        let asked = 0;
+        const tokens = [];
+        playsFetch(async (path, { headers, body }) => {
+          tokens.push(headers['X-TiniScript-Token']);
+          if (path !== './enter') return answers({ ports: [] });
+          asked += 1;
+          if (JSON.parse(body).code !== code || headers['X-TiniScript-Token']) throw new Error('another code is told');
+          await later(5);
+          if (ends === 'lost') throw new Broken();
+          return answers(ends === 'used' ? { failure: 'host_used' } : { token: `token ${code}` });
+        });
+        let host = null;
+        page.load('robot/host.js').then((found) => { host = found; });
+        const wasForeign = isForeign && code !== '';
+        for (let tries = 0; !host && !reloads && tries < 200; tries += 1) {
+          await settles();
+          await passes(1);
+        }
+        const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
+        again = reloads && chance() < 0.8 ? code : '';
+        if (wasForeign && !isFull && !isAgain) is([reloads, asked, location.hash], [1, 0, hash], 'beside a worker of somebody else');
+        else {
+          const token = wasForeign ? before : !code ? before : ends === 'given' ? `token ${code}` : '';
+          is([host.entryFailure, host.hasHost, asked], [wasForeign ? 'host_worker' : !code || ends === 'given' ? '' : ends === 'used' ? 'host_used' : 'host_gone', token !== '', Number(code !== '' && !wasForeign)], `by ${hash}`);
+          if (code && !wasForeign) is(location.hash, '', 'the address');
+          await Promise.all([host.fetchPorts(), settles()]);
+          is(tokens.at(-1), token, 'the token');
+          if (!isFull && code && !wasForeign && ends === 'given') is(store.getItem('tiniscript.token'), token, 'what is kept');
+        }
+        store.room = Infinity;
+        kept = [...store];
+        isFull = !isGood && chance() < 0.3;
+      }
+      return { ends: [ends], seen: [] };
     };
   },
 
