@@ -137,6 +137,7 @@ async function opens(stores) {
     form = { body: [], loose: [] };
     layoutText = 'L0';
     isBusy = false;
+    begins = 0; // of other programs
     has = {};
     constructor(_, __, level, page) {
       this.page = page;
@@ -153,8 +154,9 @@ async function opens(stores) {
     showRunning(ranges) { this.has.running = ranges.map(({ line }) => line); }
     showFault(range, sentence) { this.has.fault = sentence; }
     setLevel(level) { this.has.level = level; }
+    beginProgram() { this.begins += 1; }
     levelOf() { return 'few'; }
-    setRobot() {} setTaught() {} setGivenBlocks() {} updateLanguage() {} resize() {} beginProgram() {} setRanges() {} showMates() {} goTo() {}
+    setRobot() {} setTaught() {} setGivenBlocks() {} updateLanguage() {} resize() {} setRanges() {} showMates() {} goTo() {}
     async makePicture() { return null; }
   }
   const still = (name) => function made() { return new Proxy(this, { get: (_, what) => (what === 'then' ? undefined : () => name) }); };
@@ -365,13 +367,14 @@ const LATER = ['', 'builds', 'undo', 'redo', 'start_lessons', 'side_lessons', 'l
 /** What an act changes, and what it does not. @returns what is checked once it is done, and later on */
 function expects(tab) {
   const { dataset } = document.documentElement;
-  const before = { full: 'full' in dataset, side: dataset.side, isLesson: keptWork().lesson !== '', text: view.state.doc.toString() };
+  const before = { full: 'full' in dataset, side: dataset.side, isLesson: keptWork().lesson !== '', text: view.state.doc.toString(), begins: tab.seen.blocks?.begins };
   return (did) => {
     const text = view.state.doc.toString();
     if (PASSIVE.includes(did) && before.full !== 'full' in dataset) throw new Error(`${did} makes the robot small`);
     if (/^side_/.test(did) && dataset.side !== before.side && 'full' in dataset) throw new Error(`${did} is behind the robot`);
     if (['home', 'back'].includes(did) && !before.isLesson && text !== before.text) throw new Error(`${did} takes the program`);
     if (['new', 'bar_new'].includes(did) && (text || keptWork().lesson || keptWork().own)) throw new Error(`${did} is of ${keptWork().lesson}`);
+    if (['new', 'bar_new'].includes(did) && before.begins !== undefined && tab.seen.blocks.begins === before.begins) throw new Error(`after ${did} the blocks stand as those of before`);
     if (did === 'start_write' && dataset.half !== 'program') throw new Error('the program is not seen');
     if (['world', 'bar_new', 'new'].includes(did) && 'big' in dataset) throw new Error(`after ${did} the robot is seen as in a run`);
     if (LATER.includes(did)) tab.isComing = true;
@@ -409,6 +412,19 @@ function checksRest({ pageState, summaryOf, seen }) {
   if (at('writing').dataset.view !== 'blocks' || screen === 'start' || phase === 'running') return;
   is(textOf(seen.blocks.form), textOf(formOf(work.text)), 'the blocks');
   is(seen.blocks.has, { robot: work.robot, level: at('level').value, findings: lines, fault: fault.value.sentence, running, points: breakpoints.value.map(({ line }) => line) }, 'what is at blocks');
+}
+
+/** What is said of a program does not pass for what is said of a newer one, however long that takes. */
+async function checksLate(tab) {
+  if (document.documentElement.dataset.screen === 'start') return;
+  tab.python.late = () => 3000;
+  tab.stays = null;
+  view.dispatch({ changes: { from: view.state.doc.length, insert: '\nF(2)' } });
+  await passes(2000);
+  if (at('status').textContent !== '…') throw new Error(`${at('status').textContent} is said, and it was of the text before`);
+  tab.python.late = () => 5;
+  await passes(9000);
+  checksRest(tab);
 }
 
 /** All that is seen. */
@@ -453,6 +469,7 @@ async function playsSeed(seed) {
     await passes(4000);
     checkStays(tab);
     checksRest(tab);
+    await checksLate(tab);
     tab.isComing = false;
     tab.python.late = late;
     acts(chance, tab, ['retypes', 'waits']);
