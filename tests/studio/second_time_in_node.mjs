@@ -956,10 +956,11 @@ const PARTS = {
     await passes(10);
     const [bar, wall] = page.byId('class').children;
     const [status, chips, giveBack, anew] = bar.children;
-    const [large, giving, settings] = ['big_pupil', 'class_giving', 'class_window'].map((id) => document.body.children.find((each) => each.id === id));
+    const [large, giving, settings, code] = ['big_pupil', 'class_giving', 'class_window', 'big_code'].map((id) => document.body.children.find((each) => each.id === id));
     const [robotList, lines] = [settings.children[1].children[1], settings.children[1].children];
     const [port, lends] = [lines[2].children[0].children.at(-1), lines[2].children[1]], [minutes, places] = [3, 4].map((k) => lines[k].children[0].children.at(-1));
     const within = (part, className) => part.children.find((each) => each.className?.split(' ').includes(className));
+    const codeSeen = () => Number(code.querySelectorAll('strong').at(-1).textContent);
     let numbers = 0;
     let states = 0; // told; a class's code is the number of the newest
     /** Who is in the class, by name, and what is kept of others. */
@@ -970,7 +971,7 @@ const PARTS = {
     return async (chance, isGood) => {
       let lost = false;
       let isClosed = !large.open; // by somebody
-      let newest = 0; // of the states that have come
+      let newest = 0; // of the states that were seen
       let isLate = () => !isGood;
       let asked = []; // besides what is asked again and again
       let polls = 0;
@@ -1002,7 +1003,6 @@ const PARTS = {
           const [, found] = [...pupils, ...works, ...shared].find(([name, { number }]) => (request.pupil ? number === request.pupil : name === (request.key ?? request.group))) ?? [];
           return answers({ text: found?.text ?? '', robot: 'tinibot', version: found?.version ?? 0, history: found?.pupils ? [`made ${found.text}`] : [] });
         }
-        newest = Math.max(newest, state.code);
         const keptRows = works.map(([name]) => ({ key: name, name, lessons: [], given: 0, alike: [] }));
         return answers({
           ...state, over: '', lessons: 2, kept: keptRows, pupils: pupils.map(([name, row]) => ({ name, ...row })),
@@ -1090,7 +1090,8 @@ const PARTS = {
         if (act === 'looks' && chance() < 0.5) acts.ends();
         await passes(chance.of([20, 1050, chance.below(1500)]));
         if (large.open && isClosed) throw new Error('what was closed is seen large again');
-        if (newest && Number(page.byId('class_come')?.textContent || newest) < newest) throw new Error('the class of before is seen');
+        if (codeSeen() < newest) throw new Error('the class of before is seen');
+        newest = codeSeen();
       }
       if (!isGood) return { ends: [lost ? 'lost' : 'came'], seen: false };
       isLate = () => false;
