@@ -3434,12 +3434,19 @@ const PARTS = {
             has.running = [{ line: line(), column: 1 }];
             says.running();
             const box = workspace().getBlockById(blocks.lines[innermost(has.running[0])]?.[0])?.getBoundingRectangleWithoutChildren();
-            const { left, top, width, height } = workspace().getMetricsManager().getViewMetrics(true);
-            if (box && !isLeft && (box.left < left || box.right > left + width || box.top < top || box.bottom > top + height)) throw new Error(`what runs is at ${box.left} ${box.top}, and ${[left, top, width, height]} is seen`);
+            const isSeen = () => {
+              const { left, top, width, height } = workspace().getMetricsManager().getViewMetrics(true);
+              if (box && !isLeft && (box.left < left || box.right > left + width || box.top < top || box.bottom > top + height)) throw new Error(`what runs is at ${box.left} ${box.top}, and ${[left, top, width, height]} is seen`);
+            };
+            isSeen();
             if (box && chance() < 0.2) {
               acts.scrolls();
               [before, isLeft] = [viewOf(), true];
             }
+            await passes(chance.below(1500));
+            isSeen();
+            if (chance() < 0.5) continue;
+            blocks.showRunning([]); // for a moment
             await passes(chance.below(500));
           }
           has.running = [];
