@@ -151,7 +151,7 @@ def test_leaving_is_about_the_last_program_alone(
 
 
 def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the others are compared with."""
+    """What the others are compared with. Ctrl-C stops whatever anybody has started."""
     for story, calls in (
         (("start", "runs on", False), ["stop", CLOSE]),
         (("start detached", "runs on", False), [CLOSE]),
@@ -160,9 +160,11 @@ def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> N
         (("upload", "replaced", True), [CLOSE]),
         (("upload", "replaced", False), [CLOSE]),
     ):
-        robot, line = connected(monkeypatch)
-        happens(robot, line, story)
-        assert leave(robot, line, None) == calls, story
+        for kind in (None, KeyboardInterrupt):
+            robot, line = connected(monkeypatch)
+            happens(robot, line, story)
+            did = leave(robot, line, kind)
+            assert did == calls if kind is None else did[0] == "stop", (story, kind)
 
 
 def test_what_a_program_tells_late_is_of_its_own_text(monkeypatch: pytest.MonkeyPatch) -> None:
