@@ -292,11 +292,11 @@ def test_who_has_had_a_port_matters_to_nobody_after_it(hosting: Hosting, seed: i
             for page in pages:
                 page.turn()
             page = chance.choice(pages)
-            robot = hosting.robot_of(page.name)
-            if robot is not None and chance.random() < 0.1:
+            driven = cast(ThreadlessRobot | None, hosting.robot_of(page.name))
+            if driven is not None and chance.random() < 0.1:
                 page.stop()
-                cast(ThreadlessRobot, robot).step()
-                assert not cast(ThreadlessRobot, robot).link.has_run
+                driven.step()
+                assert not driven.link.has_run
         assert not Room.not_waited_for
     assert stopped_ms and len(Room.robots) > 20
     assert len({(robot.tab, robot.connection) for robot in Room.robots}) == len(Room.robots)
