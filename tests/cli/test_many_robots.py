@@ -241,6 +241,21 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
         os.close(end)
 
 
+def test_who_has_answered_among_many_is_known_and_none_of_them_is_used_last(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """So one that is silent the next time is missed, and the next command drives the robot that
+    this person has driven before."""
+    monkeypatch.setattr(ports, "list_ports", list)
+    known_ports.remember("own", "MINE")
+    with RobotFleet([TINIBOT] * 2) as fleet:
+        places = [pupil.port for pupil in fleet.pupils]
+        words = [word for place in places for word in ("--port", place)]
+        inside("upload", "-e", "SI|W(0.1)", "--no-save", *words).gives(0)
+    memory = known_ports.remembered_ports()
+    assert {*places} < {*memory.name_by_port} and memory.last_port == "own"
+
+
 def test_nobody_and_wrong_use(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
     for language, words in (("en", "no robot responds"), ("es", "ningún robot responde")):

@@ -15,7 +15,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import is_foreign
 from tiniscript.cli.robot import event_printer, recorder
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.robot.recorder import ENDING_EVENTS, Recorder
+from tiniscript.cli.robot.recorder import ENDING_EVENTS, Recorder, Rows
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.robot.simulator import CommandSimulator
 from tiniscript.link.payloads import ReadingEvent
@@ -377,3 +377,17 @@ def test_a_place_without_room_says_so(tmp_path: Path) -> None:
     if Path("/dev/full").exists():
         with pytest.raises(CommandError, match="unwritable_more"):
             Recorder("/dev/full", HEAD, began_s=monotonic())
+
+
+def test_each_row_is_in_the_file_before_the_next_one_comes(tmp_path: Path) -> None:
+    """Whoever ends the command then, and however."""
+    path, written = tmp_path / "rows.csv", "head\n"
+    rows = Rows(str(path), written.encode())
+    for k in range(4):
+        rows.add_row(k, "a")
+        written += f"{k},a\n"
+        assert path.read_text("utf-8") == written
+        rows.add_line(f"line {k}")
+        written += f"line {k}\n"
+        assert path.read_text("utf-8") == written
+    rows.close()

@@ -19,7 +19,7 @@ from tests.support.simulated_ends import (
 )
 from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hm10
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
-from tiniscript.doctor.examination import Expectations, examine
+from tiniscript.doctor.examination import Expectations, RobotAnswers, examine
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.line import BAUDS, PortFacts, diagnose_line
 from tiniscript.doctor.robot import WireRobot, hello_values
@@ -34,6 +34,7 @@ from tiniscript.link.messages import (
     WIFI_RESTS,
     YOURS,
 )
+from tiniscript.link.payloads import TrimReply
 from tiniscript.link.wire import QUIET_MS
 from tiniscript.robots import load
 
@@ -227,6 +228,18 @@ def test_a_radio_that_loses_much(is_radio: bool) -> None:
     finding = causes(end, is_radio=is_radio)["lossy"]
     assert finding.is_sure and int(finding.values["missed"]) >= 3
     assert int(finding.values["damaged"]) >= 3
+
+
+@pytest.mark.parametrize("epoch", [0, 1, 7, 255])
+def test_a_robot_tells_all_of_itself_whatever_was_stopped_before(epoch: int) -> None:
+    end = Firmware()
+    end.epoch, end.trim = epoch, {"wheels": 5, "balance": -2, "least": 30, "pace": b""}
+    told: list[RobotAnswers] = []
+    robot = WireRobot(SimulatedWire(end), 4711, KIT)
+    reply = robot.hello()
+    assert reply is not None
+    examine(robot, reply, Expectations(KIT, "tinibot", NAMES.get, on_answers=told.append))
+    assert told[0].trim == TrimReply(**end.trim)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("damaged", "is_lossy"), [(1, False), (2, True)])

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from threading import Thread
+from time import sleep
 from typing import Any, ClassVar
 
 import pytest
@@ -24,6 +25,7 @@ from tiniscript.library.opening import BUSY_TIMEOUT_S, RETRY_INTERVAL_S
 from tiniscript.link.errors import PortError
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.registry import Registration
+from tiniscript.link.transports import READ_S
 
 SEARCH_S = 0.5 * BUSY_TIMEOUT_S, BUSY_TIMEOUT_S + 1, 10 * BUSY_TIMEOUT_S
 
@@ -98,13 +100,24 @@ class Device:
     """What is opened at a port, until it is closed."""
 
     opened: ClassVar[list[Device]] = []
+    is_gone = False
+    in_waiting = 0
 
     def __init__(self, *_: object) -> None:
         self.is_open = True
         Device.opened.append(self)
 
+    def read(self, size: int) -> bytes:
+        sleep(READ_S)
+        return b""
+
+    def write(self, data: bytes) -> None:
+        pass
+
     def close(self) -> None:
         self.is_open = False
+        if self.is_gone:
+            raise OSError("gone")
 
 
 class Line:
@@ -176,6 +189,25 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
     line = tried().connection
     assert Device.opened[-1].is_open
     line.close()
+
+
+@pytest.mark.parametrize("is_gone", [False, True])
+def test_a_connection_that_was_closed_leaves_nothing_open(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, is_gone: bool
+) -> None:
+    """Nor where its port is gone; whoever keeps it may connect again, as often as he wants."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    monkeypatch.setattr(Device, "opened", [])
+    monkeypatch.setattr("tiniscript.link.ports.open_port", Device)
+    monkeypatch.setattr(Device, "is_gone", is_gone)
+    kept = []
+    for _ in range(3):
+        kept.append(Client(ADDRESS, "upload", robots.load("tinibot")))
+        assert registry.find_registration(ADDRESS) is not None
+        kept[-1].close()
+        assert not any(device.is_open for device in Device.opened)
+        assert registry.find_registration(ADDRESS) is None
 
 
 def greets(version: str, answer: str) -> bytes:

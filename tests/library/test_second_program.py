@@ -15,17 +15,26 @@ import pytest
 from tests.support.link_events import event
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.disassembly import rows
-from tiniscript.bytecode.image import checksum
+from tiniscript.bytecode.image import Image, checksum
 from tiniscript.library import connection, opening
 from tiniscript.library.connection import RobotConnection
-from tiniscript.library.errors import RobotError
-from tiniscript.link.messages import SAVED_STORED
+from tiniscript.library.errors import RobotError, UsageError
+from tiniscript.link.messages import SAVED_SAVING, SAVED_STORED
 from tiniscript.link.outcomes import Event, RestartedEvent, ShownEvent, StartedEvent
 from tiniscript.link.payloads import DoneEvent, FaultEvent, ReceiptReply, StatusReply
 from tiniscript.link.requests import OK, Reply
 
 KIT = robots.load("tinibot").kit
 PROGRAM = 7
+CLOSE = "close"
+SAVING_LOOKS = 3  # of a robot that saves: what it says is that it is done
+
+
+class Asked:
+    """Says what is asked of it."""
+
+    def __getattr__(self, name: str) -> Callable[..., str]:
+        return lambda *_: name
 
 
 class Line:
@@ -33,6 +42,7 @@ class Line:
 
     def __init__(self, *_: object) -> None:
         self.run, self.program = 0, PROGRAM
+        self.unsaved_looks = 0  # for which it goes on saving its program
         self.events: list[tuple[int, Event]] = []
         self.did: list[str] = []
         self.drives_another = self.holds_for_others = False
@@ -41,17 +51,23 @@ class Line:
     def meet(self) -> Any:
         return self.device_info
 
-    def request(self, make: object) -> Reply[Any]:
+    def request(self, make: Callable[[Any], object] | None) -> Reply[Any]:
         if getattr(make, "__name__", "") == "status":
             fields: dict[str, Any] = dict.fromkeys(StatusReply._fields, 0)
-            return Reply(
-                OK, 0, StatusReply(**{**fields, "program": PROGRAM, "saved": SAVED_STORED})
-            )
+            self.unsaved_looks = max(0, self.unsaved_looks - 1)
+            saved = SAVED_SAVING if self.unsaved_looks else SAVED_STORED
+            return Reply(OK, 0, StatusReply(**{**fields, "program": self.program, "saved": saved}))
+        if make is not None and make(Asked()) == "undo":
+            self.program, self.unsaved_looks = self.program - 1, SAVING_LOOKS
         self.run += 1
         fields = dict.fromkeys(ReceiptReply._fields, 0)
-        return Reply(OK, 0, ReceiptReply(**{**fields, "program": self.program, "run": self.run}))
+        fields |= {"program": self.program, "run": self.run, "saved": SAVED_SAVING}
+        return Reply(OK, 0, ReceiptReply(**fields))
 
-    def send_program(self, *_: object, **__: object) -> Reply[Any]:
+    def send_program(
+        self, image: Image, runs: bool, saves: bool, *_: object, **__: object
+    ) -> Reply[Any]:
+        self.program, self.unsaved_looks = image.checksum, SAVING_LOOKS * saves
         return self.request(None)
 
     def event(self, limit_s: float) -> tuple[int, Event] | None:
@@ -62,7 +78,7 @@ class Line:
         return True
 
     def close(self) -> None:
-        self.did.append("close")
+        self.did.append(CLOSE if not self.unsaved_looks else "close while it saves")
 
 
 # How a program ends, and whether who has started it looks.
@@ -70,28 +86,30 @@ ENDS: dict[str, Callable[[Line], list[Event]]] = {
     "runs on": lambda line: [],
     "done": lambda line: [DoneEvent(line.run)],
     "stopped": lambda line: [event("STOPPED")],
-    "replaced": lambda line: [StartedEvent(line.run + 1, PROGRAM)],
+    "replaced": lambda line: [StartedEvent(line.run + 1, line.program)],
     "restarted": lambda line: [RestartedEvent()],
 }
-STARTS = ("start", "start detached", "upload", "live")
+STARTS = ("start", "start detached", "upload", "upload for good", "live", "undo")
 Story = tuple[str, str, bool]
 
 
 def happens(robot: RobotConnection, line: Line, story: Story) -> str:
     how, end, looks = story
-    if how == "upload":
-        robot.upload("SI|F(2, 50)", save=False)
+    if how.startswith("upload"):
+        robot.upload(f"SI|F({line.run + 1}, 50)", save=how == "upload for good")
     elif how == "live":
         robot.live("F(2, 50)")
+    elif how == "undo":
+        robot.undo()
     else:
         robot.start(detached=how == "start detached")
-    events = [StartedEvent(line.run, PROGRAM), *ENDS[end](line)]
+    events = [StartedEvent(line.run, line.program), *ENDS[end](line)]
     line.events += [(int(monotonic() * 1000), event) for event in events]
     if not looks:
         return ""
     try:
         return robot.wait(0).name
-    except RobotError as error:
+    except (RobotError, UsageError) as error:
         return error.reason
 
 
@@ -127,21 +145,26 @@ def test_leaving_is_about_the_last_program_alone(
         for story in before:
             happens(robot, line, story)
             line.events.clear()
+            line.unsaved_looks = 0
         assert happens(robot, line, last) == outcome, before
         assert leave(robot, line, kind) == fresh, (before, last)
 
 
 def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the others are compared with."""
+    """What the others are compared with. Ctrl-C stops whatever anybody has started."""
     for story, calls in (
-        (("start", "runs on", False), ["stop", "close"]),
-        (("start detached", "runs on", False), ["close"]),
-        (("upload", "replaced", True), ["close"]),
-        (("upload", "replaced", False), ["close"]),
+        (("start", "runs on", False), ["stop", CLOSE]),
+        (("start detached", "runs on", False), [CLOSE]),
+        (("upload for good", "runs on", False), ["stop", CLOSE]),
+        (("undo", "runs on", False), ["stop", CLOSE]),
+        (("upload", "replaced", True), [CLOSE]),
+        (("upload", "replaced", False), [CLOSE]),
     ):
-        robot, line = connected(monkeypatch)
-        happens(robot, line, story)
-        assert leave(robot, line, None) == calls, story
+        for kind in (None, KeyboardInterrupt):
+            robot, line = connected(monkeypatch)
+            happens(robot, line, story)
+            did = leave(robot, line, kind)
+            assert did == calls if kind is None else did[0] == "stop", (story, kind)
 
 
 def test_what_a_program_tells_late_is_of_its_own_text(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,16 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 from random import Random
+from types import SimpleNamespace
+from typing import Any, TypeVar, cast
 
 import pytest
 
+from tiniscript.link import authority
 from tiniscript.link.authority import MOST_PENDING_KEYS, KeyRing, RobotKey
 from tiniscript.link.keys import KeyFile, encode_keys
-from tiniscript.link.messages import KEY_BYTES, KEY_OWNER, KEY_TEACHER
+from tiniscript.link.messages import KEY_BYTES, KEY_OWNER, KEY_TEACHER, SEALS, STATUSES
+from tiniscript.link.payloads import AuthenticateReply, EmptyReply
+from tiniscript.link.requests import ACCEPTING_STATUSES, OK, DeviceInfo, Exchange, Reply, Request
+from tiniscript.link.seal import siphash
 from tiniscript.studio.page_line import PageKeys
 
 SLOTS = [(robot, which) for robot in (1, 2) for which in (KEY_OWNER, KEY_TEACHER)]
 CHANGES = 40
+CHALLENGE, NONCE = b"12345678", 7
+T = TypeVar("T")
 
 
 def add(ring: KeyRing, keys: Iterable[RobotKey]) -> None:
@@ -68,3 +76,92 @@ def test_a_claim_stays_until_it_is_confirmed_or_given_up(
         assert [key[:3] for key in new_keys if key.is_pending] == [key[:3] for key in claims]
         settled_slots = [key.slot for key in new_keys if not key.is_pending]
         assert len(settled_slots) == len({*settled_slots}), "of the others, each slot has one"
+
+
+class Robot:
+    """Has a key for each person who has claimed it. Its answers are lost now and then, and it says
+    of a new key what it likes: that it has it, that it will keep it, or that it takes none."""
+
+    def __init__(self, chance: Random) -> None:
+        self.chance = chance
+        self.keys: dict[int, bytes] = {}
+        self.loss = 0.0
+        self.has_seals = False
+        self._status_by_key: dict[bytes, int] = {}
+        self._is_stale = False
+
+    @property
+    def info(self) -> DeviceInfo:
+        values = SimpleNamespace(features=SEALS * self.has_seals, nonce=1)
+        return cast(DeviceInfo, SimpleNamespace(id=1, name="TINI", values=values))
+
+    def does(self, exchange: Exchange[T]) -> Reply[T] | None:
+        """Answer an exchange; return what came of it, or None where the link was lost."""
+        try:
+            request = next(exchange)
+            while True:
+                is_heard, is_answered = (self.chance.random() >= self.loss for _ in range(2))
+                reply = self._reply(request) if is_heard else None
+                if reply is None or not is_answered:
+                    return None
+                request = exchange.send(reply)
+        except StopIteration as end:
+            return cast(Reply[T], end.value)
+
+    def _reply(self, request: Request) -> Reply[Any]:
+        which = int(request.values["which"])
+        if request.name == "CLAIM":
+            status = self._take(which, cast(bytes, request.values["key"]))
+            return Reply(status, 0, EmptyReply())
+        assert request.name == "AUTHENTICATE"
+        tag, key = request.values["tag"], self.keys.get(which)
+        if not tag:
+            return Reply(OK, 0, AuthenticateReply(0, CHALLENGE))
+        self._is_stale = not self._is_stale and self.chance.random() < 0.2
+        if self._is_stale:  # it was stopped in this moment
+            return Reply(STATUSES["STALE"])
+        message = CHALLENGE + NONCE.to_bytes(4, "little") + bytes([0, which])
+        is_right = key is not None and tag == siphash(key, message)
+        return Reply(OK, 0, AuthenticateReply(0, b"")) if is_right else Reply(STATUSES["WRONG_KEY"])
+
+    def _take(self, which: int, key: bytes) -> int:
+        if not key:
+            self.keys.pop(which, None)
+            return OK
+        statuses = [OK, *ACCEPTING_STATUSES, STATUSES["NOT_OWNER"]]
+        status = self._status_by_key.setdefault(key, self.chance.choice(statuses))
+        if status in (OK, *ACCEPTING_STATUSES):
+            self.keys[which] = key
+        return status
+
+
+@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("kind", [KeyFile, PageKeys])
+def test_a_robot_is_its_owners_whatever_was_lost_of_claims(
+    kind: type[KeyRing], seed: int, tmp_path: Path
+) -> None:
+    """The key that a robot has is never gone here, and it is shown; then it is known that this one
+    is right, and that its robot seals, for ever."""
+    chance = Random(seed)
+    ring: KeyRing = KeyFile(tmp_path / "keys.json") if kind is KeyFile else PageKeys(b"")
+    robot = Robot(chance)
+    sealing_keys = set[bytes]()
+    for _ in range(CHANGES):
+        robot.loss, which = chance.choice((0.0, 0.3)), chance.choice((KEY_OWNER, KEY_TEACHER))
+        robot.has_seals = chance.random() < 0.5  # it may have older firmware
+        if chance.random() < 0.7:
+            robot.does(authority.claim(ring, robot.info, which))
+        else:
+            robot.does(authority.disown(ring, robot.info, which))
+        robot.does(authority.show_keys(ring, robot.info, NONCE, lambda: 0, is_needed=False))
+        kept = {key.key for key in ring.keys_of_robot(1)}
+        assert {*robot.keys.values()} <= kept
+        robot.loss = 0.0  # before another claim somebody has come through
+        for which, right in robot.keys.items():
+            shown = authority.show_keys(ring, robot.info, NONCE, lambda: 0, which, is_needed=False)
+            reply = robot.does(shown)
+            assert reply is not None and reply.status == OK
+            [own] = [key for key in ring.keys_of_robot(1) if key.key == right]
+            sealing_keys |= {right} if robot.has_seals else set()
+            assert (own.which, own.is_pending, own.is_stale) == (which, False, False)
+            assert own.uses_seals == (right in sealing_keys)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tools import CannotMake
 from tools.release import __main__ as release
 from tools.release import facts
 from tools.release.parts import PARTS, Clone, chosen_parts
@@ -28,6 +29,23 @@ def test_a_process_that_builds_has_the_time_of_the_commit_and_no_settings(
     assert variables["PYTHONHASHSEED"] == "2"
     assert variables["PYTHONPATH"].startswith(str(tmp_path))
     assert "PYTHONSTARTUP" not in variables
+
+
+def test_what_fails_in_a_clone_or_cannot_be_cloned_is_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clone = Clone(tmp_path, tmp_path, "1", "", 77, 2, False)
+    for code in range(4):
+        for good_codes in ((0,), (0, 1)):
+            words = ("-c", f"print('made'); raise SystemExit({code})")
+            if code in good_codes:
+                assert clone.python(*words, good_codes=good_codes) == "made\n"
+                continue
+            with pytest.raises(CannotMake, match="made"):
+                clone.python(*words, good_codes=good_codes)
+    monkeypatch.setattr(release, "ROOT", tmp_path / "nowhere")
+    with pytest.raises(CannotMake, match="no clone"):
+        release._clones(tmp_path, "", whole_stick=False)
 
 
 @pytest.mark.parametrize(

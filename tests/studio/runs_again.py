@@ -1,6 +1,6 @@
 """Random runs of the virtual robot, with tasks, ways, DEFs with values, keys, pushes of the button,
-and stops: played again, not one event differs. A program that is held at breakpoints may do what
-follows within a millisecond an eighth of one later, so none is held here.
+and stops: played again, not one event differs. A program that goes on from a breakpoint may do what
+follows within a millisecond an eighth of one later, so one that is held is stopped there.
 
 `python -m tests.studio.runs_again 1000` tries so many.
 """
@@ -12,7 +12,8 @@ import sys
 
 from tests.oracle.task_programs import TaskAuthor
 from tiniscript import robots
-from tiniscript.bytecode.image import checksum
+from tiniscript.bytecode.image import checksum, unpack
+from tiniscript.bytecode.statements import statement_starts
 from tiniscript.library.compiling import compile_source, fit_to_robot
 from tiniscript.studio.playing import play, prepare
 from tiniscript.studio.recordings import VIRTUAL, Row, decode, encode, header_line
@@ -23,8 +24,9 @@ from tiniscript.virtual.robot import Settings
 ROBOTS = ("tinibot", "tinibot2", "tinibot32", "grabber")  # an Uno, discs, an ESP32, a Mega
 
 
-def recorded(number: int) -> tuple[bytes, list[Row]]:
-    """Return the file of a random run, and what happened in it, without what somebody did."""
+def recorded(number: int, is_held: bool = False) -> tuple[bytes, list[Row]]:
+    """Return the file of a random run, and what happened in it, without what somebody did. One that
+    `is_held` ends at a breakpoint, if it comes to one."""
     rng = random.Random(number)
     while True:
         profile = robots.load(rng.choice(ROBOTS))
@@ -39,9 +41,12 @@ def recorded(number: int) -> tuple[bytes, list[Row]]:
         given_readings = {}
     settings = Settings(seed=number + 1, given_readings=given_readings)
     run = Simulation(profile.name, worlds.load(world), compilation.image, settings=settings)
+    code = unpack(compilation.image).code
+    if is_held:
+        run.set_breakpoints([rng.choice(statement_starts(code)[1:] or [0])])
     for _ in range(rng.randint(1, 25)):
         _act(rng, run)
-    if rng.random() < 0.3:
+    if run.held_at is not None or rng.random() < 0.3:
         run.stop()
         if rng.random() < 0.5:
             run.go(rng.randint(0, 30))
@@ -61,9 +66,9 @@ def _act(rng: random.Random, run: Simulation) -> None:
     run.go(rng.randint(0, 200))
 
 
-def differs(number: int) -> str | None:
+def differs(number: int, is_held: bool = False) -> str | None:
     """Return how a random run differs when it is played again, or None."""
-    data, happened = recorded(number)
+    data, happened = recorded(number, is_held)
     played = play(prepare(decode(data)))
     replayed = [row for row in played.rows() if not row.is_input]
     parting = played.divergence

@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
+from random import Random
 from threading import Thread
 from typing import Any
 
@@ -876,6 +877,30 @@ def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() ->
             room.teaches("class_places", places=wrong)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) -> None:
+    """Whatever pages tell again: their work has another version where it is another, and who has
+    raised a hand is as early as before."""
+    chance, room = Random(seed), Room()
+    tokens = [room.joins(name) for name in ("Ana", "Ben", "Eve")]
+    works, hands = dict.fromkeys(tokens, ""), list[str]()
+    seen = room.teaches("class")["pupils"]
+    for _ in range(60):
+        token, text = chance.choice(tokens), chance.choice(("", "F(1)", "F(2)"))
+        is_up = chance.random() < 0.7
+        room.made.answer(token, HERE, {"do": "here", "text": text, "hand": is_up})
+        pupils = room.teaches("class")["pupils"]
+        for one, before, after in zip(tokens, seen, pupils, strict=True):
+            is_other = one == token and works[one] != text
+            assert (after["version"] != before["version"]) == is_other
+        seen, works[token] = pupils, text
+        hands = [one for one in hands if one != token or is_up]
+        hands += [token] * (is_up and token not in hands)
+        raised = [pupil for pupil in pupils if pupil["hand"]]
+        raised.sort(key=lambda pupil: pupil["hand"])
+        assert [tokens[pupils.index(pupil)] for pupil in raised] == hands
+
+
 # -- the newest run of a pupil ---------------------------------------------------------------------
 
 
@@ -905,6 +930,10 @@ def test_the_teacher_gets_the_newest_run_of_the_pupil_who_was_asked() -> None:
     assert asks_run(room, 1) == "one, two"
     assert asks_run(room, 1, True) is None
     assert room.checks_in(ana)["run"] > asked, "it is asked anew"
+    gives(room, ana, room.checks_in(ana)["run"], 0, "half of an", False)
+    assert asks_run(room, 1, True) is None
+    gives(room, ana, room.checks_in(ana)["run"], 0, "newer", True)
+    assert asks_run(room, 1) == "newer", "what is asked anew begins anew"
     assert asks_run(room, 9, True) == "", "who has gone has none"
     assert "class_run" not in json.dumps(room.made.state_to_keep())
 

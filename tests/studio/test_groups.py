@@ -589,7 +589,9 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
         member = chance.choice(members)
         does = chance.choice(("wish", "wish", "connect", "join", "leave", "next"))
         if does == "wish":
-            school.checks_in(member.token, chance.random() < 0.8)
+            wants = chance.random() < 0.8
+            place = school.checks_in(member.token, wants)["place"]
+            assert wants or place < 1, "who wants none waits no more, and no one of the group"
         elif does == "connect" and school.checks_in(member.token)["place"] == 0:
             with suppress(BadRequest):
                 school.connects(member.token)

@@ -89,6 +89,17 @@ def test_a_page_that_was_away_stops_its_robot_when_it_is_back(page: Page) -> Non
     assert not page.robot.is_running
 
 
+def test_a_page_that_is_back_is_told_of_its_stop_however_long_it_was_away(page: Page) -> None:
+    for away_ms in (ATTENDED_MS + 50, 3000, 20_000, ATTENDED_MS + 50):
+        assert page.upload(FOREVER)["ok"]
+        page.go(300)
+        page.go(away_ms, is_away=True)
+        page.news.clear()
+        page.go(300)
+        events = [item["event"] for item in page.news if "event" in item]
+        assert events[-1] == "STOPPED" and "LOST" not in events, away_ms
+
+
 def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
     for _ in range(50):
         page.go(1)
@@ -162,9 +173,11 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
                 kept = ask(keys.encode_keys(new_keys), do="import_keys", kept=kept)["keys"]
             case "claim" | "link" as does if page_line._robot:
                 new_keys = new_keys[: does == "claim"]
-                for key in new_keys:
+                for key in (*new_keys, *new_keys):  # the second time it is there already
                     page_line._robot.keys.settle_key(key)
-                kept = ask(b"", do="link", now_ms=now_ms, asked=[]).get("keys", kept)
+                answer = ask(b"", do="link", now_ms=now_ms, asked=[])
+                assert ("keys" in answer) == bool(new_keys)  # another tab may have kept others
+                kept = answer.get("keys", kept)
             case _:
                 continue
         newest_keys |= {key.slot: key.key for key in new_keys}

@@ -261,6 +261,19 @@ def test_a_long_recording_ends_before_its_file_is_too_large() -> None:
     assert not short.add(Row(recordings.MOST_MS + 1, "SHOW 1"))
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_recording_has_a_reading_where_it_changes_and_nothing_after_its_end(seed: int) -> None:
+    rng, rows, values = random.Random(seed), Rows(), dict[str, int]()
+    for ms in range(60):
+        name, value = rng.choice(("DISTANCE", "LIGHT_L")), rng.randrange(3)
+        is_other = values.get(name) != value
+        assert rows.add(Row(ms, f"READ {name} {value}")) == is_other
+        values[name] = value
+    assert rows.add(Row(60, recordings.HELD))
+    for ms in (60, 61, 99):
+        assert rows.is_full and not rows.add(Row(ms, "SHOW 1"))
+
+
 # -- a virtual robot's run is the same again ------------------------------------------------------
 
 
@@ -280,8 +293,9 @@ def test_each_row_that_is_another_one_is_told() -> None:
 
 
 @pytest.mark.parametrize("number", range(12))
-def test_a_run_is_the_same_again(number: int) -> None:
-    assert differs(number) is None
+@pytest.mark.parametrize("is_held", [False, True])
+def test_a_run_is_the_same_again(number: int, is_held: bool) -> None:
+    assert differs(number, is_held) is None
 
 
 def test_a_played_run_takes_nothing_of_who_looks_on() -> None:

@@ -22,7 +22,14 @@ from tests.support.waiting import HANGS_S, until
 from tiniscript.library import opening
 from tiniscript.studio import hosted_robot, serving
 from tiniscript.studio import hosting as hosting_of
-from tiniscript.studio.attending import ATTENDED_S, LATCH_S, LEFT_S, Attending
+from tiniscript.studio.attending import (
+    ATTENDED_S,
+    CONFIRMED,
+    LATCH_S,
+    LEFT_S,
+    SILENT,
+    Attending,
+)
 from tiniscript.studio.hosting import Hosting
 from tiniscript.studio.robot_link import BadRequest, RobotLink
 
@@ -38,6 +45,7 @@ class Room:
     now_ms = 0
     actions: ClassVar[list[tuple[str, int]]] = []  # and when
     robots: ClassVar[list[ThreadlessRobot]] = []
+    not_waited_for: ClassVar[list[tuple[ThreadlessRobot, ThreadlessRobot]]] = []
 
     @classmethod
     def clock(cls) -> float:
@@ -67,9 +75,10 @@ class NotingLink:
 
 
 class ThreadlessRobot:
-    """A connection whose steps are the test's; it takes a while until it meets its robot."""
+    """A connection whose steps are the test's; it takes a while until it meets its robot, and until
+    its port is closed."""
 
-    is_holding_port = False
+    is_holding_port = is_unconfirmed = False
 
     def __init__(
         self, port: str, robot: str, language: str, tab: str, connection: int, stops: int,
@@ -81,18 +90,49 @@ class ThreadlessRobot:
         self.link = NotingLink()
         self.has_ended = self.is_parting = False
         self._meets_ms = Room.now_ms + 300 * (connection % 4)
+        self._closed_ms = 0
+        Room.not_waited_for += [
+            (self, robot)
+            for robot in Room.robots
+            if robot.port == port and robot.is_open and robot not in before
+        ]
         Room.robots.append(self)
 
-    def leave(self) -> None:
-        self.is_parting = True
+    @property
+    def is_open(self) -> bool:
+        return self.is_parting or not self.has_ended
+
+    def leave(self, is_letting_go: bool = False) -> None:
+        if not self.has_ended and not self.is_parting:
+            self.is_parting, self._closed_ms = True, Room.now_ms + 200
+
+    def join(self, limit_s: float) -> None:
+        self._closed_ms = Room.now_ms
+        self.step()
+
+    def fail(self) -> None:
+        """Its cable is pulled."""
+        self._end("port_gone")
+
+    def _end(self, reason: str) -> None:
+        self.has_ended = True
+        self._stop()
+        self.attending.end()
+        self.attending.queue_news([{"over": reason}])
+
+    def _stop(self) -> None:
+        if self.link.has_run:
+            self.link.stop()
 
     def step(self) -> None:
-        if self.has_ended:
-            return
-        if self.is_parting or self.attending.has_left:
-            self.has_ended, self.is_parting = True, False
-            if self.link.has_run:
-                self.link.stop()
+        if not self.has_ended and self.attending.has_left:
+            self.leave()
+        if self.is_parting:
+            if not self.has_ended:
+                self._end("left")
+            self.is_parting = Room.now_ms < self._closed_ms
+        elif self.has_ended:
+            pass
         elif Room.now_ms >= self._meets_ms:
             self.attending.attend(cast(RobotLink, self.link), 0)
 
@@ -102,6 +142,7 @@ def own_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Room, "now_ms", 0)
     monkeypatch.setattr(Room, "actions", [])
     monkeypatch.setattr(Room, "robots", [])
+    monkeypatch.setattr(Room, "not_waited_for", [])
 
 
 @pytest.fixture
@@ -119,7 +160,10 @@ class ComingPage:
 
     def __init__(self, hosting: Hosting, name: str, chance: Random) -> None:
         self.hosting, self.name, self.chance = hosting, name, chance
-        self.tab = name
+        self.tab = self.port = name
+        self.ports = [name]
+        self.end = ""  # why its connection has ended, which it has not heard yet
+        self.stops = 0  # that its tab has counted
         self._connection = self._seen = self._number = 0
         self._is_there = self._sleeps = False
         self._asked: list[Json] = []
@@ -127,18 +171,33 @@ class ComingPage:
     def _ask(self, do: str, **more: object) -> Json:
         return self.hosting.answer({
             "do": do, "page": self.name, "tab": self.tab, "connection": self._connection,
-            "port": self.name, "robot": "tinibot", "language": "en", "seen": self._seen, **more,
+            "port": self.port, "robot": "tinibot", "language": "en", "seen": self._seen,
+            "stops": self.stops, **more,
         })  # fmt: skip
 
     def _connect(self) -> None:
         self._connection += 1
+        self.end, self.port = "", self.chance.choice(self.ports)
         self._seen = self._number = 0
         self._asked = []
-        self._is_there = self._ask("connect") == {}
+        for _ in range(self.chance.choice((1, 2))):  # the answer was lost
+            self._is_there = self._ask("connect") == {}
 
     def _wants_run(self) -> None:
         self._number += 1
-        self._asked.append({**RUN, "id": self._number, "stops": 0, "seen": self._seen})
+        self._asked.append({**RUN, "id": self._number, "stops": self.stops, "seen": self._seen})
+
+    def stop(self) -> None:
+        self.stops += 1
+        self._ask("stop")
+
+    def leaves_and_comes(self) -> None:
+        self._ask("leave")
+        self._connect()
+
+    @property
+    def is_beating(self) -> bool:
+        return self._is_there and not self._sleeps
 
     def turn(self) -> None:
         does = self.chance.random()
@@ -148,21 +207,23 @@ class ComingPage:
                 self._wants_run()  # at once, as it may be on its way
         elif does < 0.01:
             self._ask("leave")
-            self._is_there = False
+            self._is_there, self.end = False, ""
         elif does < 0.02:  # loaded again, under another name of its own or the same one
-            self.tab = self.chance.choice((self.tab, f"{self.tab}+"))
             self._is_there, self._connection = False, self._connection + 3
+            if self.chance.random() < 0.5:
+                self.tab, self.stops = f"{self.tab}+", 0
         elif does < 0.04:
-            self._sleeps = not self._sleeps
+            self._sleeps, self.end = not self._sleeps, ""
         elif does < 0.3:
             self._wants_run()
-        if self._is_there and not self._sleeps:
+        if self.is_beating:
             self._beat()
 
     def _beat(self) -> None:
         for item in self._ask("beat", asked=self._asked[:8]).get("news", ()):
             if "over" in item:
                 self._is_there = False
+                assert item["over"] == (self.end or item["over"])
             elif item["number"] > self._seen:
                 self._seen = item["number"]
                 self._asked = [one for one in self._asked if one["id"] != item.get("id")]
@@ -194,6 +255,55 @@ def test_nobody_starts_after_a_stop_for_all_whenever_it_has_come(
         assert not (runs and Room.now_ms < latched_until_ms), (Room.now_ms, latched_until_ms)
         late_runs += len(runs) if stops else 0
     assert stops > 3 and late_runs > 10
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_who_has_had_a_port_matters_to_nobody_after_it(hosting: Hosting, seed: int) -> None:
+    """Whoever connects waits for all that still have the port, and is connected once; a STOP for
+    all is one of those that drive, and of each it is known soon what came of it; a page's STOP
+    stops what it drives, though it was loaded again; a page hears why its connection has ended,
+    whoever connects meanwhile; and at the end none is left open."""
+    chance = Random(seed)
+    pages = [ComingPage(hosting, f"page{k}", chance) for k in range(4)]
+    for page in pages:
+        page.ports = ["first", "second", "third"]
+    stopped_ms = 0
+    for _ in range(2500):
+        Room.now_ms += LOOK_MS
+        for robot in Room.robots:
+            robot.step()
+        driving = [robot for robot in Room.robots if not robot.has_ended and not robot.is_parting]
+        for page in pages:
+            own = [robot for robot in driving if robot.tab == page.tab and page.is_beating]
+            if own and chance.random() < 0.01:
+                own[-1].fail()
+                page.end = "port_gone"
+                driving.remove(own[-1])
+        if chance.random() < 0.005:
+            states = hosting.answer({"do": "stop_all"})["robots"]
+            assert sorted(state["name"] for state in states) == sorted(
+                robot.name for robot in driving
+            )
+            stopped_ms = Room.now_ms
+        if Room.now_ms > stopped_ms + 2000:
+            states = hosting.answer({"do": "stops"})["robots"]
+            assert {state["stop"] for state in states} <= {CONFIRMED, SILENT}
+        if Room.now_ms % BEAT_MS == 0:
+            for page in pages:
+                page.turn()
+            page = chance.choice(pages)
+            driven = cast(ThreadlessRobot | None, hosting.robot_of(page.name))
+            if driven is not None and chance.random() < 0.1:
+                page.stop()
+                driven.step()
+                assert not driven.link.has_run
+        assert not Room.not_waited_for
+    assert stopped_ms and len(Room.robots) > 20
+    assert len({(robot.tab, robot.connection) for robot in Room.robots}) == len(Room.robots)
+    for page in pages:
+        page.leaves_and_comes()
+    hosting.close()
+    assert not any(robot.is_open for robot in Room.robots)
 
 
 # -- a page that is silent, and is heard again

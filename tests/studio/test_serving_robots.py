@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import socket
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from http.client import HTTPConnection
 from pathlib import Path
 from threading import active_count
@@ -160,6 +160,24 @@ def test_a_thousand_connections_keep_nobody_out(server: serving.Server, own: str
         assert page.sock is kept
         assert active_count() - before <= serving.MOST_CONNECTIONS + 30
     page.close()
+
+
+def test_pages_that_were_closed_take_no_place(server: serving.Server, own: str) -> None:
+    """However many there were: a new one fetches its files over several connections at once."""
+    for _ in range(serving.MOST_CONNECTIONS + 2):
+        assert post(own, server.entrances.token, PORTS)[0] == 200
+    with ExitStack() as browser:
+        connections = [
+            browser.enter_context(
+                closing(HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S))
+            )
+            for _ in range(6)
+        ]
+        for connection in connections:
+            connection.connect()
+        for connection in connections:
+            connection.request("GET", "/")
+            assert connection.getresponse().status == 200
 
 
 @pytest.mark.parametrize("line", [b"X-More: " + b"x" * 1000 + b"\r\n", b"x" * 70_000, b"X: y\r\n"])

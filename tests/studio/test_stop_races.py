@@ -190,6 +190,24 @@ def test_no_stop_of_before_confirms_the_newest_one(
         link.tells()
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_what_is_known_of_a_stop_is_final_once_its_connection_has_ended(seed: int) -> None:
+    """Whenever a cable is pulled: nobody is left waiting for a word."""
+    chance = Random(seed)
+    link = LateLink(chance)
+    attending = Attending(lambda: link.now_ms / 1000)
+    hosted = SimpleNamespace(attending=attending, has_ended=False)
+    for _ in range(3):
+        link.tells()
+        link.hears(chance.choice((40, 200, float("inf"))))
+        attending.latch()
+        for _ in range(chance.randrange(20)):
+            attending.attend(cast(RobotLink, link))
+    known = attending.last_stop
+    HostedRobot._end(cast(HostedRobot, hosted), "port_gone")
+    assert attending.last_stop == (CONFIRMED if known == CONFIRMED else SILENT)
+
+
 if __name__ == "__main__":
     wanted = int(sys.argv[1])
     for start in range(0, wanted, 100):

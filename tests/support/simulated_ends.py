@@ -103,7 +103,8 @@ class Firmware(Nobody):
     """The robot's half of the link, as far as the doctor asks; `values` are fields of its replies.
 
     `restarts_ms`: it restarts so often, with the cause `resets`. Of requests it answers none whose
-    number is a multiple of `deaf`. `dies_after` requests it is silent.
+    number is a multiple of `deaf`. `dies_after` requests it is silent. Its `trim` it tells who is
+    in its `epoch`.
     """
 
     def __init__(self, baud: int = 9600, **values: int | bytes) -> None:
@@ -128,6 +129,8 @@ class Firmware(Nobody):
         self.hears_badly = False
         self.dies_after: int | None = None
         self.refuses: tuple[int, int] | None = None  # HELLO: a status and its detail
+        self.epoch = 7
+        self.trim: dict[str, int | bytes] | None = None  # an older robot has none
         self.requests: list[int] = []
         self._line = b""
 
@@ -165,9 +168,14 @@ class Firmware(Nobody):
                 message.reply,
                 {field.name: known[field.name] for field in message.reply if field.name in known},
             )
-        else:
+        elif message.name != "TRIM" or self.trim is None:
             payload = bytes([STATUSES["UNKNOWN_MESSAGE"], 0, 0])
-        return b"\0" + encode_frame(Frame(frame.number, frame.seq, 7, payload, is_reply=True))
+        elif frame.epoch != self.epoch:
+            payload = bytes([STATUSES["STALE"], 0, 0])
+        else:
+            payload += encode_payload(message.reply, self.trim)
+        reply = Frame(frame.number, frame.seq, self.epoch, payload, is_reply=True)
+        return b"\0" + encode_frame(reply)
 
 
 QUESTIONS = {BY_NAME[name].number for name in ("HELLO", "STATUS", "PING", "TRIM")}

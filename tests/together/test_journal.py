@@ -77,20 +77,28 @@ def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
         assert same(resumed, program)
 
 
+@pytest.mark.parametrize("says_so", ["write", "in part", "fsync"])
 def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, says_so: str
 ) -> None:
+    """A system says so when it is written to, by what it has taken, or when it is to be lasting."""
     path = tmp_path / "journal"
     journal, program = begun(path)
     write = os.write
 
-    def full(_: int, data: bytes) -> int:
+    def full(*_: object) -> int:
         raise OSError(errno.ENOSPC, "full")
 
-    monkeypatch.setattr(os, "write", full)
-    assert changed(program, 7)
-    assert journal.is_incomplete
-    monkeypatch.setattr(os, "write", write)
+    def takes_part(file: int, data: bytes) -> int:
+        return write(file, data[: len(data) // 2])
+
+    with monkeypatch.context() as disk:
+        if says_so == "in part":
+            disk.setattr(os, "write", takes_part)
+        else:
+            disk.setattr(os, says_so, full)
+        assert changed(program, 7)
+        assert journal.is_incomplete
     assert changed(program, 8)
     assert not journal.is_incomplete
     resumed = Journal(path).resume("e2")

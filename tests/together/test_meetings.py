@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from itertools import count
+from random import Random
 from typing import Any
 
 import pytest
@@ -288,6 +290,84 @@ def test_a_copy_of_a_page_goes_its_own_way(two: Two) -> None:
     assert "F(3, 80)" in two.meet()
 
 
+FLAT = "SI|S\n" + "".join(f"F({number}, 80)\n" for number in range(1, 6))
+
+
+def edits(page: Page, chance: Random) -> None:
+    """Put a line in, take one out or change one, as somebody types it."""
+    rows = page.lines[:]
+    k = chance.randrange(1, len(rows))
+    line = f"{chance.choice('FBLR')}({chance.randrange(1, 99)}, 40);"
+    if len(rows) > 4 and chance.random() < 0.4:
+        del rows[k]
+    else:
+        rows[k : k + chance.randrange(2)] = [line]
+    page.type(rows, min(k, len(rows) - 1))
+    page.leave()
+
+
+def program_of(page: Page) -> list[str]:
+    return [row.rstrip(";") for row in page.lines]
+
+
+def story(seed: int, makes_copies: bool) -> list[Any]:
+    """Return what is seen of Ana's page, where it goes on as a copy each time, or as it is. What is
+    done to the one before is nobody's."""
+    chance, other_chance, two = Random(seed), Random(seed), Two(FLAT)
+    seen = list[Any]()
+    for _ in range(40):
+        if makes_copies:
+            before, two.ana = two.ana, two.ana.copy()
+            for do in (before.undo, before.redo, partial(edits, before, other_chance), before.undo):
+                do()
+        match chance.choice(("edit", "edit", "luz", "undo", "redo", "send", "lose", "hear")):
+            case "edit":
+                edits(two.ana, chance)
+            case "luz":
+                edits(two.luz, chance)
+                two.sends(two.luz)
+            case "undo" | "redo" as does_back:
+                seen.append(two.ana.undo() if does_back == "undo" else two.ana.redo())
+            case "send":
+                two.sends(two.ana)
+            case "lose":
+                two.program.submit(two.ana.pending_changes)
+            case "hear":
+                two.hears(two.ana)
+        seen.append([two.ana.lines[:], data(two.ana)])
+    return [*seen, two.meet()]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_copy_goes_on_as_the_page_itself_and_hears_nothing_of_it(seed: int) -> None:
+    assert story(seed, makes_copies=True) == story(seed, makes_copies=False)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_what_is_typed_before_and_after_any_reload_is_the_program(seed: int) -> None:
+    """Whatever of it was sent, heard or lost then: nothing is refused, lost or there twice."""
+    chance, two = Random(seed), Two(FLAT)
+    for _ in range(60):
+        typed = program_of(two.ana)
+        match chance.choice(("edit", "edit", "send", "lose", "hear", "reload", "reload")):
+            case "edit":
+                edits(two.ana, chance)
+                continue
+            case "send":
+                two.sends(two.ana)
+            case "lose":
+                two.program.submit(two.ana.pending_changes)
+            case "hear":
+                two.hears(two.ana)
+            case "reload":
+                kept = json.loads(json.dumps(two.ana.store_data()))
+                two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
+        assert program_of(two.ana) == typed
+    typed = program_of(two.ana)
+    two.meet()
+    assert program_of(two.luz) == program_of(two.ana) == typed and not two.ana.refusals
+
+
 def data(page: Page) -> Any:
     return [page.store_data(), list(map(data_of_change, page.pending_changes))]
 
@@ -316,3 +396,18 @@ def test_a_redo_takes_back_an_undo_until_something_else_is_done(two: Two) -> Non
     two.types(two.ana, "L(1, 60)", "L(2, 60)")
     two.meet()
     assert not two.ana.redo()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_as_many_redos_as_undos_bring_all_back(seed: int) -> None:
+    chance, two = Random(seed), Two(FLAT)
+    texts = [two.meet()]
+    for number in range(1, 6):
+        two.types(two.ana, f"F({number}, 80)", f"F({number}1, 80)")
+        texts.append(two.meet())
+    for _ in range(4):
+        count_back = chance.randrange(1, 5)
+        for done in range(count_back):
+            assert two.ana.undo() and two.meet() == texts[-2 - done]
+        for done in reversed(range(count_back)):
+            assert two.ana.redo() and two.meet() == texts[-1 - done]

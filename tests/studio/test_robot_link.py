@@ -1,0 +1,121 @@
+"""What a page knows of the runs of its robot: which is its own, and whether that still goes on."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+
+from tests.support.link_events import event
+from tiniscript import compile
+from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
+from tiniscript.link.outcomes import CANCELLED, Event, LostEvent, RestartedEvent, StartedEvent
+from tiniscript.link.payloads import DoneEvent, FaultEvent, ReceiptReply
+from tiniscript.link.requests import OK, Reply
+from tiniscript.studio.robot_link import RobotLink
+
+PROGRAM = 7
+LINE = compile("F(1, 50)").image.hex()
+ACTIONS = ("ask", "answer", "refuse", "other", "end", "lost", "restart")
+
+
+class Robot:
+    """A connection whose robot does what a test says: it runs one thing at a time."""
+
+    robot = None
+    boot = 1
+
+    def __init__(self) -> None:
+        self.events: list[Event] = []
+        self.run = 0  # the last one that has begun
+        self.runs_own: bool | None = None  # what goes on is the page's; None: nothing does
+        self.is_program = False
+        self.pending: PendingRequest[Any] | None = None
+
+    def enable_place_events(self) -> None:
+        """None come."""
+
+    def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
+        session = SimpleNamespace(
+            start=lambda: PendingRequest[Any](), live=lambda *_: PendingRequest[Any]()
+        )
+        self.pending = make(cast(Requester, session))
+        self.pending.starts = True
+        return self.pending
+
+    def event(self, limit_s: float) -> tuple[int, Event] | None:
+        return (0, self.events.pop(0)) if self.events else None
+
+    def ends(self, how: str) -> None:
+        """What runs ends so, or what has run: such a word comes late."""
+        self.runs_own = None
+        if how == "DONE":
+            self.events.append(DoneEvent(self.run))
+        elif how == "FAULT":
+            self.events.append(FaultEvent(self.run, 1, 0, PROGRAM))
+        else:
+            self.events.append(event("STOPPED") if how == "STOPPED" else LostEvent())
+
+    def begins(self, is_own: bool, look_at_end: Callable[[], object] | None = None) -> None:
+        """A run begins; the answer to who has started it may come after its end."""
+        self.run += 1
+        self.runs_own = is_own
+        if look_at_end is not None:
+            self.ends("DONE")
+            look_at_end()
+        if is_own and self.pending is not None:
+            fields = {**dict.fromkeys(ReceiptReply._fields, 0), "run": self.run}
+            self.pending.outcome = Reply(OK, 0, ReceiptReply(**fields))
+            self.pending = None
+        self.events.append(StartedEvent(self.run, PROGRAM))
+
+    def restarts(self) -> None:
+        if self.runs_own is not None:
+            self.events.append(RestartedEvent())
+        self.boot, self.run, self.runs_own = self.boot + 1, 0, None
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_page_leaves_its_own_run_alone_to_be_stopped(seed: int) -> None:
+    """Whatever runs began and ended before, by whomever, and whatever came late: what it has
+    started goes on until that ends, or something else begins."""
+    chance = random.Random(seed)
+    robot = Robot()
+    link = RobotLink(cast(LinkConnection, robot), "en")
+    own_programs, own_runs = set[tuple[int, int]](), 0
+    for number in range(120):
+        match chance.choice((*ACTIONS, "ask", "answer")):
+            case "ask" if robot.pending is None:
+                robot.is_program = chance.random() < 0.5
+                fields = {"do": "start"} if robot.is_program else {"do": "live", "image": LINE}
+                link.ask({"id": number, "robot": "tinibot", **fields})
+                link.news()
+            case "answer" if robot.pending is not None:
+                if chance.random() < 0.3:
+                    robot.ends(chance.choice(("STOPPED", "DONE")))  # that of the run before
+                look = chance.choice((lambda: None, link.news))
+                robot.begins(is_own=True, look_at_end=look if chance.random() < 0.3 else None)
+                if robot.is_program:
+                    own_programs.add((robot.boot, robot.run))
+            case "refuse" if robot.pending is not None:
+                robot.pending.outcome, robot.pending = Reply(CANCELLED), None
+            case "other":
+                robot.begins(is_own=False)
+            case "end":
+                robot.ends(chance.choice(("DONE", "FAULT", "STOPPED")))
+            case "lost" | "restart" as how:
+                link.news()  # what was told before it has come
+                robot.ends("LOST") if how == "lost" else robot.restarts()
+                link.news()  # nothing begins soon after it
+            case _:
+                continue
+        if chance.random() < 0.7:
+            boot_and_runs = [(robot.boot, one.run) for one in robot.events if one.name == "STARTED"]
+            told = [news["is_program"] for news in link.news() if news.get("event") == "STARTED"]
+            assert told == [run in own_programs for run in boot_and_runs]
+            assert link.has_run == (robot.pending is not None or robot.runs_own is True)
+            own_runs += robot.runs_own is True
+    assert own_runs
