@@ -15,7 +15,7 @@ from tests.support.casefile import ROOT
 from tests.support.needs import need
 from tiniscript.base.languages import SOURCE_LANGUAGE, languages, merged_catalogue, plural_text
 from tiniscript.flash import ready
-from tiniscript.studio import serving
+from tiniscript.studio import building, serving
 from tiniscript.studio.block_kinds import KINDS, PLAIN, SAYS
 from tiniscript.studio.serving import POLICY
 from tools import CannotMake
@@ -204,12 +204,33 @@ def test_the_same_sources_give_the_same_page(
         monkeypatch.setattr(studio, "run", packs)
     else:
         monkeypatch.setattr(studio, "bundle", lambda tools, target: brings("*.js", target))
-    monkeypatch.setattr(studio, "check_types", lambda tools: None)  # done when that one was built
+    change_sources_in(monkeypatch, "check_types")  # which was done when that one was built
     second_page = tmp_path / "page"
     studio.build(second_page)
     assert {path.name for path in second_page.iterdir()} == {path.name for path in page.iterdir()}
     for path in second_page.iterdir():
         assert path.read_bytes() == (page / path.name).read_bytes(), path.name
+
+
+def change_sources_in(monkeypatch: pytest.MonkeyPatch, step: str) -> None:
+    """Have somebody save a source while a build is at this step."""
+    monkeypatch.setattr(
+        studio, step, lambda *_: monkeypatch.setattr(building, "digest", lambda: "newer sources")
+    )
+
+
+@pytest.mark.parametrize("step", ["check_types", "bundle", "put_own_files", "write_service_worker"])
+def test_a_page_whose_sources_change_while_it_is_built_is_not_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
+) -> None:
+    (tmp_path / studio.STAMP).write_text("{}")
+    for name in ("check_types", "bundle", "put_own_files", "write_service_worker"):
+        monkeypatch.setattr(studio, name, lambda *_: None)
+    studio.build_again(tmp_path)
+    assert not studio.why_stale(tmp_path)
+    change_sources_in(monkeypatch, step)
+    studio.build_again(tmp_path)
+    assert "is out of date: the sources" in studio.why_stale(tmp_path)
 
 
 def test_a_page_of_other_sources_is_not_used(tmp_path: Path) -> None:
