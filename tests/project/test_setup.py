@@ -240,6 +240,16 @@ def test_the_shell_leaves_the_work_to_python(tmp_path: Path) -> None:
     assert completed.stdout == f"{tmp_path / 'tools' / 'environment.py'} [test]\n", completed.stderr
 
 
+@pytest.mark.parametrize("left", ["exit 1", "exit 127", "case $* in *pip*) exit 1;; esac; echo it"])
+def test_the_shell_leaves_an_environment_alone_that_cannot_install(
+    left: str, tmp_path: Path
+) -> None:
+    """Where its making was interrupted, or the system has another Python since."""
+    python = 'case "$*" in *environment*) echo python3;; esac'
+    completed = script(tmp_path, {"../.venv/bin/python": left, "python3": python})
+    assert completed.stdout == "python3\n", completed.stderr
+
+
 PYTHONS = ("python3", "python3.13", "python3.12", "python3.11", "python3.10", "python")
 
 
