@@ -239,6 +239,40 @@ def test_a_block_is_joined_near_its_place_and_stays_where_it_hangs_on_nothing(pa
     assert box_of(block(page, "forever")) == pytest.approx(place, abs=1)
 
 
+def test_a_block_with_room_takes_in_what_follows(page: Page) -> None:
+    """As it is shown before it is dropped; what already has something in it does not."""
+    before = "SI|F(2, 80);\nL(1, 60);\nBEEP(0.5, 440);\n"
+    start(page, before)
+    page.locator(".blocklyToolboxCategory", has_text="Repeat").click()
+    source = page.locator(FLYOUT).filter(has_text="times").first
+    source.wait_for()
+    held = box_of(source)
+    page.mouse.move(held["x"] + 8, held["y"] + 10)
+    page.mouse.down()
+    marker = page.locator(f"{PROGRAM} .blocklyInsertionMarker")
+    moves_and_beeps = ".move, .beep"
+    for above, taken in (("forward", 2), ("turn left", 1), ("beep", 0), ("forward", 2)):
+        page.mouse.move(700, 330, steps=8)  # away from all: nothing is lost
+        assert block(page, "when it starts").locator(moves_and_beeps).count() == 3
+        place = box_of(block(page, above))
+        page.mouse.move(place["x"] + 10, place["y"] + place["height"] + 8, steps=8)
+        assert marker.locator(moves_and_beeps).count() == taken
+    page.mouse.up()
+    wrapped = "SI|F(2, 80);\nLOOP(3);\n  L(1, 60);\n  BEEP(0.5, 440);\nEND_LOOP;\n"
+    becomes(page, wrapped)
+    page.click("#undo")
+    becomes(page, before)
+    page.click("#redo")
+    becomes(page, wrapped)
+    place, top = box_of(block(page, "times")), box_of(block(page, "when it starts"))
+    page.mouse.move(place["x"] + 8, place["y"] + 12)
+    page.mouse.down()
+    page.mouse.move(place["x"] + 30, place["y"] + 40, steps=4)
+    page.mouse.move(top["x"] + 8, top["y"] + top["height"] + 8, steps=8)
+    page.mouse.up()
+    becomes(page, "SI|LOOP(3);\n  L(1, 60);\n  BEEP(0.5, 440);\nEND_LOOP;\nF(2, 80);\n")
+
+
 def test_a_block_that_hangs_on_nothing_is_kept(page: Page) -> None:
     drag(page, "Move", "forward", None)
     becomes(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")

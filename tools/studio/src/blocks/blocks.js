@@ -15,6 +15,7 @@ import { Search } from './search.js';
 import { getOptions } from './styles.js';
 import { findItems, levelOf, makeToolbox } from './toolbox.js';
 import { RunFollower } from './sight.js';
+import { Previewer } from './wrapping.js';
 import { makeZoomButtons } from './zoom.js';
 import { text, textsOf } from '../page/texts.js';
 
@@ -95,6 +96,7 @@ export class Blocks {
     this.#listener = listener;
     this.#level = level;
     Blockly.registry.register(Blockly.registry.Type.CONNECTION_CHECKER, 'tiniscript', Checker, true);
+    Blockly.registry.register(Blockly.registry.Type.CONNECTION_PREVIEWER, 'tiniscript', Previewer, true);
     Object.assign(Blockly.config, { snapRadius: SNAP_RADIUS, connectingSnapRadius: STAY_RADIUS });
     this.#removeBlocklyActions();
     if (listener) {
@@ -213,7 +215,7 @@ export class Blocks {
     defineBlocks();
     const workspace = withoutSound(() => Blockly.inject(this.#container, {
       ...this.#options,
-      plugins: { connectionChecker: 'tiniscript' },
+      plugins: { connectionChecker: 'tiniscript', connectionPreviewer: 'tiniscript' },
       ...(this.#listener ? { toolbox: this.#makeToolbox() } : {}),
       trashcan: Boolean(this.#listener) && !isNarrow,
       comments: false,

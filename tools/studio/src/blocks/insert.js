@@ -12,10 +12,15 @@ function stackBlockAround(block) {
   return ancestor;
 }
 
-/** @param {BlockSvg} block @returns {Blockly.Connection | null} what is in it, where that is empty */
-function emptyConnectionIn(block) {
-  const input = block.inputList.find(({ connection }) => connection?.type === Blockly.ConnectionType.NEXT_STATEMENT);
-  return input?.connection && !input.connection.isConnected() ? input.connection : null;
+/** @param {Blockly.Block} block @returns {Blockly.Connection | null} what is in it begins there */
+export function bodyConnectionOf(block) {
+  return block.inputList.find(({ connection }) => connection?.type === Blockly.ConnectionType.NEXT_STATEMENT)?.connection ?? null;
+}
+
+/** @param {Blockly.Block} block @returns {Blockly.Connection | null} the same, where that is empty */
+export function emptyConnectionIn(block) {
+  const connection = bodyConnectionOf(block);
+  return connection?.isConnected() ? null : connection;
 }
 
 /** @param {BlockSvg} block @param {BlockSvg} value a value @returns {Blockly.Connection | null} the first of its places that the value fits in and nobody has filled */
@@ -60,6 +65,9 @@ export function insert(listBlock, workspace, focusedBlock) {
     block.dispose();
     return null;
   }
+  const followingConnection = connection.targetBlock()?.previousConnection; // which no new block takes in that keys put there
+  followingConnection?.disconnect();
   connection.connect(blockConnection);
+  if (followingConnection) block.nextConnection?.connect(followingConnection);
   return block;
 }
