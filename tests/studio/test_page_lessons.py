@@ -192,7 +192,9 @@ def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
 
 
 # How high a page of a step is at least, by the size of the screen.
-PAGES = {(1366, 768): 500, (1024, 600): 280, (390, 844): 200, (844, 390): 150}
+PAGES = {
+    (1366, 768): 500, (1024, 600): 280, (390, 844): 260, (320, 640): 150, (844, 390): 150,
+}  # fmt: skip
 
 
 @pytest.mark.long

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.support.page_blocks import PROGRAM, box_of, start
 from tests.support.page_robot import wait_for_running
 from tests.support.studio import (
     SETTLED,
@@ -244,6 +245,37 @@ def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> 
     speak(page, "en" if language != "en" else "es")  # blocks are made anew
     shown(page)
     assert rows.first.evaluate("e => e.getBoundingClientRect().height") < 60
+
+
+@drawn
+@pytest.mark.parametrize("language", ["en", "es", "pt"])
+def test_moves_and_messages_of_a_phone_are_seen_whole(pages: Pages, language: str) -> None:
+    """Under one row of buttons, however narrow it is: a move has a second row where it needs one,
+    and no scrollbar lies over what a message says."""
+    for size in ((390, 844), (360, 740), (320, 640)):
+        page = pages.open(viewport={"width": size[0], "height": size[1]})
+        speak(page, language)
+        start(page, "SI|F(0.5, 60);\nB(0.5, 60);\nLOOP(2);\n  F(2, 80);\n  R(1, 60);\nEND_LOOP;\n")
+        rows = page.locator("#views > :is(button, select)").evaluate_all(
+            "all => all.map((e) => e.getBoundingClientRect().toJSON())"
+        )
+        assert len({row["top"] for row in rows}) == 1 and rows[-1]["right"] <= size[0]
+        edge = page.evaluate("blocks.getBoundingClientRect().right")
+        if size == (320, 640):
+            continue  # a loop's longest words are wider there
+        for move in page.locator(f"{PROGRAM} .move").all():
+            assert box_of(move)["right"] <= edge, (size, move.text_content())
+        if size != (390, 844):
+            continue  # a lower one has its messages in the list alone
+        start(
+            page, "SI|F(2, 80);\nLOOP(FOREVER);\n  IF(DISTANCE < X);\n    S;\n  ENDIF;\nEND_LOOP;\n"
+        )
+        bubble = page.locator("#blocks .blocklyBubble rect").first
+        bubble.wait_for()
+        page.evaluate(SETTLED)
+        said = bubble.evaluate("e => e.getBoundingClientRect().toJSON()")
+        bar = page.locator("#blocks .blocklyMainWorkspaceScrollbar.blocklyScrollbarVertical")
+        assert 0 < said["right"] <= bar.evaluate("e => e.getBoundingClientRect().left")
 
 
 # What can be tapped and lies under STOP; what is scrolled away at the top lies under nothing.

@@ -33,7 +33,8 @@ import { text, textsOf } from '../page/texts.js';
 
 const NARROW_PX = 700; // pixels of width, below which questions are folded
 const START_SCALE = 0.75; // at which letters are 12 pixels high, and what is pressed is 24
-const MOST_TIP_CHARACTERS = 30; // about so many characters are in a line of a message at a block
+const MOST_TIP_CHARACTERS = 36; // so many characters are in a line of a message at a block,
+const MOST_NARROW_TIP_CHARACTERS = 28; // and so many on a phone
 const SNAP_RADIUS = 48; // units of a workspace: how far off a block may be dropped
 const STAY_RADIUS = 68; // the same while it is shown where it would go
 const NOTCH_HEIGHT = 8; // of a block, in the one below it
@@ -566,7 +567,7 @@ export class Blocks {
     const [firstPlace] = places.length || isBelow || !fitsBeside ? places : [{ top: blockBounds.top, edge: blockBounds.right }];
     /** @type {any} */ (bubble).setAnchorLocation(new Coordinate(blockBounds.right, (blockBounds.top + blockBounds.bottom) / 2)); // else its line would go across the block
     if (firstPlace) bubble.moveDuringDrag(new Coordinate(firstPlace.edge + BUBBLE_GAP_BESIDE, firstPlace.top));
-    else if (isBelow) bubble.moveDuringDrag(new Coordinate(stackBounds.left, stackBounds.bottom + BUBBLE_GAP_BELOW));
+    else if (isBelow) bubble.moveDuringDrag(new Coordinate(Math.max(view.left, Math.min(stackBounds.left, view.left + view.width - bubbleBounds.getWidth())), stackBounds.bottom + BUBBLE_GAP_BELOW));
     return Boolean(firstPlace) || isBelow;
   }
 
@@ -642,9 +643,10 @@ function keepSmallStacksSeen(workspace) {
   }
 }
 
-/** @param {string} message */
+/** Fills each line: Blockly makes all about equal, and as long as it likes. @param {string} message */
 function wrapLines(message) {
-  return Blockly.utils.string.wrap(message, MOST_TIP_CHARACTERS);
+  const mostCharacters = innerWidth < NARROW_PX ? MOST_NARROW_TIP_CHARACTERS : MOST_TIP_CHARACTERS;
+  return message.replace(new RegExp(`(.{1,${mostCharacters}})(?:[ \\n]+|$)`, 'g'), '$1\n').trimEnd();
 }
 
 /** In a list of blocks to take there is nothing else: where they would be joined is no part of it. @param {SVGElement | undefined} list */

@@ -28,7 +28,8 @@ export function setNewPieces(pieces) {
 }
 
 const FOLDED_KINDS = ['compare', 'logic', 'motors', 'move_until', 'random', 'round', 'extreme'];
-const LONG_WORD_CHARACTERS = 9; // letters of a move: with more it is folded, too
+const MOVE_PX = 335; // pixels of the page's width that a move takes without its word, the groups beside it,
+const LETTER_PX = 8; // and for each letter of its word: where there are fewer it is folded, too
 let isNarrow = false;
 
 /** @param {boolean} isNarrowNow long blocks have their second half below the first from now on: on a phone they are not seen side by side */
@@ -171,7 +172,7 @@ function buildBlock(block, kind, blockKind) {
     firstWordField?.setValidator((word) => {
       unit.forceRerender();
       arrow?.forceRerender();
-      if (kind === 'move') setFolded(block, isNarrow && blockLabel(word).length > LONG_WORD_CHARACTERS);
+      if (kind === 'move') setFolded(block, isNarrow && innerWidth < MOVE_PX + LETTER_PX * blockLabel(word).length);
     });
   }
   if (kind === 'set') firstWordField?.setValidator((word) => fillPlaces(block, kind, blockKind.values, word));
