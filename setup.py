@@ -1,4 +1,4 @@
-"""What `pyproject.toml` cannot say.
+"""The parts of packaging that `pyproject.toml` cannot express.
 
 A wheel brings the firmware's sources and the texts of each language, and nothing stale. One without
 the studio's page, firmware that is ready or the cases of `tsc doctor --conform` says so; in a
@@ -26,8 +26,8 @@ from setuptools.command.sdist import sdist
 
 ROOT = Path(__file__).resolve().parent
 PROJECT = ROOT / "vm_arduino"
-INSIDE = Path("tiniscript") / "flash" / "vm_arduino"  # where tsc firmware looks for them
-# What a wheel should have, and nobody keeps in git: a file of it, and the module that makes it.
+INSIDE = Path("tiniscript") / "flash" / "vm_arduino"  # where tsc firmware looks for the sources
+# Generated parts of a wheel that are not in git: a file of each, and the module that makes it.
 MADE = {
     "the studio's page": ("tiniscript/studio/page/index.html", "tools.builds.studio"),
     "firmware that is ready": ("tiniscript/flash/ready/*.hex", "tools.builds.firmware_files"),
@@ -40,14 +40,14 @@ PYTHON = ROOT / ".venv" / ("Scripts/python.exe" if os.name == "nt" else "bin/pyt
 
 
 def sources() -> list[Path]:
-    """Return what a build of the firmware needs; `own.h` is the robot of whoever has made it."""
+    """Return the files for building the firmware; `own.h` belongs to the user's own robot."""
     files = sorted((PROJECT / "src").rglob("*"))
     found = [PROJECT / "platformio.ini", PROJECT / "partitions.csv", *files]
     return [path for path in found if path.is_file() and path.name != "own.h"]
 
 
 def missing(package: Path) -> list[str]:
-    """Return what of MADE is not in a folder."""
+    """Return the parts of MADE that a folder lacks."""
     return [what for what, (file, _) in MADE.items() if not any(package.glob(file))]
 
 
@@ -58,7 +58,7 @@ def is_made_into_texts(path: Path) -> bool:
 
 
 def build_page() -> None:
-    """Let the clone's tsc build the page, which says how much it fetches, and asks.
+    """Build the page with the clone's tsc, which states the download size and asks.
 
     pip gives no terminal: whoever installs from a clone is not asked.
     """
@@ -68,7 +68,7 @@ def build_page() -> None:
 
 
 def tell(lacks: list[str]) -> None:
-    """Say what a wheel is made without, and how to make one that has it; or that it has all."""
+    """Print the parts that a wheel lacks, and how to include them; or that it is complete."""
     if not lacks:
         has = " and ".join(MADE)
         print(f"tiniscript: this wheel has {has}.", file=sys.stderr, flush=True)
@@ -98,7 +98,8 @@ class Build(build_py):
             for target, data in self._catalogues().items():
                 target.parent.mkdir(parents=True, exist_ok=True)
                 target.write_bytes(data)
-            atexit.register(tell, missing(Path(self.build_lib)))  # below all that setuptools says
+            # Below all the output of setuptools.
+            atexit.register(tell, missing(Path(self.build_lib)))
 
     def _copies(self) -> dict[Path, Path]:
         inside = Path(self.build_lib) / INSIDE
@@ -157,7 +158,7 @@ class Sources(sdist):
 
 
 def found_in(name: str, pattern: str) -> str:
-    """Return what a line of a file names, or nothing."""
+    """Return the text that a pattern captures in a file, or ""."""
     found = re.search(pattern, (ROOT / name).read_text(encoding="utf-8"), re.MULTILINE)
     return found.group(1) if found else ""
 

@@ -14,22 +14,22 @@ from pathlib import Path
 import pytest
 
 from tests.machines.host import USER
-from tests.machines.uno import needed
+from tests.machines.uno import skip_unless_available
 from tests.support import order, sampling
 from tests.support.command import PROGRAM, Command, Tsc
-from tests.support.platformio import firmware, shared
+from tests.support.platformio import firmware, shared_folder
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
 
-# Hypothesis keeps what it has found, not in the repository.
+# Hypothesis stores its findings outside of the repository.
 os.environ.setdefault(
     "HYPOTHESIS_STORAGE_DIRECTORY", str(Path(tempfile.gettempdir()) / "tiniscript-hypothesis")
 )
-# What PlatformIO has compiled once it takes again for the same source, options and compiler.
+# PlatformIO reuses its objects for the same source, options and compiler.
 os.environ.setdefault(
     "PLATFORMIO_BUILD_CACHE_DIR", str(Path(tempfile.gettempdir()) / f"tiniscript-platformio-{USER}")
 )
-UNSEEN = itertools.count()  # folders of tests that have none of their own
+UNSEEN = itertools.count()  # folders without tests of their own
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -40,7 +40,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """In CI what will stop working is a failure: of pytest, and of Python in our own code.
+    """In CI, deprecations of pytest and in our own code are failures.
 
     What is collected stays: looking for garbage in it would take two of five seconds.
     """
@@ -73,7 +73,7 @@ def pytest_terminal_summary(
 
 
 def pytest_sessionstart() -> None:
-    """Let Ctrl-C mean what it means to a person.
+    """Restore the usual effect of Ctrl-C.
 
     A shell that starts the tests in the background has it ignored, and so would every command
     that a test starts and stops.
@@ -89,13 +89,14 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    """In CI a test that is skipped is a failure: there everything is to be had."""
+    """In CI, skipped tests are failures, because everything is installed there."""
     reporter = session.config.pluginmanager.get_plugin("terminalreporter")
-    if reporter is None or not os.environ.get("CI"):  # a worker has none: its reports come to one
+    # A worker has none, because one process gets all reports.
+    if reporter is None or not os.environ.get("CI"):
         return
-    skipped = [report.nodeid for report in reporter.stats.get("skipped", [])]
-    if skipped:
-        reporter.write_line(f"\nskipped in CI: {', '.join(skipped)}")
+    skipped_tests = [report.nodeid for report in reporter.stats.get("skipped", [])]
+    if skipped_tests:
+        reporter.write_line(f"\nskipped in CI: {', '.join(skipped_tests)}")
         session.exitstatus = session.exitstatus or pytest.ExitCode.TESTS_FAILED
 
 
@@ -143,12 +144,14 @@ def program(tmp_path: Path) -> Path:
 
 @pytest.fixture(scope="session")
 def sketches(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
-    """Return what builds the firmware of an environment of PlatformIO, once."""
-    needed()
+    """Return a builder of PlatformIO environments that builds each once."""
+    skip_unless_available()
 
     @lru_cache
     def sketch(environment: str) -> Path:
-        return firmware(environment, tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
+        return firmware(
+            environment, tmp_path_factory.mktemp("sketch"), shared_folder(tmp_path_factory)
+        )
 
     return sketch
 
@@ -160,7 +163,7 @@ def sketch(sketches: Callable[[str], Path]) -> Path:
 
 @pytest.fixture
 def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nobody waits long for a robot that will not answer."""
+    """Shorten the waits for a robot that will not answer."""
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 800)
     monkeypatch.setattr("tiniscript.library.opening.CABLE_ANSWER_TIMEOUT_MS", 800)
     monkeypatch.setattr("tiniscript.library.opening.LONG_QUIET_S", 0.1)

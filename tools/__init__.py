@@ -1,4 +1,4 @@
-"""What developers run. Knows where the repository is, and puts its package on the path."""
+"""Tools for developers. Knows the repository, and adds its package to the path."""
 
 import sys
 from pathlib import Path
@@ -8,4 +8,4 @@ sys.path[:0] = [str(ROOT / "compiler")]
 
 
 class CannotMake(RuntimeError):
-    """Something is missing or wrong; says what, and what to do."""
+    """Raised if something is missing or wrong, with the remedy."""

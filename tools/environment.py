@@ -14,7 +14,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 NEEDED_VERSION = (3, 10)
-LANGUAGES = ("en", "es", "pt")  # of the sentences, in this order
+LANGUAGES = ("en", "es", "pt")  # the order of languages in SENTENCES
 TEXTS = {
     "old": (
         "TiniScript needs Python 3.10 or newer; this is {version}. {get}",
@@ -91,7 +91,7 @@ def say(line: str) -> None:
 def make(extras: str, root: Path = ROOT) -> Path:
     """Install this folder with extras such as `[test]`, if anything changed since.
 
-    Returns the interpreter. Exits with a sentence where it does not work.
+    Returns the interpreter. Exits with a sentence if it does not work.
     """
     check_version(sys.version_info[:2])
     python = python_of(root / ".venv")
@@ -118,7 +118,7 @@ def make(extras: str, root: Path = ROOT) -> Path:
             "--quiet",
             "--disable-pip-version-check",
         ]
-        # Python compiles what it imports, a third of what there is.
+        # Python compiles the imported modules, a third of all.
         pip_command += ["--no-input", "--no-compile", "--editable", f"{root}{extras}"]
         process = subprocess.run(
             pip_command,
@@ -165,7 +165,7 @@ def _make_empty(folder: Path) -> None:
 def _runs(python: Path, *arguments: str) -> bool:
     try:
         return not subprocess.run([str(python), *arguments], capture_output=True).returncode
-    except OSError:  # there is none
+    except OSError:  # the file does not exist
         return False
 
 

@@ -39,7 +39,7 @@ from tiniscript.diagnostics.codes import CODES
 from tiniscript.recovery.meanings import plain
 from tools.translation_files import Translation, about_text, print_problems
 
-PSEUDO = "qps"  # by custom: no language has this code
+PSEUDO = "qps"  # conventional code for a pseudo-language
 ROBOT_SIGNS = 40
 # Kinds of a lexicon that English has no word of: what its commands are short for is English.
 NOT_IN_ENGLISH = ("short", "initial", "turtle")
@@ -66,7 +66,7 @@ def sources() -> dict[str, Catalogue]:
 
 
 def names() -> Catalogue:
-    """Return the catalogue of what is said in other TOML files of the package, each text once."""
+    """Return the catalogue of the texts in other TOML files of the package, each text once."""
     catalogue = Catalogue()
     for folder in ("robots", "virtual/worlds", "lessons"):
         for path in sorted((FOLDER.parent / folder).rglob("*.toml")):
@@ -94,7 +94,7 @@ def pseudo(source: Catalogue) -> Catalogue:
     """Return the English texts with translations that are a third longer and have accents."""
     catalogue = Catalogue()
     for text_key, entry in source.entries.items():
-        forms = {name: _lengthened(form) for name, form in entry.forms.items()}
+        forms = {name: _lengthen(form) for name, form in entry.forms.items()}
         forms = entry.forms if entry.is_same and not entry.same_text_key else forms
         catalogue.entries[text_key] = Entry(
             *text_key, entry.plural, forms, entry.hash, is_same=entry.is_same
@@ -102,7 +102,7 @@ def pseudo(source: Catalogue) -> Catalogue:
     return catalogue
 
 
-def _lengthened(text: str) -> str:
+def _lengthen(text: str) -> str:
     """Return a text with accents outside of its gaps, and with more words in its last line."""
     parts = re.split(r"(\{[^{}]*\}|`[^`]*`)", text)
     parts[::2] = [part.translate(ACCENTS) for part in parts[::2]]
@@ -125,7 +125,7 @@ def make_pseudo(english: dict[str, Catalogue]) -> None:
 
 
 def check_robot(robot_catalogue: Catalogue) -> Iterator[Problem]:
-    """What a robot cannot say in its few bytes."""
+    """Yield the texts that a robot cannot store in its few bytes."""
     for entry in robot_catalogue.entries.values():
         for form in (entry.translation or entry.forms).values():
             if not form.isascii() or len(form) > ROBOT_SIGNS:
@@ -200,7 +200,7 @@ def main() -> int:
 def update_language(
     language: str, english: dict[str, Catalogue], is_check: bool, seen_patterns: list[str] | None
 ) -> int:
-    """Bring a language in step, and say what is wrong with it; return how much that is.
+    """Update a language, and print its problems; return their number.
 
     `seen_patterns` are those of the keys whose stale translations somebody has looked at; without
     them no text is noted as seen.
@@ -214,15 +214,17 @@ def update_language(
     if not is_check:
         for gone_key in translation.follow_moved_texts():
             print(f"languages/{language}/{gone_key}: its English text is gone, and so it goes")
-        for unused in translation.note_seen(seen_patterns) if seen_patterns is not None else []:
-            print(f"{language}: there is no translation with the key {unused}")
+        for unused_text in (
+            translation.note_seen(seen_patterns) if seen_patterns is not None else []
+        ):
+            print(f"{language}: there is no translation with the key {unused_text}")
             problem_count += 1
         translation.write()
     return problem_count + report(translation)
 
 
 def _heading(language: str) -> str:
-    """Return what a new language says of itself, without Babel nearly nothing."""
+    """Return the heading of a new language, which is nearly empty without Babel."""
     try:
         from tools.translators import language_facts
     except ImportError:
@@ -241,7 +243,7 @@ def missing_rows(entries: Iterable[Entry]) -> Iterator[tuple[int, str]]:
 
 
 def report(translation: Translation) -> int:
-    """Say what is wrong with a language, and how much of it is there; return what must not be."""
+    """Print the problems of a language, and its completeness; return the number of errors."""
     problem_count = sum(print_problems(path, problems) for path, problems in translation.problems())
     for path in sorted(translation.folder.glob("*.toml")):
         if path.name != ABOUT_FILE and path.stem not in translation.english:

@@ -1,4 +1,4 @@
-"""What `--fix` makes of wrong programs: `python -m tools.meant FOLDER` prints two figures.
+"""The effect of `--fix` on wrong programs: `python -m tools.meant FOLDER` prints two figures.
 
 The folder has programs, `NAME.ts`, and beside those whose meaning is known what was meant,
 `NAME.meant.ts`. A program that is right after `--fix` and does something else than that is harmful.
@@ -22,7 +22,7 @@ MEANT_SUFFIX = ".meant.ts"
 
 
 class Figures(NamedTuple):
-    """`known_count` counts the programs of which it is known what they mean."""
+    """`known_count` counts the programs whose meaning is known."""
 
     program_count: int = 0
     right_count: int = 0

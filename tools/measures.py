@@ -24,31 +24,33 @@ Import = ast.Import | ast.ImportFrom
 
 
 def main() -> int:
-    tracked = _tracked_files()
-    package_paths = [path for path in tracked if PACKAGE in path.parents and path.suffix == ".py"]
-    tests = [path for path in tracked if ROOT / "tests" in path.parents]
+    tracked_paths = _tracked_files()
+    package_paths = [
+        path for path in tracked_paths if PACKAGE in path.parents and path.suffix == ".py"
+    ]
+    tests = [path for path in tracked_paths if ROOT / "tests" in path.parents]
     trees = {_import_name(path): ast.parse(path.read_bytes()) for path in package_paths}
     graph = _import_graph(trees)
     indented_count = sum(
         is_indented for tree in trees.values() for _, is_indented in _imports(tree)
     )
     for label, count in (
-        ("tracked lines", _line_count(tracked)),
-        ("tracked files", len(tracked)),
+        ("tracked lines", _line_count(tracked_paths)),
+        ("tracked files", len(tracked_paths)),
         ("Python of the package, lines", _line_count(package_paths)),
         ("tests, lines", _line_count(tests)),
         ("modules of the package", len({_module_name(name) for name in graph} - {""})),
         ("arrows between them", sum(map(len, arrows(graph).values()))),
         ("circles of files", len(circles(graph))),
         ("imports that are indented", indented_count),
-        ("words of documents, by hand", _word_count(tracked)),
+        ("words of documents, by hand", _word_count(tracked_paths)),
     ):
         print(f"{label:38}{count:9,}")
     return 0
 
 
 def arrows(graph: Graph) -> Graph:
-    """Return which modules each module imports."""
+    """Return the modules that each module imports."""
     arrows_of_module: Graph = {}
     for name, targets in graph.items():
         module_targets = arrows_of_module.setdefault(_module_name(name), set())
@@ -66,7 +68,7 @@ def direct(arrows: Graph) -> Graph:
 
 
 def imports_of(paths: Iterable[Path]) -> Graph:
-    """Return which of some files of the package each of them imports."""
+    """Return the imports of some files of the package."""
     return _import_graph({_import_name(path): ast.parse(path.read_bytes()) for path in paths})
 
 
@@ -95,8 +97,10 @@ def _tracked_files() -> list[Path]:
     ]  # fmt: skip
 
 
-def _word_count(tracked: list[Path]) -> int:
-    """Count those of documents without the spec, the changelog, lessons, cases and what is made."""
+def _word_count(tracked_paths: list[Path]) -> int:
+    """Count the words of documents without the spec, the changelog, lessons, cases and generated
+    text.
+    """
     not_counted = (
         ROOT / "bytecode_spec.md",
         ROOT / "CHANGELOG.md",
@@ -104,7 +108,7 @@ def _word_count(tracked: list[Path]) -> int:
         ROOT / "tests" / "cases",
     )
     count = 0
-    for path in tracked:
+    for path in tracked_paths:
         if path.suffix == ".md" and not {path, *path.parents} & set(not_counted):
             text = path.read_text(encoding="utf-8")
             text = "" if text.startswith("<!-- Generated") else text
@@ -160,13 +164,13 @@ def circles(graph: Graph) -> set[frozenset[str]]:
 
 
 def _reachable(graph: Graph, start: str) -> set[str]:
-    reached: set[str] = set()
+    reached_names: set[str] = set()
     names_left = [start]
     while names_left:
-        new = graph[names_left.pop()] - reached
-        reached |= new
+        new = graph[names_left.pop()] - reached_names
+        reached_names |= new
         names_left += new
-    return reached
+    return reached_names
 
 
 if __name__ == "__main__":

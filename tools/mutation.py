@@ -7,7 +7,7 @@ What was tried is kept in the cache folder, so an interrupted run goes on. Exit 
 survived.
 
 A survivor gets a test, and a row in `tests/project/known_mutants.py`, which CI tries; or a
-row in `tools/equivalent_mutants.json`, where nothing can notice it. Knows how the languages
+row in `tools/equivalent_mutants.json`, if nothing can notice it. Knows how the languages
 are written here (formatters put blanks around binary operators), not what the code does.
 """
 
@@ -37,11 +37,11 @@ from tiniscript.base.files import cache_folder
 from tools import ROOT
 
 TEST_LIMIT_S = 300  # processor time of the tests of one mutant: an endless loop is noticed, too
-WAIT_LIMIT_S = 1800  # for what waits and does not work
+WAIT_LIMIT_S = 1800  # time limit for a process that makes no progress
 MUTANTS_AT_ONCE = 2
 NODE_MODULES = Path("tools/studio/node_modules")
 FAILED_TEST = re.compile(r"(?:FAILED|ERROR) (\S+?\.py(?:::\w+)*(?:\[.*?\](?= - |$))?)")
-# What is a person's own, or being written.
+# Files of a person, or being written.
 NOT_COPIED = (".git", ".venv", ".*_cache", ".pio", "*.pyc.*", "node_modules", "own.h", "ready")
 
 _CPP, _PY, _JS = "vm_arduino/src", "compiler/tiniscript", "tools/studio/src"
@@ -107,7 +107,7 @@ class Mutant(NamedTuple):
 
 # -- mutation operators ----------------------------------------------------------------------------
 
-Edit = tuple[int, int, str]  # from, to, what comes there
+Edit = tuple[int, int, str]  # start, end and replacement
 
 SHARED_OPERATORS = {
     "<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "+": "-", "-": "+",
@@ -133,7 +133,7 @@ STATEMENT = re.compile(
     r"|[A-Za-z][\w:<>]* [*&]?\w+(?: =|;|\{))[#\w*].*;$",
     re.M,
 )
-# Strings, comments, directives, and in JavaScript templates and patterns: what is in them stays.
+# Strings, comments, directives, and in JavaScript templates and patterns: their contents stay.
 _STRING = r"\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*'"
 _COMMENT = r"//[^\n]*|/\*.*?\*/"
 _ITEM = r"\\.|\[(?:[^\]\\\n]|\\.)*\]"
@@ -160,7 +160,7 @@ def braces_edits(text: str, suffix: str) -> Iterator[Edit]:
 
 
 def _closing_bracket(text: str, offset: int) -> int:
-    """Return where the bracket closes that opened right before `offset`."""
+    """Return the place of the bracket that closes the one before `offset`."""
     depth = 1
     while depth:
         depth += {"(": 1, ")": -1}.get(text[offset], 0)
@@ -181,7 +181,7 @@ def python_edits(text: str) -> Iterator[Edit]:
     """Yield the edits of a text in Python. Imports, heads and annotations stay."""
     line_offsets = [0, *accumulate(len(tokens) for tokens in text.splitlines(keepends=True))]
     tokens: list[tokenize.TokenInfo] = []
-    depth = 0  # in a class without functions nothing happens but declarations
+    depth = 0  # a class without functions contains only declarations
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type in (tokenize.COMMENT, tokenize.NL, tokenize.INDENT, tokenize.DEDENT):
             depth += (token.type == tokenize.INDENT) - (token.type == tokenize.DEDENT)
@@ -234,7 +234,7 @@ EDITS: dict[str, Callable[[str], Iterator[Edit]]] = {
 
 
 def equivalent_mutants() -> dict[tuple[str, str, str], str]:
-    """Return why nothing can notice a mutant: of this file, of this line, that becomes this."""
+    """Return the reasons why mutants are equivalent: by file, line and replacement."""
     json_text = Path(__file__).with_name("equivalent_mutants.json").read_text("utf-8")
     rows: dict[str, list[tuple[str, str, str]]] = json.loads(json_text)
     return {
@@ -313,7 +313,7 @@ class Copy:
     def __init__(self, folder: Path, *, is_first_tier: bool = False) -> None:
         self.folder = folder
         self.tier = ["-m", "not long"] if is_first_tier else []
-        # With what Python has compiled of these files, and the built page.
+        # Includes Python's bytecode of these files, and the built page.
         shutil.copytree(
             ROOT,
             folder,
@@ -325,17 +325,17 @@ class Copy:
             (folder / NODE_MODULES).symlink_to(ROOT / NODE_MODULES)
 
     def try_mutant(self, mutant: Mutant) -> str:
-        """Return what the tests of its module say of a mutant: what fails, or nothing."""
+        """Return the first failure of the module's tests with a mutant, or ""."""
         failure = self.find_noticing_test(mutant, tests_of(mutant.file))
         match = FAILED_TEST.match(
             failure
-        )  # one that fails without the mutant, too, notices nothing
+        )  # a test that also fails without the mutant proves nothing
         if match and (why := self.first_failure([match[1]], is_page=mutant.file.endswith(".js"))):
             return f"undecided, without it, too: {why}"
         return failure
 
     def find_noticing_test(self, mutant: Mutant, tests: Sequence[str]) -> str:
-        """Return which test notices a mutant, or nothing."""
+        """Return a test that notices a mutant, or ""."""
         path = self.folder / mutant.file
         original_bytes, status = path.read_bytes(), path.stat()
         path.write_text(mutant.changed_text, encoding="utf-8")
@@ -347,10 +347,10 @@ class Copy:
             os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
 
     def first_failure(self, tests: Sequence[str], *, is_page: bool = False) -> str:
-        """Return what fails first of the tests, or nothing."""
+        """Return the first failure of the tests, or ""."""
         if is_page and (why := self._run_python(["-m", "tools.builds.studio", "--again"])):
             return f"the build: {why}"
-        # A size, and what is generated or built, notice any change.
+        # Tests of sizes, and of generated or built files, notice any change.
         test_filter = "not keeps_to_its_size and not generated and not same_page"
         pytest_arguments = [
             "-q",
@@ -379,7 +379,7 @@ class Copy:
         try:
             output, _ = process.communicate(timeout=WAIT_LIMIT_S)
         except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGKILL)  # and robots that its tests have started
+            os.killpg(process.pid, signal.SIGKILL)  # includes robots started by its tests
             process.communicate()
             return "it does not end"
         if process.returncode in (0, -signal.SIGKILL):
@@ -426,7 +426,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _code_hash() -> str:
-    """Return which code is tried: results of other code say nothing."""
+    """Return the hash of the tested code: results of other code do not count."""
     command = ["sh", "-c", "git rev-parse HEAD; git diff HEAD"]
     return hashlib.sha256(subprocess.check_output(command, cwd=ROOT)).hexdigest()[:12]
 

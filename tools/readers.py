@@ -1,4 +1,4 @@
-"""Who reads a wrong program: `python -m tools.readers 'SI|REPEAT 4;F(1, 50);END'`.
+"""The readers of a wrong program: `python -m tools.readers 'SI|REPEAT 4;F(1, 50);END'`.
 
 Follows a text through `recovery.told`: each reader that finds something, what the lines that it
 reads as a whole become step by step, the codes that this is told with, and what people are told in
@@ -26,11 +26,11 @@ from tiniscript.recovery.told import MOST_ROUNDS, READERS, WrongText
 WHOLE_LINE_READERS = (
     "_sure_findings",
     "_likely_findings",
-)  # the readers that ask `search` what was meant
+)  # the readers that ask `search` for a meaning
 
 
 def trace(text: str) -> Iterator[str]:
-    """Give lines on who reads a text, round by round, and on what is said about it."""
+    """Yield lines about the readers of a text, round by round, and their messages."""
     kit = robot_of(text.encode(), robots.load(robots.DEFAULT)).kit
     text_left = text
     for _ in range(MOST_ROUNDS):
@@ -63,17 +63,17 @@ def trace(text: str) -> Iterator[str]:
 
 
 def _line_changes(old_text: str, change: LineChange, kit: Kit) -> Iterator[str]:
-    """Give lines on what a line of the text becomes, step by step."""
+    """Yield lines about the changes of a text's line, step by step."""
     for step in change.steps:
         yield f"  {_tokens_text(step.old_tokens)}  ->  {_tokens_text(step.new_tokens)}"
         yield f"    by {describe_row(step, kit)}"
     tokens = change.steps[-1].new_tokens if change.steps else lexemes(old_text)
     tokens_with_ends = lexemes(change.text)
-    before, after = (
+    lexemes_before, lexemes_after = (
         line_lexemes[len(setup_of(line_lexemes)) :] for line_lexemes in (tokens, tokens_with_ends)
     )
-    if texts(before) != texts(after):
-        yield f"  {_tokens_text(before)}  ->  {_tokens_text(after)}"
+    if texts(lexemes_before) != texts(lexemes_after):
+        yield f"  {_tokens_text(lexemes_before)}  ->  {_tokens_text(lexemes_after)}"
         yield "    by blocks.py, which gives each block its end"
 
 

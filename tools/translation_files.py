@@ -23,7 +23,7 @@ from tiniscript.base.translations import (
     without_translation,
 )
 
-LIST_COLUMNS = 100  # of a list in one row
+LIST_COLUMNS = 100  # most columns of a list in one row
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _ESCAPES = {
     "\\": "\\\\",
@@ -38,7 +38,7 @@ SEEN_NOTE = "# Of which English text each is a translation: python -m tools.lang
 
 
 class Translation:
-    """What a language has of the English texts, `english` by the names of their files."""
+    """A language's translations of the English texts, `english` by the names of their files."""
 
     def __init__(self, code: str, english: dict[str, Catalogue]) -> None:
         self.code = code
@@ -80,7 +80,7 @@ class Translation:
             if key not in translation_file.texts and known_hashes <= {entry.hash for entry in group}
         ]
         if not known_hashes:
-            return  # somebody has mistyped a key: it is wrong
+            return  # a mistyped key is an error
         del self.seen[f"{name} {row.key}"]
         self._is_seen_new = True
         texts = translation_file.texts.pop(row.key)
@@ -102,7 +102,7 @@ class Translation:
                 self._note(name, row.key, [entry.seen_hash for entry in group])
 
     def pair_texts(self, name: str, key: str) -> list[Entry]:
-        """Return the texts of a key with their translations, none where that is not possible."""
+        """Return the texts of a key with their translations, none if that is not possible."""
         texts = self.own_files[name].texts.get(key, [])
         group = [without_translation(entry) for entry in self.groups[name].get(key, [])]
         unknown = [UNKNOWN_HASH] * len(texts)
@@ -118,15 +118,16 @@ class Translation:
         self._is_seen_new |= old_hashes != self.seen.get(f"{name} {key}", [])
 
     def note_seen(self, patterns: list[str]) -> list[str]:
-        """Note of which English texts new translations are, and stale ones of these keys; return
-        the patterns that no key has. A file with a mistake in it is left alone."""
-        unused = {*patterns}
+        """Record the English texts of new translations, and of stale ones with these keys; return
+        the patterns without a key. A file with a mistake is left alone.
+        """
+        unused_names = {*patterns}
         for name, translation_file in self.own_files.items():
             if name == NAMES_CATALOGUE or translation_file.problems:
                 continue
             for key in translation_file.texts:
                 fitting = {pattern for pattern in patterns if fnmatchcase(key, pattern)}
-                unused -= fitting
+                unused_names -= fitting
                 if group := self.pair_texts(name, key):
                     hashes_to_note = (
                         UNKNOWN_HASH,
@@ -147,7 +148,7 @@ class Translation:
                 if key_in_file.startswith(f"{name} ") and key_in_file not in current_rows
             ]:
                 self._note(name, seen_key.removeprefix(f"{name} "), [])
-        return [pattern for pattern in patterns if pattern in unused]
+        return [pattern for pattern in patterns if pattern in unused_names]
 
     def put_entries(self, name: str, key: str, group: list[Entry]) -> None:
         """Take what these entries say as the texts of a key."""
@@ -165,7 +166,7 @@ class Translation:
             self._note(name, key, [entry.seen_hash for entry in group])
 
     def put_all(self, name: str, texts: Catalogue) -> None:
-        """Take what these entries say of each text that somebody translates."""
+        """Store the translations of these entries."""
         for key, group in texts.groups().items():
             if len(group) > 1 or not group[0].is_same:
                 self.put_entries(name, key, group)
@@ -189,7 +190,7 @@ class Translation:
             _write(self.folder / SEEN_FILE, SEEN_NOTE.format(self.code) + "".join(lines))
 
     def problems(self) -> Iterator[tuple[Path, list[Problem]]]:
-        """Yield what is wrong with each file."""
+        """Yield the problems of each file."""
         yield self.folder / ABOUT_FILE, self.language.problems
         yield self.folder / SEEN_FILE, self.seen_problems
         for name in self.english:
@@ -197,10 +198,10 @@ class Translation:
 
 
 def print_problems(path: Path, problems: list[Problem]) -> int:
-    """Print what is wrong with a file, and return how much that is."""
-    shown = path.relative_to(FOLDER.parent) if path.is_relative_to(FOLDER.parent) else path
+    """Print the problems of a file, and return their number."""
+    shown_path = path.relative_to(FOLDER.parent) if path.is_relative_to(FOLDER.parent) else path
     for line, problem in problems:
-        print(f"{shown}:{line}: {problem}")
+        print(f"{shown_path}:{line}: {problem}")
     return len(problems)
 
 
@@ -249,7 +250,7 @@ def _escape_control_signs(text: str) -> str:
 
 
 def about_text(name: str, english_name: str, forms: Iterable[str], rule: str) -> str:
-    """Return what a new language says of itself."""
+    """Return the header of a new language."""
     return (
         f"name = {quote(name)}  # what it calls itself\n"
         f"english_name = {quote(english_name)}  # by which Windows may know it\n"

@@ -23,7 +23,7 @@ from tiniscript.base.version import __version__
 from tools.translation_files import Translation, print_problems
 
 FILE_ENDING = ".po"
-# Names of forms, and gettext's rule for them: what most languages have.
+# Names of forms, and gettext's rule for them, in most languages.
 SIMPLE_FORMS = ((["one", "other"], "n != 1"), (["one", "other"], "n > 1"), (["other"], "0"))
 BRACES_FLAG = "python-brace-format"  # gettext's flag for a text with gaps like {file}
 
@@ -90,7 +90,7 @@ def _context(name: str, key: str) -> str:
 
 
 def read_file(path: Path, translation: Translation) -> int:
-    """Read texts of a language; say what is wrong with one, and return 1 then."""
+    """Read texts of a language; print a text's problem, and return 1 then."""
     try:
         with path.open("rb") as file:
             catalog = read_po(file, abort_invalid=True)
@@ -141,7 +141,7 @@ def _take_text(message: Message, forms: Forms, translation: Translation) -> str:
 
 
 def language_facts(code: str) -> tuple[str, str, list[str], str]:
-    """Return what a language says of itself, as far as Unicode's CLDR knows it."""
+    """Return the description of a language, as far as Unicode's CLDR has it."""
     try:
         locale = Locale.parse(code)
     except (UnknownLocaleError, ValueError):
@@ -163,7 +163,7 @@ def _forms_by(names: list[str], rule: str) -> list[str]:
 
 
 def _cldr_categories(count: int, rule: str, of_cldr: Callable[[int], str]) -> list[str]:
-    """Return how CLDR calls the forms of a rule of gettext, nothing if a form has no number."""
+    """Return the CLDR names of a gettext rule's forms, or none if a form has no number."""
     form_index = c2py(rule)
     category_of = {form_index(number): of_cldr(number) for number in range(NUMBERS_TRIED)}
     return [category_of[k] for k in range(count)] if category_of.keys() == {*range(count)} else []

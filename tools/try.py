@@ -82,7 +82,7 @@ def main() -> int:
         exit_code = subprocess.run(
             [str(python), "-m", "tiniscript", *arguments], cwd=ROOT
         ).returncode
-    except KeyboardInterrupt:  # the robot has stopped, and tsc has said so
+    except KeyboardInterrupt:  # the robot has stopped, and tsc has reported it
         return 2
     print(flush=True)
     if exit_code:

@@ -24,7 +24,7 @@ from typing import Any
 
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import served, taught
+from tests.support.studio import serve_class, serve_page
 from tiniscript import robots
 from tiniscript.lessons import catalogue
 
@@ -81,11 +81,11 @@ class Browser:
         element = self._ask("POST", "/element", {"using": "css selector", "value": selector})
         self._ask("POST", f"/element/{element[ELEMENT]}/click", {})
 
-    def type_keys(self, text: str, held: str = "") -> None:
-        actions = [{"type": "keyDown", "value": held}] if held else []
+    def type_keys(self, text: str, held_text: str = "") -> None:
+        actions = [{"type": "keyDown", "value": held_text}] if held_text else []
         for sign in text:
             actions += [{"type": "keyDown", "value": sign}, {"type": "keyUp", "value": sign}]
-        actions += [{"type": "keyUp", "value": held}] if held else []
+        actions += [{"type": "keyUp", "value": held_text}] if held_text else []
         keys = [{"type": "key", "id": "keys", "actions": actions}]
         self._ask("POST", "/actions", {"actions": keys})
 
@@ -232,7 +232,7 @@ def main() -> int:
     with browsers() as open_browser:
         page = open_browser()
         print(page.version)
-        with served() as server:
+        with serve_page() as server:
             step("opens and compiles", lambda: open_page(page, server.address))
             step("the first minute", lambda: run_first_program(page))
             step("a mistake, in Spanish", lambda: make_mistake(page))
@@ -242,7 +242,7 @@ def main() -> int:
                 f"return {interfaces}.filter((each) => !(each in navigator))"
             )
             print(f"{'lacks':32} {', '.join(missing_interfaces)}")
-        with PtyRobot(robots.load("tinibot").kit) as robot, taught([robot.port]) as school:
+        with PtyRobot(robots.load("tinibot").kit) as robot, serve_class([robot.port]) as school:
             classroom = school.room
 
             def changes() -> None:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tiniscript.library.runs import Fault, Trace, TraceEvent, run
     from tiniscript.library.simulated import VirtualRobotConnection, virtual_robot
 
-__all__ = (  # what `docs/en/api.md` promises
+__all__ = (  # the names that `docs/en/api.md` documents
     "Ending",
     "Fault",
     "Message",
@@ -71,7 +71,7 @@ _HOMES = {
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> object:
-        """Import what is asked for: so `import tiniscript` imports nothing else."""
+        """Import a name on demand, so that `import tiniscript` imports nothing else."""
         for home, names in _HOMES.items():
             if name in names:
                 from importlib import import_module

@@ -14,14 +14,14 @@ from tests.machines import sketch_board
 from tests.support.command import process
 from tests.support.conformance_kit import have_kit
 from tests.support.needs import need
-from tests.support.platformio import shared
+from tests.support.platformio import shared_folder
 from tools.builds import chips, library
 from tools.uno import Uno
 
 URL = "https://example.org/tiniscript"
 EXAMPLES = ("ImageInFlash", "OwnSensor", "Link")
 PRELUDE = "#include <Arduino.h>\nvoid setup();\nvoid loop();\n#line 1\n"
-# What stands for Arduino's core where a chip has none here.
+# Stand-ins for Arduino's core on chips without one here.
 STAND_IN = """
 #pragma once
 #include <stdint.h>
@@ -50,7 +50,7 @@ struct Port {
 };
 extern Port Serial;
 """
-# What these compilers have no C library for.
+# Functions of the C library that these compilers lack.
 STRING_H = """
 #pragma once
 #include <stddef.h>
@@ -63,7 +63,7 @@ void* memset(void*, int, size_t);
 
 
 @pytest.fixture(scope="module")
-def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def built_library(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("library") / "TiniScript"
     assert library.main([str(folder), "--url", URL]) == 0
     return folder
@@ -100,9 +100,9 @@ def elf(built: Path, example: str, board: str, folder: Path) -> Path:
 @pytest.mark.parametrize("board", ["uno", "mega"])
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_an_example_builds_and_fits(
-    built: Path, example: str, board: str, tmp_path_factory: pytest.TempPathFactory
+    built_library: Path, example: str, board: str, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    program = elf(built, example, board, shared(tmp_path_factory))
+    program = elf(built_library, example, board, shared_folder(tmp_path_factory))
     text, data, zeros = map(int, boards.run("avr-size", program).splitlines()[1].split()[:3])
     flash, ram = (32_256, 2_048) if board == "uno" else (253_952, 8_192)
     assert text + data <= flash
@@ -111,23 +111,28 @@ def test_an_example_builds_and_fits(
 
 @pytest.mark.parametrize("name", chips.CHIPS)
 def test_library_and_examples_compile_for_a_chip_of_esp_boards(
-    built: Path, name: str, tmp_path: Path
+    built_library: Path, name: str, tmp_path: Path
 ) -> None:
     need(chips.why_missing(chips.CHIPS[name]))
     (tmp_path / "Arduino.h").write_text(STAND_IN, encoding="utf-8")
     (tmp_path / "string.h").write_text(STRING_H, encoding="utf-8")
     sketches = []
     for example in EXAMPLES:
-        text = (built / "examples" / example / f"{example}.ino").read_text(encoding="utf-8")
+        text = (built_library / "examples" / example / f"{example}.ino").read_text(encoding="utf-8")
         sketches.append(tmp_path / f"{example}.cpp")
         sketches[-1].write_text(PRELUDE + text, encoding="utf-8")
-    flags = (f"-I{built / 'src'}", f"-I{tmp_path}")
-    for path in [*(built / "src").glob("*.cpp"), *sketches]:  # the rest is built for them elsewhere
+    flags = (f"-I{built_library / 'src'}", f"-I{tmp_path}")
+    for path in [
+        *(built_library / "src").glob("*.cpp"),
+        *sketches,
+    ]:  # the rest is built for them elsewhere
         chips.compile_one(chips.CHIPS[name], path, str(tmp_path / "one.o"), flags)
 
 
-def test_an_image_in_flash_drives(built: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
-    program = elf(built, "ImageInFlash", "uno", shared(tmp_path_factory))
+def test_an_image_in_flash_drives(
+    built_library: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    program = elf(built_library, "ImageInFlash", "uno", shared_folder(tmp_path_factory))
     with Uno(program, names={"left": "D5", "back": "D7"}) as uno:
         uno.run_ms(500)
         assert uno.pins.history("left")[-1].state == "pwm"
@@ -140,10 +145,10 @@ def test_an_image_in_flash_drives(built: Path, tmp_path_factory: pytest.TempPath
 
 @pytest.mark.long
 def test_the_link_of_an_example_conforms(
-    built: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+    built_library: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     have_kit()
-    program = elf(built, "Link", "uno", shared(tmp_path_factory))
+    program = elf(built_library, "Link", "uno", shared_folder(tmp_path_factory))
     with Uno(program, baud=115_200, tells_sleep=False) as uno:
         uno.go()
         result = process("doctor", "--conform", "--port", uno.pty, "--baud", "115200")
@@ -153,7 +158,7 @@ def test_the_link_of_an_example_conforms(
         assert "1 + 1 2" in result.out, result.out + result.err
 
 
-def test_platformio_packs_it(built: Path, tmp_path: Path) -> None:
+def test_platformio_packs_it(built_library: Path, tmp_path: Path) -> None:
     """Its list of licences comes from the internet, so one stands in for it."""
     pytest.importorskip("platformio")
     code = (
@@ -164,11 +169,11 @@ def test_platformio_packs_it(built: Path, tmp_path: Path) -> None:
         "from platformio.__main__ import main\n"
         "sys.exit(main(['pio', 'pkg', 'pack', sys.argv[1], '-o', sys.argv[2]]))\n"
     )
-    completed = subprocess.run([sys.executable, "-c", code, built, tmp_path], capture_output=True,
-                          text=True, check=False)  # fmt: skip
+    command = [sys.executable, "-c", code, str(built_library), str(tmp_path)]
+    completed = subprocess.run(command, capture_output=True, text=True, check=False)
     assert completed.returncode == 0, completed.stdout + completed.stderr
-    (packed,) = tmp_path.glob("*.tar.gz")
-    with tarfile.open(packed) as tar_file:
+    (packed_path,) = tmp_path.glob("*.tar.gz")
+    with tarfile.open(packed_path) as tar_file:
         names = set(tar_file.getnames())
     assert {
         "src/TiniScript.h",

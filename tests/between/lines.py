@@ -1,4 +1,4 @@
-"""What is in between a computer and its robot, and does what cables and radios do: faults by name.
+"""Faults by name on the line between a computer and its robot, as cables and radios cause them.
 
 The time of a fault is its robot's: that of the wall, or slower where this computer is busy.
 """
@@ -16,12 +16,12 @@ from tiniscript import robots
 
 KIT = robots.load("tinibot").kit
 ESP32 = "tinibot32"
-LATEST_MS = 2000  # a fault begins by then, however few bytes have come
+LATEST_MS = 2000  # a fault begins by then, even after few bytes
 FOREVER_MS = 10**9
 
 
 class Fault(NamedTuple):
-    """What happens to bytes: `late_ms` each way, at `rate` a second, `lost` of them.
+    """The effect on bytes: delayed by `late_ms` each way, `rate` a second, a share `lost`.
 
     From a moment on, and for `held_ms`, none come through; then they do, all at once, or they are
     lost where `drops`. `ways`: to the robot, and back. `pulls`, `resets` and `suspends` happen to
@@ -41,7 +41,7 @@ class Fault(NamedTuple):
 
     @property
     def has_end(self) -> bool:
-        """Whether a command that goes on will reach its robot."""
+        """Return whether a continuing command will reach its robot."""
         return self.held_ms < FOREVER_MS and not self.pulls
 
 
@@ -68,9 +68,9 @@ class Way:
 
     def __init__(self, fault: Fault, is_held: bool, chance: Random) -> None:
         self._fault, self._is_held, self._chance = fault, is_held, chance
-        self._under_way: deque[tuple[float, int]] = deque()  # when each byte arrives
+        self._under_way: deque[tuple[float, int]] = deque()  # arrival time of each byte
         self._free_ms = 0.0
-        self.held_ms = (-1, -1)  # from when to when
+        self.held_ms = (-1, -1)  # start and end of the time in which bytes are held back
 
     def put(self, data: bytes, now_ms: int) -> None:
         begin_ms, end_ms = self.held_ms
@@ -85,7 +85,7 @@ class Way:
                 at_ms = end_ms
             self._under_way.append((at_ms, byte))
 
-    def arrived(self, now_ms: int) -> bytes:
+    def take_arrived(self, now_ms: int) -> bytes:
         arrived_bytes = bytearray()
         while self._under_way and self._under_way[0][0] <= now_ms:
             arrived_bytes.append(self._under_way.popleft()[1])
@@ -93,12 +93,12 @@ class Way:
 
 
 class BehindBadLine(PtyRobot):
-    """A robot behind a line with a fault that begins after `after` bytes, or after a while.
+    """A robot on a line with a fault that begins after `after` bytes, or after a while.
 
     `mend` takes the fault away; what is still on its way arrives then.
     """
 
-    def _lay(self, fault: Fault, chance: Random, after: int) -> None:
+    def _open_line(self, fault: Fault, chance: Random, after: int) -> None:
         """Lay the line, before the robot begins."""
         self.fault = fault
         self.has_begun = False
@@ -110,7 +110,7 @@ class BehindBadLine(PtyRobot):
         self._since_ms: int | None = None  # the first byte
 
     def begin(self, fault: Fault, after: int = 0) -> None:
-        """Have a fault from now on, or so many bytes on, in the place of the one before."""
+        """Start a fault now, or after so many bytes, instead of the previous one."""
         with self._lock:
             self.fault, self.has_begun, self._is_mended = fault, False, False
             self._after, self._since_ms = after, self._line_ms
@@ -118,7 +118,7 @@ class BehindBadLine(PtyRobot):
 
     @property
     def is_used(self) -> bool:
-        """Whether a byte has come from the computer."""
+        """Return whether the computer has sent a byte."""
         return self._since_ms is not None
 
     def mend(self) -> None:
@@ -133,9 +133,9 @@ class BehindBadLine(PtyRobot):
             to_robot._fault = to_computer._fault = Fault("nothing")
             to_robot.held_ms = to_computer.held_ms = (-1, -1)
         to_robot.put(data, self._line_ms)
-        arrived = to_robot.arrived(FOREVER_MS if self._is_mended else self._line_ms)
-        to_computer.put(super().pass_ms(milliseconds, arrived), self._line_ms)
-        return to_computer.arrived(FOREVER_MS if self._is_mended else self._line_ms)
+        arrived_bytes = to_robot.take_arrived(FOREVER_MS if self._is_mended else self._line_ms)
+        to_computer.put(super().pass_ms(milliseconds, arrived_bytes), self._line_ms)
+        return to_computer.take_arrived(FOREVER_MS if self._is_mended else self._line_ms)
 
     def _begin(self, count: int) -> None:
         """Begin what the fault does from a moment on."""
@@ -153,20 +153,20 @@ class BehindBadLine(PtyRobot):
                 self._flags = []
                 with self._lock:
                     self._take_power()
-                    self._robot = self._made(seed=0x9ABCDEF1)
+                    self._robot = self._make_robot(seed=0x9ABCDEF1)
 
 
 class BadLine(BehindBadLine):
-    """The same of an Uno."""
+    """A bad line to an Uno."""
 
     def __init__(self, fault: Fault, chance: Random, after: int, memory: bytes = EMPTY) -> None:
-        self._lay(fault, chance, after)
+        self._open_line(fault, chance, after)
         super().__init__(KIT, memory)
 
 
 class BadEsp32Line(BehindBadLine, Esp32PtyRobot):
-    """The same of an ESP32."""
+    """A bad line to an ESP32."""
 
     def __init__(self, fault: Fault, chance: Random, after: int) -> None:
-        self._lay(fault, chance, after)
+        self._open_line(fault, chance, after)
         super().__init__(ESP32)

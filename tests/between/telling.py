@@ -1,4 +1,4 @@
-"""What a command tells at a terminal, when, and for how long it is silent.
+"""A command's output at a terminal, with times and silences.
 
 Time goes by as on the wall, or slower where this computer is busy.
 """
@@ -18,13 +18,14 @@ from tests.support.command import rest_of
 from tests.support.terminal import Terminal
 
 STEP_S = 0.01
-LONGEST_S = 0.05  # of the time between two looks at the clock that counts
+LONGEST_S = 0.05  # longest step between two looks at the clock
 ESCAPED = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
-# Who has said this goes on with it, or waits for what it names, until it says something else.
+# Messages about a continuing action or a wait, valid until the next message.
 STANDING = re.compile(r"…$|…Asking [^…]*$|: running$|Ctrl-C|hold its start button")
 
 ADVICE = "Try:"  # belongs to the line above it
-ROBOT = "The robot says:"  # of each line that it takes for text: the rest of a frame after a reset
+# Prefix of lines that it reads as text, such as the rest of a frame after a reset.
+ROBOT = "The robot says:"
 
 
 class Clock:
@@ -61,8 +62,8 @@ class Teller(Terminal):
     """A command at a terminal of its own."""
 
     def __init__(self, words: Sequence[str], env: Mapping[str, str]) -> None:
-        self.began_s = CLOCK.now_s  # or when it has sent its first byte, or has connected
-        self.timed_output: list[tuple[float, str]] = []  # "" is what a person has done
+        self.began_s = CLOCK.now_s  # also set at the first byte or at the connection
+        self.timed_output: list[tuple[float, str]] = []  # "" is a person's action
         self.ended_s: float | None = None
         self.suspended: list[tuple[float, float]] = []
         super().__init__(*words, env=env, size=(300, 24))
@@ -97,7 +98,7 @@ class Teller(Terminal):
         return self.ended_s is not None
 
     def has_socket(self) -> bool:
-        """Whether it is connected to another command."""
+        """Return whether it is connected to another command."""
         with suppress(OSError):
             files = Path(f"/proc/{self.process.pid}/fd").iterdir()
             return any(str(file.readlink()).startswith("socket:") for file in files)
@@ -112,15 +113,15 @@ class Teller(Terminal):
 
     @property
     def shown_lines(self) -> list[str]:
-        """What stays on the screen: of a line that was drawn over, its last state."""
+        """The lines left on the screen: the last state of each redrawn line."""
         lines: list[str] = []
         for line in self.text.replace("\r\n", "\n").split("\n"):
-            shown = [part.strip() for part in line.split("\r") if part.strip()]
-            lines += shown[-1:]
+            shown_texts = [part.strip() for part in line.split("\r") if part.strip()]
+            lines += shown_texts[-1:]
         return lines
 
-    def repeated(self) -> list[str]:
-        """Return what was said twice; what is waited for, only with nothing else in between."""
+    def repeated_lines(self) -> list[str]:
+        """Return repeated lines; those about a wait may repeat after another line."""
         parts = re.findall(r"([^\r\n]+)(\r*\n|\r|$)", self.text)
         words = [(text.strip(), end) for text, end in parts
                  if text.strip() and not text.strip().startswith(ROBOT)]  # fmt: skip
@@ -131,7 +132,7 @@ class Teller(Terminal):
         return sorted({*awaited, *(line for line in others if others.count(line) > 1)})
 
     def longest_silence_s(self) -> float:
-        """Return the longest time without a word, but for what goes on as was said.
+        """Return the longest silence, except during announced waits.
 
         It counts from the first byte on: how long a process takes to begin is another question.
         """

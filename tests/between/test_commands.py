@@ -1,5 +1,5 @@
-"""Each command that talks to a robot, behind a line with a fault: it ends, and says what it waits
-for; nothing contradicts what was said, a thing is said once, and the next try works.
+"""Every command that talks to a robot on a faulty line ends and names its waits; nothing
+contradicts or repeats earlier output, and the next try works.
 
 `python -m tests.between.test_commands 100 --seed 1` draws commands, faults and moments, and prints
 how long each command was silent, and how long it took; a second figure is that of the line that is
@@ -35,17 +35,17 @@ from tests.between.lines import (
     Fault,
 )
 from tests.between.telling import CLOCK, Teller, own_folders
-from tests.support.campaign import wanted
+from tests.support.campaign import make_options
 from tests.support.command import FOREVER, LONG
 from tests.support.pty_robot import PtyRobot, on
 
-SILENT_S = 3.0  # for longer nobody is silent
-ROOM_S = 0.5  # until a word is there
+SILENT_S = 3.0  # longest silence allowed
+ROOM_S = 0.5  # tolerance before a message counts as late
 WORKERS = 8
 ENDS_S = 45.0  # the longest search for a robot, a request of 20 s, and a stop
 SLOW_ENDS_S = 240.0  # over a line that lets little through
-STOPS_S = 12.0  # from Ctrl-C to the end
-DRIVES_ON_S = 3.0  # a robot that hears nothing more stands after that
+STOPS_S = 12.0  # time from Ctrl-C to the end
+DRIVES_ON_S = 3.0  # time after which a robot without a computer stands
 SHORT = "SI|F(0.3, 80)"
 CONFIRMED = re.compile(r"[Ss]topped the robot.*confirmed it|has confirmed|: stopped")
 UNCONFIRMED = re.compile(r"has not confirmed the stop")
@@ -57,7 +57,7 @@ class Words(NamedTuple):
     name: str
     words: tuple[str, ...]
     stays: bool = False
-    takes_s: float = 0.0  # of its own
+    takes_s: float = 0.0  # time that the command takes by itself
     may_fail: bool = False  # whatever the line does
     is_client: bool = False
     robot: tuple[str, ...] = ()
@@ -103,12 +103,12 @@ ALL = (*COMMANDS, *CLIENTS, *ON_ESP32)
 
 
 class TriedCommand(NamedTuple):
-    """What came of one command."""
+    """The result of one command."""
 
     name: str
     fault: str
     silence_s: float
-    took_s: float  # until its end, from Ctrl-C on where it stays
+    took_s: float  # time to its end, counted from Ctrl-C if it stays
     wrong: tuple[str, ...]
     output: str
 
@@ -125,21 +125,21 @@ def with_program() -> bytes:
             return robot._memory
 
 
-def tried(words: Words, fault: Fault, seed: int) -> TriedCommand:
-    """Run a command behind a line with a fault, then another one behind the same, mended."""
+def try_command(words: Words, fault: Fault, seed: int) -> TriedCommand:
+    """Run a command on a line with a fault, then another one on the repaired line."""
     chance = Random(f"{words.name} {fault.name} {seed}")
     with ExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory())
         env = own_folders(folder)
-        after = chance.choice((0, 1, 12, 30, 60, 150))
-        line = _line(words, fault, chance, after)
+        choice_after = chance.choice((0, 1, 12, 30, 60, 150))
+        line = _line(words, fault, chance, choice_after)
         stack.callback(line.clear_away)
         holder = _holder(line, env, stack) if words.is_client else None
         teller = Teller([*words.words, *words.robot, "--port", line.port], env)
         stack.callback(teller.end)
         if holder is not None:
-            line.begin(fault, after)
-        has_ended = _played(teller, line, words, chance, holder)
+            line.begin(fault, choice_after)
+        has_ended = _play(teller, line, words, chance, holder)
         wrong = [] if has_ended else ["it has no end"]
         if not has_ended:
             teller.process.kill()
@@ -161,7 +161,7 @@ def _line(words: Words, fault: Fault, chance: Random, after: int) -> BehindBadLi
 
 
 def _holder(line: BehindBadLine, env: dict[str, str], stack: ExitStack) -> Teller:
-    """Let `tsc monitor --hold` have the port, which meets its robot before there is a fault."""
+    """Start `tsc monitor --hold` on the port, which meets its robot before the fault."""
     holder = Teller(["monitor", "--hold", "--port", line.port], env)
     stack.callback(holder.end)
     end_s = CLOCK.now_s + ENDS_S
@@ -171,11 +171,12 @@ def _holder(line: BehindBadLine, env: dict[str, str], stack: ExitStack) -> Telle
     return holder
 
 
-def _played(
+def _play(
     teller: Teller, line: BehindBadLine, words: Words, chance: Random, holder: Teller | None
 ) -> bool:
-    """Let the fault happen, and a person be there; return whether the command has ended. Of two
-    commands the one with the port is suspended."""
+    """Apply the fault with a person present; return whether the command has ended. If there are two
+    commands, the holder of the port is suspended.
+    """
     fault = line.fault
     is_slow = fault.rate or fault.lost or fault.late_ms
     limit_s = (SLOW_ENDS_S if is_slow else ENDS_S + fault.held_ms % 10**9 / 1000) + words.takes_s
@@ -190,11 +191,11 @@ def _played(
     if fault.pulls:
         line.pull()
     if fault.suspends and teller.ended_s is None:
-        began_s, slept = CLOCK.now_s, holder or teller
-        slept.process.send_signal(signal.SIGSTOP)
+        began_s, slept_teller = CLOCK.now_s, holder or teller
+        slept_teller.process.send_signal(signal.SIGSTOP)
         CLOCK.wait(fault.held_ms / 1000)
-        slept.suspended.append((began_s, CLOCK.now_s))
-        slept.process.send_signal(signal.SIGCONT)
+        slept_teller.suspended.append((began_s, CLOCK.now_s))
+        slept_teller.process.send_signal(signal.SIGCONT)
     if words.stays and not teller.wait(leaves_s):
         teller.interrupt()
         return teller.wait(STOPS_S + 2 * fault.late_ms / 1000 + (30 if fault.rate else 0))
@@ -202,9 +203,9 @@ def _played(
 
 
 def _contradictions(teller: Teller, line: BehindBadLine, words: Words) -> list[str]:
-    """Return what was said twice, or is not so."""
+    """Return repeated and false statements of the output."""
     lines, code, fault = teller.shown_lines, teller.process.returncode, line.fault
-    contradictions = [f"said twice: {sentence}" for sentence in teller.repeated()]
+    contradictions = [f"said twice: {sentence}" for sentence in teller.repeated_lines()]
     if "Traceback" in teller.text:
         contradictions.append("a traceback")
     is_confirmed = any(map(CONFIRMED.search, lines))
@@ -213,7 +214,7 @@ def _contradictions(teller: Teller, line: BehindBadLine, words: Words) -> list[s
         contradictions.append("a stop is both")
     if code and not lines:
         contradictions.append("an exit code without a word")
-    is_heard = fault.name in ("nothing", "late", "slow", "loses")  # while a program runs, too
+    is_heard = fault.name in ("nothing", "late", "slow", "loses")  # heard while a program runs, too
     if is_heard and not words.may_fail and code not in ((0, 2) if words.stays else (0,)):
         contradictions.append(f"exit code {code}")
     if fault.pulls:
@@ -234,7 +235,7 @@ def _next_try(line: BehindBadLine, env: dict[str, str], words: Words) -> list[st
     return [] if code == 0 else [f"the next try: {code}, {teller.shown_lines}"]
 
 
-def judged(command: TriedCommand, room_s: float = ROOM_S) -> list[str]:
+def list_faults(command: TriedCommand, room_s: float = ROOM_S) -> list[str]:
     silent = command.silence_s > SILENT_S + room_s
     return [*command.wrong, *([f"silent for {command.silence_s:.1f} s"] if silent else [])]
 
@@ -242,10 +243,10 @@ def judged(command: TriedCommand, room_s: float = ROOM_S) -> list[str]:
 def all_tried(rows: Sequence[tuple[Words, Fault, int]]) -> list[TriedCommand]:
     with_program()
     with ThreadPoolExecutor(WORKERS) as pool:
-        return list(pool.map(lambda row: tried(*row), rows))
+        return list(pool.map(lambda row: try_command(*row), rows))
 
 
-def printed(commands: Sequence[TriedCommand]) -> None:
+def print_table(commands: Sequence[TriedCommand]) -> None:
     """Print the table: of each command the worst of each figure, and in which fault it was."""
     rows: dict[str, list[TriedCommand]] = defaultdict(list)
     for tried_command in commands:
@@ -259,7 +260,7 @@ def printed(commands: Sequence[TriedCommand]) -> None:
                   f" {late.took_s:.1f} ({late.fault}) |")  # fmt: skip
 
 
-def drawn(
+def draw_cases(
     count: int, seed: int, is_whole: bool, among: Sequence[Words] = ALL
 ) -> list[tuple[Words, Fault, int]]:
     if is_whole:
@@ -278,10 +279,10 @@ def test_a_sample_of_commands_keeps_the_laws_behind_bad_lines(
     from tests.support import sampling
 
     seed = Random(sampling.seed(request.config)).randrange(10**6)
-    commands = all_tried(drawn(SAMPLE, seed, is_whole=False))
+    commands = all_tried(draw_cases(SAMPLE, seed, is_whole=False))
     wrong = {
         f"{tried_command.name}, {tried_command.fault}": (
-            judged(tried_command, ROOM_CI_S),
+            list_faults(tried_command, ROOM_CI_S),
             tried_command.output,
         )
         for tried_command in commands
@@ -296,7 +297,7 @@ def test_a_sample_of_commands_keeps_the_laws_behind_bad_lines(
 def test_a_second_ctrl_c_ends_the_wait_and_is_no_second_word(
     name: str, after_s: float, tmp_path: Path
 ) -> None:
-    """The wait for the stop, and the one for what is saved behind it."""
+    """The waits are for the stop, and for the save after it."""
     fault = next(fault for fault in FAULTS if fault.name == name)
     with ExitStack() as stack:
         line = BadLine(Fault("nothing"), Random(1), 0)
@@ -314,7 +315,7 @@ def test_a_second_ctrl_c_ends_the_wait_and_is_no_second_word(
             for line in teller.shown_lines
             if CONFIRMED.search(line) or UNCONFIRMED.search(line)
         ]
-        assert len(outcomes) == 1 and not teller.repeated(), teller.text
+        assert len(outcomes) == 1 and not teller.repeated_lines(), teller.text
         line.until(lambda: not line.moves, "it stands")
 
 
@@ -323,19 +324,19 @@ ROOM_CI_S = 2.0  # processes begin slowly beside others
 
 
 if __name__ == "__main__":
-    given = wanted(100, 1, "whole", "clients", "esp32")
-    among = CLIENTS if given.clients else ON_ESP32 if given.esp32 else ALL
+    options = make_options(100, 1, "whole", "clients", "esp32")
+    among = CLIENTS if options.clients else ON_ESP32 if options.esp32 else ALL
     began_s = CLOCK.now_s
-    commands = all_tried(drawn(given.count, given.seed, given.whole, among))
-    printed(commands)
-    wrong = [(tried_command, judged(tried_command)) for tried_command in commands]
+    commands = all_tried(draw_cases(options.count, options.seed, options.whole, among))
+    print_table(commands)
+    wrong = [(tried_command, list_faults(tried_command)) for tried_command in commands]
     for tried_command, why in wrong:
         if why:
             print(
                 f"\n{tried_command.name}, {tried_command.fault}: {'; '.join(why)}\n"
                 f"{tried_command.output}"
             )
-    took = os.times()
+    times = os.times()
     print(f"\n{len(commands)} tried, {sum(bool(why) for _, why in wrong)} wrong; "
-          f"{CLOCK.now_s - began_s:.0f} s, {sum(took[:4]):.0f} s of a processor")  # fmt: skip
+          f"{CLOCK.now_s - began_s:.0f} s, {sum(times[:4]):.0f} s of a processor")  # fmt: skip
     sys.exit(any(why for _, why in wrong))

@@ -1,4 +1,4 @@
-"""Images: what is packed is read back, and what is wrong is refused by name."""
+"""Images: packed ones are read back, and wrong ones are refused by name."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ OLD = bytes.fromhex("54530100000000000300101604fa443250")
 
 
 def refusal(data: bytes) -> str:
-    with pytest.raises(ImageRefused) as refused:
+    with pytest.raises(ImageRefused) as exception_info:
         unpack(data)
-    return refused.value.name
+    return exception_info.value.name
 
 
-def changed(offset: int, value: int, image: bytes = IMAGE) -> bytes:
+def change_byte(offset: int, value: int, image: bytes = IMAGE) -> bytes:
     """Return an image with one byte changed and the checksum mended."""
     data = bytearray(image)
     data[offset] = value
@@ -79,15 +79,16 @@ def test_every_changed_bit_is_noticed(image: bytes) -> None:
 
 def test_the_first_reason_that_applies_is_said() -> None:
     """Each change before the other one: in the order of the table, whatever is wrong besides."""
-    bad_start, bad_needs = changed(4, 3), changed(14, 4)
-    both = changed(4, 3, bad_needs)
-    damaged = both[:-1] + bytes([both[-1] ^ 1])
-    bad_header = changed(9, 0x80, damaged)
-    other = changed(2, 3, bad_header)
+    bad_start, bad_needs = change_byte(4, 3), change_byte(14, 4)
+    both = change_byte(4, 3, bad_needs)
+    damaged_bytes = both[:-1] + bytes([both[-1] ^ 1])
+    bad_header = change_byte(9, 0x80, damaged_bytes)
+    other = change_byte(2, 3, bad_header)
     rows = [
         (b"S" + other[:1], "NOT_AN_IMAGE"), (other[:4], "OTHER_VERSION"), (other, "OTHER_VERSION"),
-        (bad_header[:15], "BAD_HEADER"), (damaged[:-1], "TRUNCATED"), (damaged + b"?", "TRAILING"),
-        (damaged, "DAMAGED"), (both, "UNKNOWN_NEEDS"), (bad_start, "UNKNOWN_START"),
+        (bad_header[:15], "BAD_HEADER"), (damaged_bytes[:-1], "TRUNCATED"),
+        (damaged_bytes + b"?", "TRAILING"),
+        (damaged_bytes, "DAMAGED"), (both, "UNKNOWN_NEEDS"), (bad_start, "UNKNOWN_START"),
     ]  # fmt: skip
     for data, name in rows:
         assert refusal(data) == name
@@ -98,19 +99,19 @@ def test_the_first_reason_that_applies_is_said() -> None:
 def test_an_image_of_version_1_says_which_it_is() -> None:
     """Whole, cut or damaged: compiling again is what helps."""
     for data in (OLD, OLD[:9], OLD + b"?", OLD[:-1] + b"?", OLD[:4]):
-        with pytest.raises(ImageRefused) as refused:
+        with pytest.raises(ImageRefused) as exception_info:
             unpack(data)
-        assert refused.value.name == "OTHER_VERSION"
-        assert refused.value.values == {"theirs": "1.0", "ours": f"{ISA_MAJOR}.{ISA_MINOR}"}
+        assert exception_info.value.name == "OTHER_VERSION"
+        assert exception_info.value.values == {"theirs": "1.0", "ours": f"{ISA_MAJOR}.{ISA_MINOR}"}
 
 
 def test_it_has_the_lowest_version_that_has_all_of_it() -> None:
     texts = [case.parts["tiniscript"] for case in all_cases() if "tiniscript" in case.parts]
     versions = set()
-    for compiled in (compile_text(text, KIT) for text in texts):
-        if compiled.verdict is not None:
-            version = second_reader.version(compiled.code, compiled.verdict.needs)
-            assert (*compiled.image[2:4],) == version
+    for compilation in (compile_text(text, KIT) for text in texts):
+        if compilation.verdict is not None:
+            version = second_reader.version(compilation.code, compilation.verdict.needs)
+            assert (*compilation.image[2:4],) == version
             versions.add(version)
     assert versions == {*second_reader.VERSIONS}
 
@@ -137,16 +138,17 @@ def test_an_image_that_uses_no_device_runs_anywhere() -> None:
     assert load_image(image, Kit((), ())).devices == 0
     used = compile_text("DISTANCE", KIT).image
     assert load_image(used, KIT).devices == KIT.hashes[2]
-    with pytest.raises(ImageRefused, match="OTHER_KIT"):  # there it is a key
+    with pytest.raises(ImageRefused, match="OTHER_KIT"):  # in this kit the word is a key
         load_image(used, Kit((), ()))
     with pytest.raises(Refused, match="NO_SUCH_DEVICE"):
         load_image(compile_text("PAD_Y", KIT).image, Kit(KIT.sensors * 3))
-    with pytest.raises(ImageRefused, match="OTHER_KIT"):  # the code uses none, the header says so
+    # The code uses none, though the header claims some.
+    with pytest.raises(ImageRefused, match="OTHER_KIT"):
         load_image(pack("SI", 1, CODE), KIT)
 
 
 def test_a_kit_may_grow_after() -> None:
-    """And anything may change that a program does not use."""
+    """Anything that a program does not use may change too."""
     image = compile_text("LOOP(FOREVER);IF(DISTANCE < 10);STOP;ENDIF;END_LOOP", KIT).image
     more = (*KIT.sensors, Device("SONAR", NUMBER, "cm", 0, 1000))
     others = (
@@ -157,8 +159,8 @@ def test_a_kit_may_grow_after() -> None:
         kit = KIT._replace(sensors=sensors)
         assert kit.fingerprint != KIT.fingerprint
         load_image(image, kit)
-    grown = KIT._replace(actuators=(Device("LAMP", YES_NO, "", 0, 1),))
-    load_image(image, grown)
+    grown_kit = KIT._replace(actuators=(Device("LAMP", YES_NO, "", 0, 1),))
+    load_image(image, grown_kit)
 
 
 @pytest.mark.parametrize(
@@ -186,7 +188,7 @@ def test_the_code_is_verified_before_its_devices() -> None:
 
 
 def test_the_polynomial_is_primitive() -> None:
-    """So 65,535 uses of one device are the first number that could hide it."""
+    """Therefore 65,535 uses of one device are the first number that could hide it."""
     kit = Kit((), (Device("A", YES_NO, "", 0, 1),))
     one = kit.hash_of_used([("actuator", 0)])
     period_later = kit.hash_of_used([("actuator", 0)] * 65_536)
@@ -249,13 +251,15 @@ def test_the_spec_has_a_whole_image() -> None:
 
 
 def test_a_reader_made_from_the_specification_gives_the_same_reasons() -> None:
-    """For random bytes and changed images, half of them with the checksum mended."""
+    """The inputs are random bytes and changed images, half of them with a correct checksum."""
     rng = random.Random("images")
     met = set()
     for _ in range(20_000):
-        begun = b"TS\2\0" + rng.randbytes(20)
+        begun_bytes = b"TS\2\0" + rng.randbytes(20)
         data = bytearray(
-            rng.choice((IMAGE, pack("SI", 0, CODE, LATER), rng.randbytes(rng.randrange(40)), begun))
+            rng.choice(
+                (IMAGE, pack("SI", 0, CODE, LATER), rng.randbytes(rng.randrange(40)), begun_bytes)
+            )
         )
         for _ in range(rng.randrange(4)):
             if data:

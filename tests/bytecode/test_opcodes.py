@@ -97,7 +97,7 @@ def test_stack_effects() -> None:
     for op in OPS:
         for value in (0, 1):
             results = op.pushes
-            if op.control_role == "join":  # what decides stays
+            if op.control_role == "join":  # the deciding comparison stays
                 results += value == ("OR" in op.name)
             divides = op.name in ("DIV", "MOD") and value == 0
             wanted = (1, "DIVIDE_BY_ZERO") if divides else (results, "")
@@ -130,7 +130,8 @@ def faults_of(op: Op) -> set[str]:
 def test_the_instructions_that_can_fault_are_those_that_the_table_names() -> None:
     for op in OPS:
         fault_names = {fault for fault, names in opcodes.FAULTING_OPS.items() if op.name in names}
-        fault_names -= {"STUCK", "STUCK_LEFT", "STUCK_RIGHT"}  # of a robot that measures
+        # Faults of robots that measure their wheels.
+        fault_names -= {"STUCK", "STUCK_LEFT", "STUCK_RIGHT"}
         assert faults_of(op) == fault_names, op.name
 
 
@@ -185,7 +186,7 @@ def test_a_byte_begins_the_codes_of_two() -> None:
 
 
 def test_a_way_has_the_code_of_a_time_after_the_escape() -> None:
-    """So a machine's tables of decode forms serve both."""
+    """Therefore a machine's decode tables serve both."""
     for code, op in ESCAPED_OPS.items():
         of_time = opcodes.BY_CODE[code]
         assert of_time is not None
@@ -252,9 +253,9 @@ def test_an_instruction_that_comes_after_a_release_has_a_later_version() -> None
 
 def test_a_version_that_is_not_released_is_in_the_changelog() -> None:
     """After a release its codes are in RELEASED."""
-    unreleased = (ROOT / "CHANGELOG.md").read_text("utf-8").partition("\n## ")[2]
+    unreleased_text = (ROOT / "CHANGELOG.md").read_text("utf-8").partition("\n## ")[2]
     for minor in {op.since for op in OPS} - {*RELEASED}:
-        assert f"bytecode {ISA_MAJOR}.{minor}" in unreleased.partition("\n## ")[0], minor
+        assert f"bytecode {ISA_MAJOR}.{minor}" in unreleased_text.partition("\n## ")[0], minor
     assert max(RELEASED) <= ISA_MINOR <= max(RELEASED) + 1
 
 
@@ -268,7 +269,7 @@ def test_a_robot_makes_the_version_of_the_same_instructions(
         rf"minor_of_op\(uint8_t code\) {{ return .*code == 0x{code:02x} \? 9 : .*0; }}",
         cpp_header.header("a test"),
     )
-    escaped = [op._replace(since=9) if op.name == "MOVE_F" else op for op in OPS]
-    monkeypatch.setattr(opcodes, "OPS", escaped)
+    escaped_ops = [op._replace(since=9) if op.name == "MOVE_F" else op for op in OPS]
+    monkeypatch.setattr(opcodes, "OPS", escaped_ops)
     with pytest.raises(AssertionError, match="after an escape"):
         cpp_header.header("a test")

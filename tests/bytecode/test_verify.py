@@ -22,9 +22,9 @@ SENSORS, ACTUATORS = 3, 2
 def refusal(code: bytes) -> str:
     try:
         verify(code, SENSORS, ACTUATORS)
-    except Refused as refused:
-        assert 0 <= refused.offset <= len(code)
-        return refused.name
+    except Refused as refusal:
+        assert 0 <= refusal.offset <= len(code)
+        return refusal.name
     return ""
 
 

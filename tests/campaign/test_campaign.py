@@ -1,4 +1,6 @@
-"""`python -m tools.campaign` goes on where it was, tells what fails, adds up no other code."""
+"""`python -m tools.campaign` resumes, reports failures, and does not add up results of other
+code.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,7 @@ from tools.campaign import goals, results
 from tools.campaign.goals import GOALS, Goal
 from tools.campaign.results import Result
 
-HERE = "tests.campaign.stand_in"  # a campaign that takes no time
+HERE = "tests.campaign.stand_in"  # a campaign without any duration
 IS_OLD = results.is_old
 COMMAND, PATHS = f"{HERE} {{count}} --seed {{seed}}", ("tried",)
 DONE = Goal("done", "It ends.", "things", 25, 10, COMMAND, PATHS, 5)
@@ -79,16 +81,16 @@ def test_it_goes_on_where_it_was(
 
 
 def interrupted_after(monkeypatch: pytest.MonkeyPatch, pieces: int) -> None:
-    """Have Ctrl-C come after so many pieces, once."""
+    """Raise Ctrl-C once, after so many pieces."""
     piece, pieces_left = campaign.run_piece, [pieces]
 
-    def interrupted(*given: Any) -> Result:
+    def interrupt_piece(*arguments: Any) -> Result:
         pieces_left[0] -= 1
         if pieces_left[0] == -1:
             raise KeyboardInterrupt
-        return piece(*given)
+        return piece(*arguments)
 
-    monkeypatch.setattr(campaign, "run_piece", interrupted)
+    monkeypatch.setattr(campaign, "run_piece", interrupt_piece)
 
 
 def test_a_failure_is_told_with_its_seed_and_run_again(capsys: pytest.CaptureFixture[str]) -> None:
@@ -119,7 +121,7 @@ def test_what_code_has_reached_that_is_in_no_commit_is_not_kept(
 def test_a_figure_is_old_when_what_it_tried_has_changed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def committed(name: str, text: str) -> str:
+    def commit_file(name: str, text: str) -> str:
         (tmp_path / name).write_text(text)
         for words in (("add", "."), ("-c", "user.name=a", "-c", "user.email=a@b", "commit", "-mx")):
             assert results.git(*words).returncode == 0
@@ -129,8 +131,8 @@ def test_a_figure_is_old_when_what_it_tried_has_changed(
     monkeypatch.setattr(results, "ROOT", tmp_path)
     monkeypatch.setattr(results, "DOCUMENT", tmp_path / "page")
     results.git("init")
-    first = committed("tried", "1")
-    second = committed("other", "2")
+    first = commit_file("tried", "1")
+    second = commit_file("other", "2")
 
     def figure_in(commit: str) -> str:
         return results.figure_text(DONE, Result(25, 1, 7, 22, "", commit))
@@ -141,9 +143,9 @@ def test_a_figure_is_old_when_what_it_tried_has_changed(
     assert figure_in(first) == figure_in(second) == "25, old"
     results.write_results({"done": Result(25, 1, 7, 22, "", first)})
     assert results.outdated_goals() == ["done"]
-    third = committed("tried", "3")
+    third = commit_file("tried", "3")
     assert (figure_in(second), figure_in(third)) == ("25, old", "25")
-    monkeypatch.setattr(results, "ROOT", tmp_path / "none")  # no repository: as the page says
+    monkeypatch.setattr(results, "ROOT", tmp_path / "none")  # without a repository, as on the page
     (tmp_path / "none").mkdir()
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path))
     (tmp_path / "page").write_text("| `done` | It ends. | 25 things | 25, old | 7 |\n")
@@ -182,9 +184,9 @@ def test_each_goal_has_a_command_that_takes_its_words(
     if spec is not None and spec.submodule_search_locations:
         spec = find_spec(f"{name}.__main__")
     assert spec is not None and spec.origin
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exception_info:
         runpy.run_path(spec.origin, run_name="__main__")
-    assert not ended.value.code
-    printed = capfd.readouterr().out
-    assert all(word in printed for word in words if word.startswith("--"))
+    assert not exception_info.value.code
+    printed_text = capfd.readouterr().out
+    assert all(word in printed_text for word in words if word.startswith("--"))
     assert 0 < goal.piece_size <= goal.target

@@ -1,4 +1,4 @@
-"""`tsc upload --break`: where a program halts, what is told there, and what the keys do."""
+"""`tsc upload --break`: the halts of a program, their messages, and the keys."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_without_a_terminal_it_tells_each_halt_and_goes_on(
         0, ""
     )
     assert result.out.splitlines()[1:] == [*BEFORE_4, *BEFORE_7, *END]
-    assert pty_robot.did[-1] == "FINISHED"
+    assert pty_robot.actions[-1] == "FINISHED"
 
 
 def test_a_fault_after_a_halt_is_the_exit_code(pty_robot: PtyRobot) -> None:
@@ -106,9 +106,11 @@ def test_it_tells_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
 def test_an_instruction_that_is_joined_to_the_one_before_halts_there(pty_robot: PtyRobot) -> None:
     """The compiler takes a reading once: the statement has both."""
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
-    joined = "SI|DISTANCE\nIF(DISTANCE < 10)\nSTOP\nENDIF\nSHOW(2)\n"
+    joined_text = "SI|DISTANCE\nIF(DISTANCE < 10)\nSTOP\nENDIF\nSHOW(2)\n"
     for line in (1, 2):
-        result = on(pty_robot, "upload", "-e", joined, "--no-save", "--break", str(line)).gives(0)
+        result = on(
+            pty_robot, "upload", "-e", joined_text, "--no-save", "--break", str(line)
+        ).gives(0)
         assert result.out.splitlines()[1:2] == ["Halted before line 2: IF(DISTANCE < 10)"]
 
 
@@ -117,11 +119,11 @@ def test_a_key_steps_one_instruction_of_the_text(
     keys: str, pty_robot: PtyRobot, program: Path
 ) -> None:
     terminal = at_a_terminal(pty_robot, program, 4)
-    for halted, *_ in (BEFORE_4, BEFORE_6, BEFORE_7):
-        terminal.until(rf"(?s){halted.split(':')[0]}.*Ctrl-C: stop\n*$")
+    for halted_text, *_ in (BEFORE_4, BEFORE_6, BEFORE_7):
+        terminal.until(rf"(?s){halted_text.split(':')[0]}.*Ctrl-C: stop\n*$")
         terminal.type(keys)
     assert halt_output(terminal) == [*BEFORE_4, KEYS, *BEFORE_6, KEYS, *BEFORE_7, KEYS, *END]
-    assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    assert pty_robot.actions == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 @pytest.mark.parametrize("key", ["g", "G"])
@@ -134,7 +136,7 @@ def test_a_key_goes_on_to_the_next_place(key: str, pty_robot: PtyRobot, program:
 
 
 def test_a_key_counts_once_and_others_do_nothing(pty_robot: PtyRobot, program: Path) -> None:
-    """What is typed before the halt is told is no answer to it."""
+    """Keys typed before the halt is reported do not answer it."""
     terminal = at_a_terminal(pty_robot, program, 4)
     terminal.until(r"(?s)before line 4.*Ctrl-C: stop\n*$")
     terminal.type("x?ssg")
@@ -164,9 +166,9 @@ def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None
     terminal.interrupt()
     assert terminal.end() == 2
     assert "the robot has confirmed the stop" in "\n".join(terminal.whole())
-    assert "MOTORS 80 80" not in pty_robot.did
+    assert "MOTORS 80 80" not in pty_robot.actions
     on(pty_robot, "start").gives(0)
-    assert "MOTORS 80 80" in pty_robot.did, "it has no breakpoint any more"
+    assert "MOTORS 80 80" in pty_robot.actions, "it has no breakpoint any more"
 
 
 @pytest.mark.parametrize(
@@ -184,7 +186,7 @@ def test_what_no_robot_does_is_said_before_anything_is_sent(
     words: list[str], code: int, message: str, pty_robot: PtyRobot, program: Path
 ) -> None:
     on(pty_robot, "upload", program, *words).gives(code, message)
-    assert pty_robot.did == [] and on(pty_robot, "start").code == 3, "it has no program"
+    assert pty_robot.actions == [] and on(pty_robot, "start").code == 3, "it has no program"
 
 
 def test_an_image_whose_text_nobody_knows_has_no_lines(
@@ -215,8 +217,10 @@ SEQUENCES = ["\x1b[A", "\x1bOA", "\x1b[1;5C", *(f"\x1bO{last}" for last in "PQRS
 def test_no_key_of_several_characters_steps_or_goes_on(seed: int) -> None:
     """F4 ends with an S. What is typed between such keys counts."""
     rng = random.Random(seed)
-    pressed = [rng.choice([*SEQUENCES, *(STEP_KEYS + GO_KEYS)]) for _ in range(8)]
-    assert letters_of("".join(pressed)) == "".join(key for key in pressed if len(key) == 1)
+    pressed_keys = [rng.choice([*SEQUENCES, *(STEP_KEYS + GO_KEYS)]) for _ in range(8)]
+    assert letters_of("".join(pressed_keys)) == "".join(
+        key for key in pressed_keys if len(key) == 1
+    )
 
 
 def test_a_key_that_is_pressed_while_the_program_runs_does_nothing(
@@ -264,26 +268,28 @@ def test_a_line_halts_where_it_is_told_and_nowhere_in_what_came_before(pty_robot
 def test_lines_that_halt_do_what_they_do_alone(halts: str, pty_robot: PtyRobot) -> None:
     data = "\n".join(LINES).encode()
     alone = on(pty_robot, "live", "-", data=data).gives(0, "").out.splitlines()
-    halted = on(pty_robot, "live", "-", "--break", halts, data=data).gives(0, "").out.splitlines()
-    is_told = [line for line in halted if not line.startswith(("Halted", "  "))]
-    assert is_told == alone and ("Halted before line 1: SHOW(X)" in halted) is (halts == "1")
+    halt_rows = (
+        on(pty_robot, "live", "-", "--break", halts, data=data).gives(0, "").out.splitlines()
+    )
+    is_told = [line for line in halt_rows if not line.startswith(("Halted", "  "))]
+    assert is_told == alone and ("Halted before line 1: SHOW(X)" in halt_rows) is (halts == "1")
 
 
 def test_a_person_steps_lines_at_the_prompt(pty_robot: PtyRobot) -> None:
-    """A step goes over what is not of the line: variables and DEFs before it, values after it."""
+    """A step skips code outside of the line: variables and DEFs before it, values after it."""
     terminal = Terminal("live", "--port", pty_robot.port, "--break", "1", size=(100, 60))
     terminal.until("tini>")
     terminal.type("SPEED = 55; DEF GO; F(0.1, SPEED); END_DEF\n")
     terminal.until(r"(?s)before line 1: SPEED = 55.*Ctrl-C: stop\n*$")
     terminal.type("s")
     terminal.until("tini>\n*$")
-    assert pty_robot.did.count("MOTORS 55 55") == 0
+    assert pty_robot.actions.count("MOTORS 55 55") == 0
     terminal.type("GO; SPEED = SPEED + 5\n")
     terminal.until(r"(?s)before line 1: GO\n.*SPEED = 55.*Ctrl-C: stop\n*$")
-    assert "MOTORS 55 55" not in pty_robot.did
+    assert "MOTORS 55 55" not in pty_robot.actions
     terminal.type("s")
     terminal.until(r"(?s)before line 1: SPEED = SPEED.*Ctrl-C: stop\n*$")
-    assert "MOTORS 55 55" in pty_robot.did
+    assert "MOTORS 55 55" in pty_robot.actions
     terminal.type("g")
     terminal.until("tini>\n*$")
     terminal.type("F(9, SPEED)\n")
@@ -291,7 +297,7 @@ def test_a_person_steps_lines_at_the_prompt(pty_robot: PtyRobot) -> None:
     terminal.interrupt()
     terminal.until("the robot has confirmed the stop")
     terminal.until("tini>\n*$")
-    assert "MOTORS 60 60" not in pty_robot.did
+    assert "MOTORS 60 60" not in pty_robot.actions
     terminal.type("\x04")
     assert terminal.end() == 0
 
@@ -303,4 +309,4 @@ def test_a_line_that_has_no_such_place_or_a_robot_that_cannot_halt_gets_nothing(
     on(pty_robot, "live", "F(1, 80)", "--break", "0").gives(2, "--break")
     monkeypatch.setattr(debugger, "BREAKPOINTS", 0)
     on(pty_robot, "live", "F(1, 80)", "--break", "1").gives(3, "breakpoint")
-    assert pty_robot.did == []
+    assert pty_robot.actions == []

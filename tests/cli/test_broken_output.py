@@ -1,4 +1,4 @@
-"""Whoever reads what tsc prints has gone: one exit code, and no robot that drives unseen."""
+"""When the reader of tsc's output is gone, there is one exit code, and no robot drives unseen."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_upload_into_a_pipe_that_closes_stops_the_robot(
 
 
 def test_a_program_that_prints_nothing_is_stopped_too(pty_robot: PtyRobot) -> None:
-    """It has no end, and tsc has nothing to write that could fail."""
+    """The program has no end, and tsc has nothing to write that could fail."""
     port_option = ("--port", pty_robot.port)
     for words in (("upload", "-e", FOREVER), ("start",)):
         code, err = after_lines(1, *words, *port_option)
@@ -86,7 +86,7 @@ def test_a_slow_reader_and_a_file_are_none_that_has_gone(
 
 
 def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
-    """It drives without a pause, so nothing is saved before the stop."""
+    """The program drives without a pause, so nothing is saved before the stop."""
     drives = "".join(f"M({k}, 50);W(0.01);" for k in range(1, 50))
     words = ["upload", "-e", f"SI|LOOP(FOREVER);{drives}SHOW(1);END_LOOP", "--port", pty_robot.port]
     code, err = after_lines(1, *words)
@@ -123,14 +123,14 @@ def test_what_goes_on_alone_goes_on(pty_robot: PtyRobot) -> None:
 
 
 def test_many_robots_are_stopped() -> None:
-    """At once, and not only by themselves a second later."""
+    """All stop at once, not only by their timers a second later."""
     with RobotFleet([robots.load("tinibot").kit] * 3) as room:
         port_options = [word for pupil in room.pupils for word in ("--port", pupil.port)]
         code, _ = after_lines(4, "upload", "-e", SHOWS, *port_options)
         assert code == EXIT_OF_CLOSED_PIPE
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
         for pupil in room.pupils:
-            assert any(line.startswith("MOTORS") for line in pupil.did)
+            assert any(line.startswith("MOTORS") for line in pupil.actions)
             assert bytes(STOP_ZEROS) in pupil.heard
 
 
@@ -143,11 +143,11 @@ def test_only_robots_that_a_command_drives_are_stopped(
     """`tsc doctor --all | head` leaves running robots alone."""
     stopped: list[str] = []
 
-    def broken(self: fleet.Fleet, table: object) -> None:
+    def break_pipe(self: fleet.Fleet, table: object) -> None:
         raise BrokenPipeError
 
     monkeypatch.setattr(fleet.Fleet, "start_work", lambda self, work: None)
-    monkeypatch.setattr(fleet.Fleet, "print_until_done", broken)
+    monkeypatch.setattr(fleet.Fleet, "print_until_done", break_pipe)
     monkeypatch.setattr(fleet.Fleet, "interrupt_robots", lambda self: stopped.append(verb))
     monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.0)
     options = Namespace(verb=verb, detach=is_detached, json=True, ports=["/x", "/y"], all=False)
@@ -174,7 +174,7 @@ def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
      ["check", "-e", "F(1"], ["complie"]],
 )  # fmt: skip
 def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
-    """Nothing is read of what it prints: text, bytes, not even what is wrong."""
+    """Nothing of its output is read: text, bytes, or mistakes."""
     ours, theirs = os.pipe()
     os.close(ours)
     try:
@@ -194,7 +194,7 @@ def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
 def test_a_port_that_vanishes_is_no_bug(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], which: int
 ) -> None:
-    """The cable is pulled before the robot has said that it has kept what it was told."""
+    """The cable is pulled before the robot has confirmed a save."""
     real = connect.Connection.begin_request
     asked = []
 
@@ -215,7 +215,7 @@ def test_a_port_that_vanishes_is_no_bug(
 def test_a_robot_that_is_busy_for_too_long_is_not_lost(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whoever waits hears that it saves, and what to do."""
+    """The user is told that it saves, and what to do."""
 
     def busy(name: str, payload: bytes) -> Reply[SentReply] | None:
         reply = reply_of(name, payload)
@@ -264,7 +264,7 @@ def test_a_fleet_whose_output_nobody_reads_ends_with_ctrl_c(extra: list[str]) ->
         assert command.process.wait(HANGS_S) == 2
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
         assert all(bytes(STOP_ZEROS) in pupil.heard for pupil in room.pupils)
-        result = command.ended()
+        result = command.wait_for_result()
         assert result.out and "Traceback" not in result.err
 
 
@@ -281,7 +281,7 @@ def test_a_command_whose_output_nobody_reads_ends_with_ctrl_c(
     assert command.process.wait(HANGS_S) in (0, 2)
     if verb == "upload":
         pty_robot.until(lambda: not pty_robot.moves, "it stands")
-    assert "Traceback" not in command.ended().err
+    assert "Traceback" not in command.wait_for_result().err
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
@@ -290,7 +290,7 @@ def test_a_command_whose_output_nobody_reads_ends_with_ctrl_c(
 def test_who_shares_the_pipe_of_an_interrupted_command_has_it_as_it_was(
     monkeypatch: pytest.MonkeyPatch, stream: str, reader: str
 ) -> None:
-    """What comes after it in `(tsc upload prog; echo done) | less` may wait for the reader."""
+    """In `(tsc upload prog; echo done) | less`, the next command may wait for the reader."""
     monkeypatch.setattr(streams, "READER_TIMEOUT_S", 0.0)
     end, pipe = os.pipe()
     shared = os.dup(pipe)

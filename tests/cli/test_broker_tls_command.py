@@ -11,7 +11,7 @@ import pytest
 
 from tests.machines.esp32 import HAS_TLS
 from tests.support.certificates import Authority, der
-from tests.support.claimed_robots import claimed
+from tests.support.claimed_robots import claim_with_button
 from tests.support.command import inside, process
 from tests.support.esp32_near import NETWORK, PASSWORD, near
 from tests.support.esp32_pty_robot import Esp32PtyRobot
@@ -40,7 +40,7 @@ def school(tmp_path: Path) -> Iterator[School]:
     robot = Esp32PtyRobot("tinibot32")
     try:
         near(robot)
-        assert claimed(robot).code == 0
+        assert claim_with_button(robot).code == 0
         assert on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
         yield School(robot, broker, authority)
     finally:
@@ -90,7 +90,8 @@ def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path
 
 
 def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_path: Path) -> None:
-    """As a robot does; not another one of its authority. No trust is told from nobody there.
+    """Like a robot, it refuses another certificate of the same authority. An untrusted broker and
+    an absent one have different messages.
 
     Each in a process, since one keeps its connection to a broker.
     """
@@ -98,15 +99,15 @@ def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_pat
     broker = Mosquitto(tmp_path, more=authority.rules(NAME))
     authority.rules("other.aula")
     binary = tmp_path / "own.der"
-    binary.write_bytes(der(authority.signed(NAME)))
+    binary.write_bytes(der(authority.sign(NAME)))
     (tmp_path / "none").write_bytes(b"hello")
-    trusted, strange = "no robot of the class", "does not trust the certificate"
+    trusted_text, strange = "no robot of the class", "does not trust the certificate"
     try:
         for name, trust, expected in (
-            (NAME, ("--trust", authority.signed(NAME)), trusted),
-            ("127.0.0.1", ("--trust", authority.signed(NAME)), trusted),
-            (NAME, ("--trust", binary), trusted),
-            (NAME, ("--trust", authority.signed("other.aula")), strange),
+            (NAME, ("--trust", authority.sign(NAME)), trusted_text),
+            ("127.0.0.1", ("--trust", authority.sign(NAME)), trusted_text),
+            (NAME, ("--trust", binary), trusted_text),
+            (NAME, ("--trust", authority.sign("other.aula")), strange),
             (NAME, ("--trust", tmp_path / "none"), strange),
             (NAME, (), strange),
         ):

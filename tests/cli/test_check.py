@@ -1,4 +1,4 @@
-"""`tsc check` for several programs and folders, and `--fix`: what is written, said and returned."""
+"""`tsc check` for several programs and folders, and `--fix`: files, output and exit codes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 from tests.support.command import Tsc
 
 RIGHT, WRONG = "SI|F(2, 80)\n", "SI|F(2 80)\n"
-LEFT = "SI|F(2 80);girar(derecha, 90)\n"  # one is sure, the other is not
+LEFT = "SI|F(2 80);girar(derecha, 90)\n"  # the first repair is certain, the second is not
 
 
 @pytest.fixture
@@ -46,7 +46,7 @@ def test_a_folder_has_a_line_for_each_program_and_a_table(folder: Path, tsc: Tsc
 
 
 def test_programs_that_are_right_give_zero_and_each_is_checked_once(folder: Path, tsc: Tsc) -> None:
-    """That is one program, for which there is no table; a folder may have none."""
+    """A single program has no table; a folder may be empty."""
     result = tsc("check", "a.ts", "./a.ts", "a.ts")
     assert (result.code, result.out.count("no mistakes")) == (0, 1)
     result = tsc("check", "a.ts", "--csv", "t.csv")
@@ -60,7 +60,7 @@ def test_programs_that_are_right_give_zero_and_each_is_checked_once(folder: Path
 
 
 def test_the_table_as_data_and_for_a_spreadsheet(folder: Path, tsc: Tsc) -> None:
-    """What it says is what the command says, but for a first sign that begins a formula."""
+    """Its messages are those of the command, except for an initial sign that begins a formula."""
     (folder / "=1+1.ts").write_text(RIGHT, encoding="utf-8")
     (folder / "d.ts").write_text("SI|F(2, =X)", encoding="utf-8")
     (folder / "e.ts").write_text("SI|+F(2,80)", encoding="utf-8")
@@ -179,12 +179,12 @@ def test_what_is_no_text_and_a_line_with_a_checksum_stay_as_they_are(
 
 
 def test_notepad_s_unicode_is_text_in_another_encoding(tmp_path: Path, tsc: Tsc) -> None:
-    """So PowerShell's > writes it, too: `explain TS003` names it, and what to choose."""
+    """PowerShell's > writes this encoding too; `explain TS003` names it and the remedy."""
     path = tmp_path / "unicode.ts"
     for encoding, mark in (("utf-16", ""), ("utf-16-be", "\ufeff"), ("utf-16-le", "\ufeff")):
         path.write_bytes((mark + RIGHT).encode(encoding))
         assert "TS003" in tsc("check", path).err, encoding
-    path.write_bytes(RIGHT.encode("utf-16-le"))  # without its mark it may be anything
+    path.write_bytes(RIGHT.encode("utf-16-le"))  # without a byte order mark, it may be anything
     assert "TS002" in tsc("check", path).err
 
 

@@ -18,9 +18,17 @@ from typing import cast
 
 import pytest
 
-from tests.support.claimed_robots import as_another, claimed
+from tests.support.claimed_robots import as_another, claim_with_button
 from tests.support.command import FOREVER, Command, CommandResult, inside, process
-from tests.support.esp32_near import DRIVES, DROVE, NETWORK, PASSWORD, drove, files_with, near
+from tests.support.esp32_near import (
+    DRIVES,
+    DROVE,
+    NETWORK,
+    PASSWORD,
+    files_with,
+    list_motor_changes,
+    near,
+)
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto
 from tests.support.pty_robot import on
@@ -52,7 +60,7 @@ class Class(list[Esp32PtyRobot]):
         super().__init__(Esp32PtyRobot("tinibot32", seed) for seed in SEEDS)
         for robot in self:
             near(robot)
-            assert claimed(robot).code == 0
+            assert claim_with_button(robot).code == 0
             assert on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
             result = on(
                 robot, "set", "wifi", *self.place_options, "--user", "robots", data=SECRET + b"\n"
@@ -84,7 +92,7 @@ def room(tmp_path: Path) -> Iterator[Class]:
 
 @pytest.fixture
 def broker(tmp_path: Path) -> Iterator[Mosquitto]:
-    """One that lets in everybody."""
+    """A broker that accepts everybody."""
     mosquitto = Mosquitto(tmp_path)
     yield mosquitto
     mosquitto.kill()
@@ -109,7 +117,7 @@ def all_drive(room: Class) -> None:
 
 
 def pass_ms(room: Class, milliseconds: int) -> None:
-    """Let so much time pass on each robot."""
+    """Let time pass on each robot."""
     for robot in room:
         end_ms = robot.robot_ms + milliseconds
         robot.until(lambda robot=robot, ms=end_ms: robot.robot_ms > ms, "time has passed")  # type: ignore[misc]
@@ -119,13 +127,13 @@ def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> No
     tsc(room).gives(0, out=("12345678", "0badcafe"))
     result = tsc(room, "upload", "-e", "SI|F(0.2, 80); SHOW(7)").gives(0)
     assert result.out.count("SHOW 7") == 2, result
-    assert all(drove(robot)[-2:] == DROVE for robot in room)
+    assert all(list_motor_changes(robot)[-2:] == DROVE for robot in room)
     assert files_with(tmp_path / "cache", SECRET) == []
     command = driving(room)
     result = tsc(room, "stop")
     assert not any(robot.moves for robot in room)
     assert (result.code, result.out.count("has confirmed")) == (0, 2), result
-    assert command.ended().code != 0
+    assert command.wait_for_result().code != 0
     room[1].switch_off()
     until(
         lambda: "0badcafe) is no longer connected to the broker: it is off" in tsc(room).out,
@@ -136,7 +144,7 @@ def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> No
 def test_who_has_no_key_sees_and_stops(
     room: Class, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """Who does not know the password of the broker does not even see."""
+    """Clients without the broker's password do not see the class."""
     tsc(room, "upload", "-e", FOREVER, "--detach").gives(0)
     all_drive(room)
     as_another(monkeypatch, tmp_path)
@@ -154,7 +162,7 @@ def test_who_has_no_key_sees_and_stops(
 
 
 def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
-    """A robot keeps its client for 3 s; another client waits so long, and then is told."""
+    """A robot keeps its client for 3 s; another client waits for that, and then gets a message."""
     command = driving(room)
     command.signal(signal.SIGSTOP)
     begun_ms = [robot.robot_ms for robot in room]
@@ -179,7 +187,7 @@ def test_who_only_looks_changes_nothing(room: Class) -> None:
     command.signal(signal.SIGCONT)
     pass_ms(room, 2500)
     for robot in room:
-        assert robot.moves, robot.did
+        assert robot.moves, robot.actions
     command.process.kill()
 
 
@@ -191,13 +199,13 @@ def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
     robots = [RobotPresence("00000001", "A", True), RobotPresence("00000002", "B", False)]
     for verb, attends in (("class", False), ("stop", False), ("upload", True)):
         options = Classroom.options_for(cast(Classroom, room), robots, verb)
-        assert options.verb == verb  # of an upload, who no longer reads stops the robots
+        assert options.verb == verb  # an upload stops its robots if its output is closed
         assert hasattr(options, "attend") == attends
         assert options.ports == ["mqtt://h:1/c/00000001"]
 
 
 def test_a_fleet_is_asked_for_no_option_that_a_class_lacks() -> None:
-    """What the class does not take is as the verb of a fleet has it where nobody gave it."""
+    """Options that a class lacks have the fleet's default."""
     own = Options("class", "en").read(["upload"])
     room = SimpleNamespace(
         address=("h", 1), group="c", options=own, broker=SimpleNamespace(attend=print)
@@ -232,26 +240,26 @@ def test_values_are_collected(room: Class, tmp_path: Path) -> None:
 
 
 def test_the_times_of_all_robots_count_from_one_start() -> None:
-    printed: list[str] = []
+    printed_lines: list[str] = []
     listener = Listener(True, None)
     began_ms = now_ms()
-    shown = ShownEvent(5000, False)
+    shown_event = ShownEvent(5000, False)
 
     def listen(robot: int, after_ms: int) -> None:
         def watch(_: float | None) -> Iterator[tuple[int, ShownEvent]]:
-            yield began_ms + after_ms, shown
-            yield began_ms + after_ms + 100, shown
+            yield began_ms + after_ms, shown_event
+            yield began_ms + after_ms + 100, shown_event
             raise KeyboardInterrupt
 
         connection = SimpleNamespace(
             port="x", name="tini", language="en", device_info=SimpleNamespace(id=robot), watch=watch
         )
-        member = SimpleNamespace(meet_robot=lambda _: None, queue_line=printed.append)
+        member = SimpleNamespace(meet_robot=lambda _: None, queue_line=printed_lines.append)
         listener.listen(cast(Connection, connection), cast(Member, member))
 
     listen(1, 2000)
     listen(2, 7000)
-    times = [json.loads(line)["ms"] for line in printed]
+    times = [json.loads(line)["ms"] for line in printed_lines]
     early_ms = times[0] - 2000
     assert 0 <= early_ms < 1000
     assert [time_s - early_ms for time_s in times] == [2000, 2100, 7000, 7100]
@@ -288,7 +296,7 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
     gone: tuple[bool | None, ...], is_there: bool,
 ) -> None:  # fmt: skip
-    """All of them are tried, and then each robot is asked whether it stands; where none can be,
+    """All of them are tried, and then each robot is asked whether it stands; if none can be,
     it is said that a message has gone, if one has."""
     rest, asked = [*gone], []
 
@@ -304,10 +312,10 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
         return []
 
     room = SimpleNamespace(broker=SimpleNamespace(stop=stop), group="c", present_robots=present,
-                           language="en", options_for=lambda *given: given)  # fmt: skip
+                           language="en", options_for=lambda *arguments: arguments)  # fmt: skip
 
-    def ask(*given: object) -> int:
-        asked.append(given)
+    def ask(*arguments: object) -> int:
+        asked.append(arguments)
         return 7
 
     monkeypatch.setattr(classroom, "run_together", ask)
@@ -323,13 +331,13 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
 
 
 def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
-    """What a stranger retains reaches no terminal raw."""
+    """A stranger's retained messages never reach a terminal unescaped."""
     inside("class", "--broker", "127.0.0.1:1").gives(3, "no MQTT broker responds")
     broker_option = ("--broker", f"127.0.0.1:{broker.port}")
     for words in ([], ["stop"], ["upload", "-e", DRIVES], ["show"]):
         inside("class", *words, *broker_option).gives(3, "no robot of the class class")
     assert inside("class", "--tls", *broker_option).code == 3
-    stranger = broker.connected()
+    stranger = broker.connect_client()
     for robot, data in (("00000001", b"+\x1b[2Jtsc: ok\n"), ("00000002", b"-\x9b2J\r")):
         stranger._client.publish(f"{ROOT}/class/{robot}", data, retain=True)
     stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)
@@ -378,7 +386,7 @@ def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
 
 
 def keep(client: Broker, topic: str, payload: bytes) -> None:
-    """Have a broker retain a message."""
+    """Make a broker retain a message."""
     client._client.publish(topic, payload, qos=1, retain=True).wait_for_publish(HANGS_S)
     client.close()
 
@@ -387,12 +395,12 @@ def test_a_large_message_that_a_broker_keeps_is_named_and_a_stop_is_told_as_sent
     broker: Mosquitto,
 ) -> None:
     place_options = ["--broker", f"127.0.0.1:{broker.port}", "--class", "3b"]
-    keep(broker.connected(), f"{ROOT}/3b/big", bytes(5000))
+    keep(broker.connect_client(), f"{ROOT}/3b/big", bytes(5000))
     named = ("bytes under tiniscript/3b/big", "no robot of the class 3b")
     result = process("class", "list", *place_options).gives(3, *named)
     assert "no answer of a broker" not in result.err
     process("class", "stop", *place_options).gives(3, "the stop for all robots", *named)
-    keep(broker.connected(), f"{ROOT}/3b/0badcafe", b"-ANA")
+    keep(broker.connect_client(), f"{ROOT}/3b/0badcafe", b"-ANA")
     process("class", "stop", *place_options, "--lang", "es").gives(3, "llegó al broker", "3b/big")
 
 
@@ -405,4 +413,4 @@ def test_robots_are_listed_and_stopped_beside_a_large_message(room: Class) -> No
     command = driving(room)
     result = tsc(room, "stop").gives(0, topic)
     assert not any(robot.moves for robot in room) and result.out.count("has confirmed") == 2
-    assert command.ended().code != 0
+    assert command.wait_for_result().code != 0

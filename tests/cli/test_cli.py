@@ -27,7 +27,7 @@ WAYS = (
 def test_a_mistake_is_exit_code_1_whatever_is_done_with_the_program(
     tsc: Tsc, working_folder: Path, way: str
 ) -> None:
-    """And nothing of it is written, run or sent."""
+    """Nothing is written, run or sent."""
     program = working_folder / "drive.ts"
     program.write_text("SI|S = 5")
     verb, *options = way.split()
@@ -88,9 +88,9 @@ def test_map_says_which_line(tsc: Tsc, tmp_path: Path) -> None:
     source, places = tmp_path / "a.ts", tmp_path / "a.map"
     source.write_text("// hello\nW(1)\nX = 0; SHOW(1 / X)\n", encoding="utf-8")
     assert tsc("compile", source, "--map", places).code == 0
-    known = json.loads(places.read_text(encoding="utf-8"))
-    assert known["lines"][1] == "W(1)"
-    assert [place[:3] for place in known["places"]] == [[0, 2, 1], [2, 3, 1], [4, 3, 8]]
+    known_fields = json.loads(places.read_text(encoding="utf-8"))
+    assert known_fields["lines"][1] == "W(1)"
+    assert [place[:3] for place in known_fields["places"]] == [[0, 2, 1], [2, 3, 1], [4, 3, 8]]
     result = tsc("run", tmp_path / "a.bin")
     assert (result.code, result.out) == (1, "1000 FAULT DIVIDE_BY_ZERO\n")
     assert "line 3:  X = 0; SHOW(1 / X)" in result.err
@@ -112,7 +112,7 @@ def test_each_fault_of_a_program_is_explained(tsc: Tsc) -> None:
 def test_the_board_has_less_memory_than_the_language(tsc: Tsc, tmp_path: Path) -> None:
     text = "SHOW(TIME * 1.234);" * 90
     result = tsc("compile", "-e", text, "-o", tmp_path / "a.bin").gives(1, "389")
-    assert "151" in result.err  # by how much
+    assert "151" in result.err  # by how many bytes
     for verb in ("check", "run"):
         tsc(verb, "-e", text).gives(0, "151")
     assert tsc("compile", "-e", text, "-o", tmp_path / "a.bin", "--robot", "grabber").code == 0
@@ -272,12 +272,16 @@ def test_show_lists_with_lines(tsc: Tsc, tmp_path: Path) -> None:
 
 def test_show_json(tsc: Tsc, program: Path) -> None:
     tsc("compile", program)
-    known = json.loads(tsc("show", program.with_suffix(".bin"), "--json").out)
-    assert (known["code_bytes"], known["image_bytes"], known["start"]) == (3, 18, "SI")
-    assert known["robot"] is None
-    assert [instruction["name"] for instruction in known["instructions"]] == ["MOVE8_F"]
-    known = json.loads(tsc("show", "-e", "SB|DISTANCE", "--json").out)
-    assert (known["robot"], known["start"]) == ("tinibot", "SB")
+    known_fields = json.loads(tsc("show", program.with_suffix(".bin"), "--json").out)
+    assert (known_fields["code_bytes"], known_fields["image_bytes"], known_fields["start"]) == (
+        3,
+        18,
+        "SI",
+    )
+    assert known_fields["robot"] is None
+    assert [instruction["name"] for instruction in known_fields["instructions"]] == ["MOVE8_F"]
+    known_fields = json.loads(tsc("show", "-e", "SB|DISTANCE", "--json").out)
+    assert (known_fields["robot"], known_fields["start"]) == ("tinibot", "SB")
 
 
 # -- fmt and explain ----------------------------------------------------------------------------
@@ -311,6 +315,6 @@ def test_explain(tsc: Tsc) -> None:
     assert tsc("check", "--explain", "ts012", "--lang", "es").out != result.out
     assert tsc("check", "--explain").out.count("\nTS") > 50
     for language, vague in (("en", "another way"), ("es", "otra forma"), ("pt", "outro jeito")):
-        # a title says what is wrong, not that it is said otherwise
+        # A title names the mistake, not the alternative.
         assert vague not in tsc("check", "--explain", "--lang", language).gives(0, out="TS076").out
     assert tsc("check", "--explain", "TS999").code == 2

@@ -25,40 +25,40 @@ BASH = shutil.which("bash") or ""
 ZSH = shutil.which("zsh") or ""
 
 
-def offered(tsc: Tsc, *words: str) -> set[str]:
-    """Return what is offered for the last of these words."""
+def complete(tsc: Tsc, *words: str) -> set[str]:
+    """Return the completions of the last of these words."""
     result = tsc("help", "--completion", "bash", "--", *words[:-1], f".{words[-1]}").gives(0, "")
     return {line.partition("\t")[0] for line in result.out.splitlines()[1:]}
 
 
 def test_verbs_options_and_values(tsc: Tsc) -> None:
-    assert offered(tsc, "") == set(VERBS)
-    assert offered(tsc, "st") == {"start", "stop", "studio"}
-    assert offered(tsc, "--lang", "es", "up") == {"upload"}
-    assert offered(tsc, "--lang", "=", "es", "up") == {"upload"}
-    assert offered(tsc, "--l") == {"--lang"}
-    assert offered(tsc, "--lang", "") == set(languages())
-    assert offered(tsc, "upload", "--no-") == {"--no-run", "--no-save"}
-    assert offered(tsc, "upload", "a.ts", "--virtual", "--world", "l") == {"light", "line"}
-    assert offered(tsc, "check", "--robot", "") == set(robots.names())
-    assert offered(tsc, "check", "--robot", "=") == set(robots.names())
-    assert offered(tsc, "check", "--robot", "=", "lin") == {"liner"}
-    assert offered(tsc, "check", "--robot=lin") == {"--robot=liner"}
-    assert offered(tsc, "run", "--machine", "") == {"python", "cpp"}
-    assert offered(tsc, "set", "") == {"owner", "name", "trim", "text", "wifi"}
-    assert offered(tsc, "set", "trim", "--exchange", "") == {"yes", "no"}
-    assert offered(tsc, "set", "--port", "trim", "owner", "--") >= {"--give-up", "--list"}
-    assert offered(tsc, "doctor", "--se") == {"--selftest"}
-    assert offered(tsc, "doctor", "--module", "--p") == {"--port", "--pin"}
-    assert offered(tsc, "firmware", "--chip", "nano") == {"nano", "nano-old"}
-    assert offered(tsc, "firmware", "--board", "lin") == {"liner"}
-    assert offered(tsc, "check", "--explain", "TS") == set(CODES)
-    assert offered(tsc, "help", "fm") == offered(tsc, "ayuda", "fm") == {"fmt"}
-    assert offered(tsc, "help", "--completion", "") == {"bash", "zsh", "powershell"}
-    assert offered(tsc, "stop", "") >= {"--port", "--all"}  # it has no argument
-    assert offered(tsc, "compile", "-o", "") == set()  # a file, which bash itself finds
-    assert offered(tsc, "doctor", "--count", "") == set()
-    assert offered(tsc, "nonsense", "") == set()
+    assert complete(tsc, "") == set(VERBS)
+    assert complete(tsc, "st") == {"start", "stop", "studio"}
+    assert complete(tsc, "--lang", "es", "up") == {"upload"}
+    assert complete(tsc, "--lang", "=", "es", "up") == {"upload"}
+    assert complete(tsc, "--l") == {"--lang"}
+    assert complete(tsc, "--lang", "") == set(languages())
+    assert complete(tsc, "upload", "--no-") == {"--no-run", "--no-save"}
+    assert complete(tsc, "upload", "a.ts", "--virtual", "--world", "l") == {"light", "line"}
+    assert complete(tsc, "check", "--robot", "") == set(robots.names())
+    assert complete(tsc, "check", "--robot", "=") == set(robots.names())
+    assert complete(tsc, "check", "--robot", "=", "lin") == {"liner"}
+    assert complete(tsc, "check", "--robot=lin") == {"--robot=liner"}
+    assert complete(tsc, "run", "--machine", "") == {"python", "cpp"}
+    assert complete(tsc, "set", "") == {"owner", "name", "trim", "text", "wifi"}
+    assert complete(tsc, "set", "trim", "--exchange", "") == {"yes", "no"}
+    assert complete(tsc, "set", "--port", "trim", "owner", "--") >= {"--give-up", "--list"}
+    assert complete(tsc, "doctor", "--se") == {"--selftest"}
+    assert complete(tsc, "doctor", "--module", "--p") == {"--port", "--pin"}
+    assert complete(tsc, "firmware", "--chip", "nano") == {"nano", "nano-old"}
+    assert complete(tsc, "firmware", "--board", "lin") == {"liner"}
+    assert complete(tsc, "check", "--explain", "TS") == set(CODES)
+    assert complete(tsc, "help", "fm") == complete(tsc, "ayuda", "fm") == {"fmt"}
+    assert complete(tsc, "help", "--completion", "") == {"bash", "zsh", "powershell"}
+    assert complete(tsc, "stop", "") >= {"--port", "--all"}  # `stop` has no arguments
+    assert complete(tsc, "compile", "-o", "") == set()  # a file, which bash itself finds
+    assert complete(tsc, "doctor", "--count", "") == set()
+    assert complete(tsc, "nonsense", "") == set()
 
 
 def test_every_option_of_every_verb(tsc: Tsc) -> None:
@@ -66,8 +66,8 @@ def test_every_option_of_every_verb(tsc: Tsc) -> None:
         flags = {flag for action in parser._actions for flag in action.option_strings}
         flags |= {flag for option in selecting_options_of(command) for flag in option.flags.split()}
         words = command_words(command).split()
-        valued = [] if words[-1] in words_of(command) else ["x"]
-        assert offered(tsc, *words, *valued, "-") == flags, command
+        values = [] if words[-1] in words_of(command) else ["x"]
+        assert complete(tsc, *words, *values, "-") == flags, command
 
 
 def words(tmp_path: Path) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""`tsc doctor` and what is behind real ports: it disturbs nothing, and its report has no names."""
+"""`tsc doctor` with real ports: it disturbs nothing, and its report has no names."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def causes(done_out: str) -> list[str]:
 
 
 def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
-    before: list[bytes] = []
+    bytes_before: list[bytes] = []
     pty_robot.until(lambda: pty_robot.robot_ms > 500, "a new robot has kept its id")
-    pty_robot.ask(lambda robot: before.append(robot.memory()))
+    pty_robot.ask(lambda robot: bytes_before.append(robot.memory()))
     result = on(pty_robot, "doctor").gives(0, "")
     finding_lines, robot, ports = (part.splitlines() for part in result.out.split("\n\n"))
     assert finding_lines == [
@@ -48,14 +48,14 @@ def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
     assert robot[0] == f"tinibot on {pty_robot.port}, id 12345678, free"
     assert "no program" in robot and robot[-1].startswith("20 round trips: ")
     assert ports[0] == "Ports on this computer:" and f"{pty_robot.port}   last used" in ports
-    assert pty_robot.did == []
-    pty_robot.ask(lambda robot: before.append(robot.memory()))
-    assert before[0] == before[1]
+    assert pty_robot.actions == []
+    pty_robot.ask(lambda robot: bytes_before.append(robot.memory()))
+    assert bytes_before[0] == bytes_before[1]
 
 
 @pytest.mark.parametrize("is_others", [False, True])
 def test_a_run_goes_on(pty_robot: PtyRobot, is_others: bool) -> None:
-    """One that goes on alone, and one to which another tsc attends."""
+    """Both a run left alone, and one that another tsc attends."""
     if is_others:
         command = uploading(pty_robot)
     else:
@@ -64,7 +64,7 @@ def test_a_run_goes_on(pty_robot: PtyRobot, is_others: bool) -> None:
     expected = ["not_saved_yet", "fine"] if is_others else ["fine"]
     assert (result.code, causes(result.out)) == (0, expected)
     assert pty_robot.moves
-    assert "FINISHED" not in pty_robot.did
+    assert "FINISHED" not in pty_robot.actions
     if is_others:
         command.kill()
 
@@ -89,13 +89,13 @@ def test_what_is_wrong_with_a_robot_is_said(pty_robot: PtyRobot) -> None:
 
 
 def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
-    """Its power goes away when its motors are on; this chip says only that power came."""
+    """Its power fails when the motors start; this chip only reports a power-on."""
     on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save")
     command = Command("doctor", "--port", pty_robot.port, "--watch", "12", "--json")
-    heard = len(pty_robot.heard)
-    pty_robot.until(lambda: len(pty_robot.heard) > heard + 200, "it is watched")
+    heard_count = len(pty_robot.heard)
+    pty_robot.until(lambda: len(pty_robot.heard) > heard_count + 200, "it is watched")
     pty_robot.switch_off_and_on()
-    result = command.ended().gives(3)
+    result = command.wait_for_result().gives(3)
     (finding,) = (finding for finding in json.loads(result.out)["findings"] if finding["is_wrong"])
     assert (finding["cause"], finding["is_sure"]) == ("motors_restart", False)
     assert finding["said"] == "Your robot restarted when the motors started: check the batteries"
@@ -107,10 +107,11 @@ def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> No
     command = Command("doctor", "--port", pty_robot.port, "--watch", "60")
     pty_robot.until(lambda: registry.find_registration(pty_robot.port) is not None, "it is watched")
     assert pty_robot.moves
-    assert process("stop", "--port", pty_robot.port).code == 0  # its time is also the doctor's
+    # The wait is part of the doctor's time.
+    assert process("stop", "--port", pty_robot.port).code == 0
     assert not pty_robot.moves
     command.signal(signal.SIGINT)
-    command.ended().gives(2)
+    command.wait_for_result().gives(2)
 
 
 # -- other things -------------------------------------------------------------------------------
@@ -128,7 +129,7 @@ def test_a_port_that_another_program_has_locked() -> None:
 
 
 def test_what_is_no_robot_and_what_others_have_written(tsc: Tsc) -> None:
-    """At a real port; the causes, each by itself, are in `tests/doctor/`."""
+    """Uses a real port; each cause by itself is in `tests/doctor/`."""
     with PtyEnd(Firmware(57_600)) as pty_end:
         result = tsc("doctor", "--port", pty_end.port, "--json")
     assert (result.code, causes(result.out)) == (3, ["wrong_baud"])
@@ -151,16 +152,18 @@ SEVEN = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("end", "cause", "what", "heard"), SEVEN, ids=[row[1] for row in SEVEN])
+@pytest.mark.parametrize(
+    ("end", "cause", "what", "heard_text"), SEVEN, ids=[row[1] for row in SEVEN]
+)
 def test_a_board_that_is_not_ours_at_a_real_port(
-    tsc: Tsc, end: boards.Board, cause: str, what: str, heard: str
+    tsc: Tsc, end: boards.Board, cause: str, what: str, heard_text: str
 ) -> None:
-    """At the speed of a robot with an HC-05, which most of them do not have."""
+    """The speed is that of a robot with an HC-05, which most boards do not have."""
     with PtyEnd(end) as pty_end:
         result = tsc("doctor", "--port", pty_end.port, "--json").gives(3)
     (finding,) = json.loads(result.out)["findings"]
     assert (finding["cause"], finding["is_sure"]) == (cause, True)
-    assert what in finding["said"] and heard in finding["seen"] and finding["next"]
+    assert what in finding["said"] and heard_text in finding["seen"] and finding["next"]
 
 
 @pytest.mark.parametrize(("board", "sentence"), [
@@ -172,7 +175,7 @@ def test_a_board_that_is_not_ours_at_a_real_port(
 def test_an_upload_says_what_is_there_instead_of_a_robot(
     tsc: Tsc, hasty: None, board: type[boards.Board], sentence: str
 ) -> None:
-    """It asks nothing but HELLO, and hears what a board says when it starts."""
+    """It sends only HELLO, and reads a board's start message."""
     with PtyEnd(board(9600)) as pty_end:
         words = ("upload", "-e", "SI|F(1, 50)", "--port", pty_end.port)
         result = tsc(*words).gives(3, f"no TiniScript robot responds on {pty_end.port}", sentence)
@@ -240,7 +243,7 @@ def test_a_report_has_the_findings_and_no_names(tsc: Tsc, tmp_path: Path) -> Non
         assert f"port: {pty_end.port}" in text
         for word in ("ANA", "6B", "12347f3a", str(tmp_path), *(x for x in own if len(x) > 2)):
             assert not re.search(rf"\b{re.escape(word)}\b", text), word
-        # one of its own it replaces
+        # A name of its own replaces the option.
         tsc("doctor", "--port", "/dev/not-there", "--report", file)
         assert "unknown_kit" not in file.read_text(encoding="utf-8")
 
@@ -258,7 +261,7 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("port", "shown"),
+    ("port", "shown_text"),
     [
         ("/dev/ttyUSB0", "/dev/ttyUSB0"),
         ("COM5", "COM5"),
@@ -271,8 +274,8 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
         ("/home/ana/port", "…"),
     ],
 )
-def test_ports_in_a_report(port: str, shown: str) -> None:
-    assert report.shown_port(port) == shown
+def test_ports_in_a_report(port: str, shown_text: str) -> None:
+    assert report.shown_port(port) == shown_text
 
 
 def test_values_of_others_stay_out_of_a_report() -> None:

@@ -32,7 +32,7 @@ GRABBER = (
 HIDE, REVEAL = b"\x1b[?25l", b"\x1b[?25h"
 
 
-def ended(
+def run_to_end(
     *words: str, code: int = 0, size: tuple[int, int] = (80, 24),
     output: Path | None = None, env: dict[str, str] | None = None,
 ) -> Terminal:  # fmt: skip
@@ -43,7 +43,7 @@ def ended(
 
 
 def plain(*arguments: str) -> str:
-    """What `tsc run` prints with no terminal."""
+    """Return the output of `tsc run` without a terminal."""
     return inside("run", *arguments).out
 
 
@@ -65,17 +65,19 @@ def picture(lines: list[str]) -> list[str]:
 )
 def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) -> None:
     """Which shows the way in color and the values, beside it or below; the cursor comes back."""
-    terminal = ended("-e", OBSTACLES, *SEEN, "--pace", pace, size=size)
-    written, lines = terminal.written, terminal.whole()
-    if pace != "0":  # then it is drawn once
-        assert written.count(HIDE) == 1 and written.rindex(REVEAL) > written.rindex(HIDE)
+    terminal = run_to_end("-e", OBSTACLES, *SEEN, "--pace", pace, size=size)
+    written_bytes, lines = terminal.written, terminal.whole()
+    if pace != "0":  # in that case the picture is drawn once
+        assert written_bytes.count(HIDE) == 1 and written_bytes.rindex(
+            REVEAL
+        ) > written_bytes.rindex(HIDE)
     trace = plain("-e", OBSTACLES, *SEEN).splitlines()
     top = next(k for k in range(len(lines)) if lines[k].startswith("0 "))
     assert lines[top : top + len(trace)] == trace
     drawn = picture(lines)
     assert lines[top + len(trace) :] == drawn and drawn[0].startswith("── TiniBot")
     if size[0] >= 40:
-        assert b"\x1b[36m" in written
+        assert b"\x1b[36m" in written_bytes
         way = drawn if size[0] == 80 else drawn[1:8]
         assert any(arrow in line for line in way for arrow in sketch.ARROWS)
         assert any("⠀" < c <= "⣿" for line in way for c in line)
@@ -86,34 +88,34 @@ def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) ->
 
 def test_a_file_gets_the_trace_byte_for_byte(tmp_path: Path) -> None:
     file = tmp_path / "trace"
-    terminal = ended("-e", OBSTACLES, *SEEN, "--pace", "20", output=file)
+    terminal = run_to_end("-e", OBSTACLES, *SEEN, "--pace", "20", output=file)
     assert file.read_bytes() == plain("-e", OBSTACLES, *SEEN).encode()
     assert b"MOTORS" not in terminal.written
     assert picture(terminal.whole())[0].startswith("── TiniBot")
 
 
 def test_actuators_shown_values_and_yes_no_are_drawn() -> None:
-    terminal = ended("-e", GRABBER, "--robot", "grabber", "--pace", "10")
+    terminal = run_to_end("-e", GRABBER, "--robot", "grabber", "--pace", "10")
     lines = picture(terminal.whole())
     assert row(lines, "GRIPPER") == ["GRIPPER", "90", "°", "gripper"]
     assert row(lines, "LED") == ["LED", "TRUE", "lamp"]
     assert row(lines, "BUTTON")[:2] == ["BUTTON", "FALSE"]
     assert row(lines, "SHOW") == ["SHOW", "FALSE", "before:", "1.5"]
     assert row(lines, "time")[-1] == "done"
-    assert "♪ 440 Hz".encode() in terminal.written  # while it sounded
+    assert "♪ 440 Hz".encode() in terminal.written  # shown while the tone sounded
     assert not any("♪" in line for line in lines)
 
 
 def test_a_terminal_without_color_or_braille_gets_plain_signs_in_its_language() -> None:
     env = {"PYTHONIOENCODING": "latin-1", "NO_COLOR": "1"}
-    terminal = ended("-e", OBSTACLES, *SEEN, "--pace", "10", "--lang", "es", env=env)
+    terminal = run_to_end("-e", OBSTACLES, *SEEN, "--pace", "10", "--lang", "es", env=env)
     output = terminal.written.decode("latin-1")
     assert "[36m" not in output and "\\u28" not in output and "*" in output
     assert "en el límite" in output and "sensor de distancia" in output
 
 
 def test_a_fault_is_in_the_picture_and_explained_below_it() -> None:
-    terminal = ended("-e", "SI|F(1, 50);X = 0;Y = 1 / X", "--pace", "10", code=1)
+    terminal = run_to_end("-e", "SI|F(1, 50);X = 0;Y = 1 / X", "--pace", "10", code=1)
     lines = picture(terminal.whole())
     assert row(lines, "time")[-1] == "fault"
     assert any(line.startswith("fault DIVIDE_BY_ZERO") for line in lines)
@@ -147,10 +149,10 @@ def test_ctrl_c_leaves_a_clean_terminal(to_a_file: bool, tmp_path: Path) -> None
 
 def events_of(program: str, robot_name: str = "tinibot") -> list[Event | Ending]:
     robot = robots.load(robot_name)
-    compiled = compile_text(program, robot.kit)
-    assert compiled.is_right
+    compilation = compile_text(program, robot.kit)
+    assert compilation.is_right
     number = [device.name for device in robot.kit.sensors].index("DISTANCE")
-    return list(run(compiled.code, robot.kit, Senses(robot.kit, {number: [50_000]}), 3000))
+    return list(run(compilation.code, robot.kit, Senses(robot.kit, {number: [50_000]}), 3000))
 
 
 def frames(events: list[Event | Ending], pace: float, monkeypatch: pytest.MonkeyPatch) -> int:
@@ -172,12 +174,14 @@ def frames(events: list[Event | Ending], pace: float, monkeypatch: pytest.Monkey
 
 
 def test_the_checks_of_until_do_not_add_frames(monkeypatch: pytest.MonkeyPatch) -> None:
-    watched = events_of("SI|F(3, 80) UNTIL(DISTANCE < 10)")
-    assert len(watched) > 150
-    assert frames(watched, 1, monkeypatch) == frames(events_of("SI|F(3, 80)"), 1, monkeypatch)
-    assert frames(watched, 1, monkeypatch) in (46, 47)
-    assert frames(watched, 10, monkeypatch) <= 6
-    assert frames(watched, 0, monkeypatch) == 1
+    watched_endings = events_of("SI|F(3, 80) UNTIL(DISTANCE < 10)")
+    assert len(watched_endings) > 150
+    assert frames(watched_endings, 1, monkeypatch) == frames(
+        events_of("SI|F(3, 80)"), 1, monkeypatch
+    )
+    assert frames(watched_endings, 1, monkeypatch) in (46, 47)
+    assert frames(watched_endings, 10, monkeypatch) <= 6
+    assert frames(watched_endings, 0, monkeypatch) == 1
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
@@ -195,7 +199,7 @@ def test_every_picture_fits_its_terminal(language: str) -> None:
 
 
 def test_values_stand_beside_the_floor_on_a_wide_terminal() -> None:
-    """As far from it on 200 columns as on 100, and at one place while the robot drives."""
+    """The distance is the same at 100 and 200 columns, and constant while the robot drives."""
     robot = VirtualRobot(robots.load("tinibot"), worlds.load("obstacles"), Settings())
     picture = world_drawing.WorldPicture(robot, "es")
     places = {}
@@ -215,8 +219,8 @@ def test_a_long_way_stays_in_view_and_in_memory(monkeypatch: pytest.MonkeyPatch)
     for k in range(3000):
         way.set_motors(k * 500, 60 + k % 30, 90 - k % 41)
         if k % 10 == 0:
-            drawn = "\n".join(line.plain for line in way.draw(30, 12, k * 500))
-            assert any(arrow in drawn for arrow in sketch.ARROWS)
+            drawn_text = "\n".join(line.plain for line in way.draw(30, 12, k * 500))
+            assert any(arrow in drawn_text for arrow in sketch.ARROWS)
             assert len(way.way.corners) <= 100
 
 

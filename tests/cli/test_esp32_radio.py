@@ -9,10 +9,18 @@ import pytest
 
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
-from tests.support.claimed_robots import as_another, claimed
+from tests.support.claimed_robots import as_another, claim_with_button
 from tests.support.command import FOREVER, LONG, Command, inside, process
 from tests.support.esp32_announced import Announced
-from tests.support.esp32_near import DRIVES, DROVE, NETWORK, PASSWORD, drove, files_with, near
+from tests.support.esp32_near import (
+    DRIVES,
+    DROVE,
+    NETWORK,
+    PASSWORD,
+    files_with,
+    list_motor_changes,
+    near,
+)
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.esp32_radio import port_of, radios
 from tests.support.network import BadNetwork
@@ -26,8 +34,8 @@ def robot() -> Iterator[Esp32PtyRobot]:
         yield esp32_pty_robot
 
 
-def asked(robot: Esp32PtyRobot, what: str) -> str:
-    """Return what the robot's radios are set to, or the address where it listens."""
+def ask_radios(robot: Esp32PtyRobot, what: str) -> str:
+    """Return the settings of the robot's radios, or the address where it listens."""
     questions: list[str] = []
 
     def ask(host_firmware: HostFirmware) -> None:
@@ -41,10 +49,10 @@ def asked(robot: Esp32PtyRobot, what: str) -> str:
 
 
 @pytest.fixture
-def joined(robot: Esp32PtyRobot) -> Esp32PtyRobot:
+def robot_in_network(robot: Esp32PtyRobot) -> Esp32PtyRobot:
     """A robot with an owner, in a network."""
     near(robot)
-    assert claimed(robot).code == 0
+    assert claim_with_button(robot).code == 0
     result = on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n")
     assert result.code == 0, result.err
     assert f"on the network {NETWORK}" in result.out and "tcp://tini-5678.local" in result.out
@@ -63,31 +71,35 @@ def test_a_robot_without_an_owner_says_what_comes_first(robot: Esp32PtyRobot) ->
     for words in (("set", "wifi", NETWORK), ("set", "wifi"), ("set", "wifi", "--forget")):
         on(robot, *words, data=PASSWORD + b"\n").gives(3, "tsc set owner", out="")
     assert "Primero hazlo tuyo" in on(robot, "set", "wifi", NETWORK, "--lang", "es").err
-    assert asked(robot, "joins") == "0"
+    assert ask_radios(robot, "joins") == "0"
 
 
-def test_a_network_is_set_told_and_forgotten(joined: Esp32PtyRobot, tmp_path: Path) -> None:
-    assert asked(joined, "password").encode() == PASSWORD
-    result = on(joined, "set", "wifi")
+def test_a_network_is_set_told_and_forgotten(
+    robot_in_network: Esp32PtyRobot, tmp_path: Path
+) -> None:
+    assert ask_radios(robot_in_network, "password").encode() == PASSWORD
+    result = on(robot_in_network, "set", "wifi")
     assert (
         result.code == 0
         and NETWORK in result.out
         and PASSWORD.decode() not in result.out + result.err
     )
     assert files_with(tmp_path, PASSWORD) == []
-    near(joined, b"another password")
-    joined.until(lambda: "password may be" in on(joined, "set", "wifi").out, "it is refused")
-    assert "la contraseña es otra" in on(joined, "set", "wifi", "--lang", "es").out
-    assert on(joined, "set", "wifi", "--forget").code == 0
-    assert "does not use WiFi" in on(joined, "set", "wifi").out
-    assert asked(joined, "network") == ""
+    near(robot_in_network, b"another password")
+    robot_in_network.until(
+        lambda: "password may be" in on(robot_in_network, "set", "wifi").out, "it is refused"
+    )
+    assert "la contraseña es otra" in on(robot_in_network, "set", "wifi", "--lang", "es").out
+    assert on(robot_in_network, "set", "wifi", "--forget").code == 0
+    assert "does not use WiFi" in on(robot_in_network, "set", "wifi").out
+    assert ask_radios(robot_in_network, "network") == ""
 
 
 def test_a_network_of_its_own_is_said_to_be_unreliable_beside_bluetooth(
     robot: Esp32PtyRobot,
 ) -> None:
-    """By the table of Espressif's page on coexistence; Bluetooth is always on."""
-    assert claimed(robot).code == 0
+    """According to Espressif's table of coexistence; Bluetooth is always on."""
+    assert claim_with_button(robot).code == 0
     result = on(robot, "set", "wifi", "Tini", "--access-point", data=PASSWORD + b"\n")
     assert result.code == 0 and "192.168.4.1" in result.out and "unreliable" in result.out
     assert "inestable" in on(robot, "set", "wifi", "--lang", "es").out
@@ -96,12 +108,12 @@ def test_a_network_of_its_own_is_said_to_be_unreliable_beside_bluetooth(
     assert "unreliable" not in on(robot, "set", "wifi").out
 
 
-def test_what_is_no_password_changes_nothing(joined: Esp32PtyRobot) -> None:
+def test_what_is_no_password_changes_nothing(robot_in_network: Esp32PtyRobot) -> None:
     for data in (b"", b"\n", b"short\n", b"x" * 64 + b"\n", b"12345678\0\n",
                  b"1234567\x1b[2J\n", b"x" * 5000):  # fmt: skip
-        result = on(joined, "set", "wifi", "Other", data=data)
+        result = on(robot_in_network, "set", "wifi", "Other", data=data)
         assert result.code == 2 and "8 to 63" in result.err and "\x1b" not in result.err, data
-        assert asked(joined, "network") == NETWORK
+        assert ask_radios(robot_in_network, "network") == NETWORK
 
 
 @pytest.mark.parametrize("words", [
@@ -117,28 +129,28 @@ def test_words_that_make_no_sense_are_said_before_any_port_is_opened(
 
 
 def test_two_computers_at_once_over_cable_and_network(
-    joined: Esp32PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    robot_in_network: Esp32PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    place = f"socket://127.0.0.1:{asked(joined, 'port')}"
+    place = f"socket://127.0.0.1:{ask_radios(robot_in_network, 'port')}"
     for words in (("set", "wifi", "Other"), ("set", "wifi", "--forget")):
         inside(*words, "--port", place, data=PASSWORD).gives(2, "Bluetooth")
     assert NETWORK in inside("set", "wifi", "--port", place).out
     assert inside("upload", "-e", DRIVES, "--port", place).code == 0
-    assert drove(joined)[-2:] == DROVE
-    command = driving(joined, place)
-    on(joined, "upload", "-e", DRIVES).gives(3, "another connection")
-    assert "otra conexión" in on(joined, "live", "F(1, 20)", "--lang", "es").err
+    assert list_motor_changes(robot_in_network)[-2:] == DROVE
+    command = driving(robot_in_network, place)
+    on(robot_in_network, "upload", "-e", DRIVES).gives(3, "another connection")
+    assert "otra conexión" in on(robot_in_network, "live", "F(1, 20)", "--lang", "es").err
     as_another(monkeypatch, tmp_path)
-    assert on(joined, "doctor").code == 0
-    assert joined.moves
-    assert on(joined, "stop").code == 0
-    assert not joined.moves
-    assert "stopped" in command.ended().out + command.ended().err
+    assert on(robot_in_network, "doctor").code == 0
+    assert robot_in_network.moves
+    assert on(robot_in_network, "stop").code == 0
+    assert not robot_in_network.moves
+    assert "stopped" in command.wait_for_result().out + command.wait_for_result().err
     assert inside("upload", "-e", DRIVES, "--port", place).code == 3, "it is another's robot"
 
 
-def test_over_a_bad_network(joined: Esp32PtyRobot, tmp_path: Path) -> None:
-    bad = BadNetwork(int(asked(joined, "port")))
+def test_over_a_bad_network(robot_in_network: Esp32PtyRobot, tmp_path: Path) -> None:
+    bad = BadNetwork(int(ask_radios(robot_in_network, "port")))
     place = f"socket://127.0.0.1:{bad.port}"
     for _ in range(3):
         inside("upload", "-e", LONG, "--no-run", "--port", place).gives(0)
@@ -146,15 +158,17 @@ def test_over_a_bad_network(joined: Esp32PtyRobot, tmp_path: Path) -> None:
     assert inside("compile", "-e", LONG, "-o", ours).code == 0
     assert inside("show", "-o", theirs, "--port", place).code == 0
     assert ours.read_bytes() == theirs.read_bytes()
-    command = driving(joined, place)
+    command = driving(robot_in_network, place)
     assert process("stop", "--port", place).code == 0
-    assert not joined.moves
-    command.ended()
-    command = driving(joined, place)
-    began_ms = joined.robot_ms
+    assert not robot_in_network.moves
+    command.wait_for_result()
+    command = driving(robot_in_network, place)
+    began_ms = robot_in_network.robot_ms
     bad.cut()
-    assert joined.stands_after_ms(began_ms) < 2000, "the connection was its dead-man timer"
-    assert command.ended().code == 3
+    assert robot_in_network.stands_after_ms(began_ms) < 2000, (
+        "the connection was its dead-man timer"
+    )
+    assert command.wait_for_result().code == 3
     bad.close()
 
 
@@ -171,20 +185,20 @@ def is_listed() -> bool:
 
 
 def test_a_robot_is_found_and_driven_by_its_name(
-    joined: Esp32PtyRobot, monkeypatch: pytest.MonkeyPatch
+    robot_in_network: Esp32PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("serial.tools.list_ports.comports", list)  # to ask one takes ten seconds
-    with Announced(joined):
+    monkeypatch.setattr("serial.tools.list_ports.comports", list)  # asking one takes ten seconds
+    with Announced(robot_in_network):
         for place in (f"{PLACE}.local", PLACE):  # the last one is remembered
             assert process("doctor", "--identify", "--port", place).code == 0
-        joined.until(is_listed, "it is listed")  # a busy computer misses what comes after 2 s
-        command = driving(joined, PLACE)
+        robot_in_network.until(is_listed, "it is listed")  # a busy computer misses data after 2 s
+        command = driving(robot_in_network, PLACE)
         assert process("stop", "--port", PLACE).code == 0
-        assert not joined.moves
-        command.ended()
-        assert on(joined, "set", "wifi", "--forget").code == 0
-        assert asked(joined, "service") == ""
-        joined.until(
+        assert not robot_in_network.moves
+        command.wait_for_result()
+        assert on(robot_in_network, "set", "wifi", "--forget").code == 0
+        assert ask_radios(robot_in_network, "service") == ""
+        robot_in_network.until(
             lambda: "announces itself" in inside("doctor", "--identify", "--port", PLACE).err,
             "it is silent",
         )

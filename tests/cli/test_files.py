@@ -1,4 +1,4 @@
-"""Files that get new content at once, and what killed commands leave behind."""
+"""Files that are replaced atomically, and leftovers of killed commands."""
 
 from __future__ import annotations
 
@@ -60,11 +60,11 @@ def mode_of(path: Path) -> int:
 
 def test_a_new_file_has_the_mode_of_the_umask_and_another_keeps_its_own(tmp_path: Path) -> None:
     for umask in (0o022, 0o077, 0o002):
-        before = os.umask(umask)
+        umask_before = os.umask(umask)
         try:
             files.replace(tmp_path / f"{umask:o}", b"1")
         finally:
-            os.umask(before)
+            os.umask(umask_before)
         assert mode_of(tmp_path / f"{umask:o}") == 0o666 & ~umask
     path = tmp_path / "x"
     path.write_bytes(b"1")
@@ -222,7 +222,7 @@ def test_abandoned_files_of_the_cache_go(tsc: Tsc, tmp_path: Path) -> None:
     folder = files.cache_folder() / "maps"
     folder.mkdir(parents=True)
     old, new = folder / ".x.json.00.new", folder / ".y.json.00.new"
-    older = folder / "0badcafe.1234"  # as older versions called them
+    older = folder / "0badcafe.1234"  # a name in the form of older versions
     for path in (old, new, older):
         path.write_bytes(b"")
     for path in (old, older):
@@ -254,9 +254,9 @@ def test_a_lock_goes_with_its_command() -> None:
 
 
 def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
-    """They are forgotten by the next command that looks."""
-    with socket.create_server(("127.0.0.1", 0)) as gone:
-        number = gone.getsockname()[1]
+    """The next command that checks removes them."""
+    with socket.create_server(("127.0.0.1", 0)) as unused_socket:
+        number = unused_socket.getsockname()[1]
     code = (
         "from tiniscript.link.sharing import registry; lock = registry.lock_port('socket://x:1');"
         f"registry.write(registry.Registration('socket://x:1', {number}, 't', 'a', 'link', 1, 2));"
@@ -272,7 +272,7 @@ def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
 
 
 def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whoever had it left between our opening and our locking its file; another one came."""
+    """The owner left between our opening and our locking its file; another one came."""
     first = registry.lock_port("socket://x:1")
     assert first is not None
     real = registry._lock
@@ -295,15 +295,19 @@ def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.Mo
 def test_another_user_s_link_in_a_shared_folder_leads_nowhere(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_of_folder: bool
 ) -> None:
-    """Where not even root can be two users: /tmp is root's, and this user stands for the other."""
+    """Tested where even root cannot be two users: /tmp is root's, and this user plays the other
+    one.
+    """
     kept_file = tmp_path / "kept"
     kept_file.mkdir()
     precious = kept_file / "precious"
     precious.write_text("mine")
-    shared = tmp_path / "shared"
-    shared.mkdir()
-    shared.chmod(0o777)
-    link = shared / "way" if os.geteuid() == 0 else Path(f"/tmp/tiniscript-{os.urandom(8).hex()}")
+    shared_path = tmp_path / "shared"
+    shared_path.mkdir()
+    shared_path.chmod(0o777)
+    link = (
+        shared_path / "way" if os.geteuid() == 0 else Path(f"/tmp/tiniscript-{os.urandom(8).hex()}")
+    )
     link.symlink_to(kept_file if is_of_folder else precious)
     target = link / "precious" if is_of_folder else link
     try:
@@ -312,16 +316,17 @@ def test_another_user_s_link_in_a_shared_folder_leads_nowhere(
             os.chown(link, 65534, 65534, follow_symlinks=False)
         else:
             monkeypatch.setattr(os, "geteuid", lambda: 12345)
-        before = precious.read_bytes()
+        bytes_before = precious.read_bytes()
         for path in (
             target,
             link.parent / ".." / link.parent.name / target.relative_to(link.parent),
         ):
             with pytest.raises(PermissionError):
                 files.replace(path, b"somebody else's wish")
-        assert precious.read_bytes() == before and sorted(kept_file.iterdir()) == [precious]
+        assert precious.read_bytes() == bytes_before and sorted(kept_file.iterdir()) == [precious]
         if os.geteuid() == 0:
-            shared.chmod(0o755)  # a folder where nobody else may write: its owner has let it be
+            # Others cannot write to the folder, so its owner has created it.
+            shared_path.chmod(0o755)
             files.replace(target, b"now")
             assert precious.read_bytes() == b"now" and link.is_symlink()
     finally:

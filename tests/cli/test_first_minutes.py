@@ -1,4 +1,4 @@
-"""What a person meets in the first minutes: the button, the other terminal, other robots, slips."""
+"""A person's first minutes: the button, the second terminal, other robots, slips."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from tiniscript.virtual.simulator import Simulator
 from tiniscript.virtual.transports import Transports
 
 FOREVER = "SI|LOOP(FOREVER);L(1, 30);END_LOOP"
-# a program of the robot liner that does not say so
+# A program of the robot liner that does not name it.
 LINE = ("-e", (ROOT / "examples" / "line.ts").read_text().replace("// robot: liner\n", ""))
 PROGRAM = Path("examples/obstacle_until.ts")
 
@@ -50,7 +50,7 @@ def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None
         "Done.",
         "SHOW 1.5",
         "Saved. It starts with the button.",
-    ]  # it is saved meanwhile
+    ]  # the program is saved meanwhile
     assert rest[3].startswith("The virtual robot drove 36 cm in 1.0 s and touched nothing.")
     assert picture.read_bytes().startswith(b"\x89PNG")
     inside("upload", "--virtual", "-e", "SB|X = 0;SHOW(1 / X)", "--lang", "es").gives(
@@ -58,7 +58,7 @@ def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None
     )
 
 
-LOOKS = 300  # at events, that a command may still need for saving
+LOOKS = 300  # most events to look at while a command may need time to save
 
 
 @pytest.fixture
@@ -66,18 +66,18 @@ def ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """A command that looks at events long after its time is over fails: it would never end."""
     whole, looks = Connection.event, 0
 
-    def counted(connection: Connection, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
+    def count_and_wait(connection: Connection, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
         nonlocal looks
         looks += connection.is_time_over
         assert looks < LOOKS, "its time is over, and it goes on"
         return whole(connection, limit_s)
 
-    monkeypatch.setattr(Connection, "event", counted)
+    monkeypatch.setattr(Connection, "event", count_and_wait)
 
 
 @pytest.mark.usefixtures("ends_in_time")
 def test_a_program_with_a_button_ends_when_it_is_told() -> None:
-    """By the time of `--for`, to the millisecond. Only bringing a program pushes no button."""
+    """Ends at the time of `--for`, to the millisecond. A mere upload presses no button."""
     text = FOREVER.replace("SI", "SB")
     result = inside("upload", "--virtual", "-e", text, "--for", "3", "--hurry", "max", "--json")
     assert result.code == 0
@@ -153,9 +153,9 @@ def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     assert (result.code, result.out) == (
         0, f"Stopped: the robot on {upload.port} has confirmed the stop.\n",
     )  # fmt: skip
-    upload.command.ended().gives(3, out="The robot was stopped from a computer.")
+    upload.command.wait_for_result().gives(3, out="The robot was stopped from a computer.")
     result = inside("stop", *options)
-    assert result.code == 3  # there is none any more
+    assert result.code == 3  # the robot no longer exists
     assert directory.running_robots() == []
 
 
@@ -169,7 +169,7 @@ def test_stop_stops_all_that_are_in_use() -> None:
         assert {running_robot.port, first.port, second.port} <= set(
             re.findall(r"socket:\S*\d", result.out)
         )
-        assert [upload.command.ended().code for upload in (first, second)] == [3, 3]
+        assert [upload.command.wait_for_result().code for upload in (first, second)] == [3, 3]
         assert running_robot.until("STOP")
 
 
@@ -201,7 +201,7 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
         lines = running_robot.until("DONE") + running_robot.until("DONE")
         assert sum("SHOW" in line for line in lines) == 1, "what live keeps is not printed"
     assert "socket" not in inside("doctor", "--ports").out
-    known_ports.remember(running_robot.port, "KAT")  # by a tsc that did
+    known_ports.remember(running_robot.port, "KAT")  # remembered by a tsc that found it
     assert "socket" not in inside("doctor", "--ports").out
     inside("start").gives(3, "is gone")
 
@@ -229,7 +229,7 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
 )  # fmt: skip
 def test_a_sensor_without_readings_is_told_once(words: list[str], message: str, tsc: Tsc) -> None:
     assert tsc("run", *words).gives(0).err == message
-    for option in re.findall(r"(--sensor) (\S+)", message):  # what it shows is right
+    for option in re.findall(r"(--sensor) (\S+)", message):  # every option in the message works
         assert (
             tsc("run", *words, *option).gives(0).err.count("--sensor")
             == message.count("--sensor") - 1
@@ -261,7 +261,8 @@ def test_what_the_other_verb_takes_leads_there(language: str, try_it: str, tsc: 
 def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     result = tsc("check", *LINE)
     assert result.code == 1
-    message = "tinibot has no BUTTON; the robot liner has it.\nTry:  "  # its first word
+    # The message names the program's first word.
+    message = "tinibot has no BUTTON; the robot liner has it.\nTry:  "
     either = (
         "If your robot is not a liner, remove the parts that need BUTTON. If it is, write above"
     )
@@ -277,10 +278,10 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     assert load["code"] == "TS119"
     assert load["message"] == "tinibot has no LED; the robots grabber and liner have it."
     assert load["fix"].endswith("If it is, write above the program: // robot: grabber")
-    # where one robot has all words, the others are not named
+    # If one robot has all the words, the others are not named.
     assert "// robot: liner " in tsc("check", "-e", "LED(LINE_L)").err
     assert "// robot: grabber " in tsc("check", "-e", "LED(DISTANCE > 5)").err
-    # a word that says it in another language
+    # A word for it in another language.
     assert "tinibot has no GRIPPER; the robot grabber" in tsc("check", "-e", "PINZA(90)").err
     assert "// robot: liner " in tsc("check", "-e", "SHOW(BATERIA)").err
     # a name that no kit has
@@ -294,8 +295,8 @@ def test_up_to_three_robots_are_named() -> None:
     own = robots.load("tinibot").kit
     compilation = compile_text("LED(TRUE)", own)
     others = {f"R{k}": kit for k in range(5)}
-    (named,) = hints_among(others, compilation.diagnostics, "LED(TRUE)", "tinibot", own)
-    assert named.values == {
+    (named_diagnostic,) = hints_among(others, compilation.diagnostics, "LED(TRUE)", "tinibot", own)
+    assert named_diagnostic.values == {
         "found": "LED", "own": "tinibot", "first": "R0", "second": "R1", "third": "R2",
     }  # fmt: skip
 
@@ -311,26 +312,26 @@ def test_the_robot_that_answers_says_which_kit_it_has() -> None:
         assert result.err == "El robot conectado: liner. tsc compila para él.\n"
         # a program of the default robot would be for another kit than the robot has
         inside("upload", "-e", "SHOW(DISTANCE)").gives(1, "liner has no DISTANCE")
-        # nothing is said of a program that any robot can do, and no robot is asked about a slip
+        # Nothing is printed for a program of any robot, and slips do not suggest a robot.
         assert inside("upload", "-e", "SI|S").err == ""
         assert "TS103" in inside("upload", "-e", "SHOW(LIN)").err
-        # who names a robot gets that one
+        # A robot named by the user is used.
         inside("upload", *LINE, "--robot", "grabber").gives(1, "grabber has no LINE_L")
 
 
 def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
-    shipped = ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml"
+    shipped_path = ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml"
     profile = tmp_path / "own.toml"
-    profile.write_text(shipped.read_text(encoding="utf-8").replace("LIGHT_R", "SIREN"))
+    profile.write_text(shipped_path.read_text(encoding="utf-8").replace("LIGHT_R", "SIREN"))
     with robot("--robot", profile):
         text = "SI|SHOW(SIREN)"
-        assert "TS103" in inside("upload", "-e", text).err  # nobody knows it yet
+        assert "TS103" in inside("upload", "-e", text).err  # the word is unknown so far
         assert inside("doctor", "--robot", profile).code == 0
         result = inside("upload", "-e", text)
         assert (result.code, result.err) == (0, "own is connected; tsc compiles for it.\n")
     [(path, given_profile)] = given.profiles()
     assert path == str(profile)
-    profile.write_text("")  # it has changed
+    profile.write_text("")  # the profile has changed
     assert given.recall(given_profile.kit.fingerprint) is None
     given._path().write_text('[[1], 2, "x"]')
     assert given.profiles() == []
@@ -340,51 +341,51 @@ def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
 
 
 def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
-    known = LiveState(robots.load("tinibot").kit)
+    known_state = LiveState(robots.load("tinibot").kit)
     for line in ("exit", "QUIT", " Salir ", "exit;", "exit()", "quit ( ) ;"):
-        assert requested_command(line, known) == LEAVE, line
+        assert requested_command(line, known_state) == LEAVE, line
     for line in ("help", "ayuda", "?", "HELP;"):
-        assert requested_command(line, known) == HELP_ME, line
+        assert requested_command(line, known_state) == HELP_ME, line
     for line in ("", "S", "EXIT = 5", "SHOW(EXIT)", "exit 5", "QUIT; S"):
-        assert requested_command(line, known) == "", line
-    known.text_by_def["EXIT"] = "DEF EXIT; S; END_DEF"
-    assert requested_command("exit", known) == ""  # it is the person's own
+        assert requested_command(line, known_state) == "", line
+    known_state.text_by_def["EXIT"] = "DEF EXIT; S; END_DEF"
+    assert requested_command("exit", known_state) == ""  # the name is the user's own variable
 
 
 def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture[str]) -> None:
-    """It is the smallest number: `Y = -2147483.647 - 0.001` gives it."""
-    known = LiveState(robots.load("tinibot").kit)
-    for before in (0, 1, 2):  # of the program's own, by chance
-        catch = ValueCatcher(("X", "Y"), known, EventPrinter("en"), prints_done=False)
+    """The mark is the smallest number: `Y = -2147483.647 - 0.001`."""
+    known_state = LiveState(robots.load("tinibot").kit)
+    for before in (0, 1, 2):  # random numbers used before, by the program itself
+        catch = ValueCatcher(("X", "Y"), known_state, EventPrinter("en"), prints_done=False)
         for value in (*[BOOKKEEPING_MARK] * before, BOOKKEEPING_MARK, BOOKKEEPING_MARK, 7):
             assert catch.hold_event(ShownEvent(value, 0))
         assert catch.hold_event(DoneEvent(1))
-        assert {name: value.value for name, value in known.value_by_name.items()} == {
+        assert {name: value.value for name, value in known_state.value_by_name.items()} == {
             "X": BOOKKEEPING_MARK,
             "Y": 7,
         }
         assert capsys.readouterr().out == "SHOW -2147483.648\n" * before
-        known.value_by_name.clear()
+        known_state.value_by_name.clear()
 
 
 def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> None:
     def show(value: int) -> ShownEvent:
         return ShownEvent(value, 0)
 
-    known = LiveState(robots.load("tinibot").kit)
+    known_state = LiveState(robots.load("tinibot").kit)
     for end in ("STOPPED", "DONE"):
-        catch = ValueCatcher(("X", "Y"), known, EventPrinter("en"), prints_done=False)
+        catch = ValueCatcher(("X", "Y"), known_state, EventPrinter("en"), prints_done=False)
         assert not catch.hold_event(show(7))
         events: list[Event] = [show(BOOKKEEPING_MARK), show(5000), MissedEvent(1)]
         assert [catch.hold_event(event) for event in events] == [True, True, False]
         catch.hold_event(event(end))
         assert capsys.readouterr().out == ""
-    # what a person shows is shown
-    catch = ValueCatcher(("X",), known, EventPrinter("en"), prints_done=False)
+    # Values shown by the program are printed.
+    catch = ValueCatcher(("X",), known_state, EventPrinter("en"), prints_done=False)
     for shown_event in (show(BOOKKEEPING_MARK), show(BOOKKEEPING_MARK), show(5000), DoneEvent(1)):
         catch.hold_event(shown_event)
     assert capsys.readouterr().out == "SHOW -2147483.648\n"
-    assert known.value_by_name["X"].value == 5000
+    assert known_state.value_by_name["X"].value == 5000
     # nor the picture or the lines of a virtual robot
     bookkeeping = Bookkeeping()
     hidden = [
@@ -415,9 +416,9 @@ def test_help_is_a_verb_too(tsc: Tsc) -> None:
 def test_a_program_without_a_verb(tsc: Tsc, tmp_path: Path) -> None:
     tsc("prog.ts").gives(2, "tsc upload prog.ts --virtual   or:  tsc run prog.ts")
     assert "¿qué hago con prog.ts?" in tsc("prog.ts", "--lang", "es").err
-    named = tmp_path / "my robot"
-    named.write_text("S")
-    assert f'tsc run "{named}"' in tsc(named).err
+    named_path = tmp_path / "my robot"
+    named_path.write_text("S")
+    assert f'tsc run "{named_path}"' in tsc(named_path).err
     tsc("SI|F(2, 80)").gives(2, 'tsc live "SI|F(2, 80)"')
     assert "there is no command nix" in tsc("nix").err
     assert tsc("x" * 5000).code == 2
@@ -474,7 +475,7 @@ def test_board_says_where_the_build_looks(
 
 
 def test_the_first_program_is_one_without_a_warning(tsc: Tsc) -> None:
-    """What README's first command runs, and what README itself begins with."""
+    """The first command of README, and the program at its start."""
     assert tsc("check", ROOT / PROGRAM).gives(0, out="no mistakes").err == ""
     for path in sorted(ROOT.glob("README*.md")):
         program = path.read_text(encoding="utf-8")
@@ -489,5 +490,5 @@ def test_the_programs_that_warn_say_so(tsc: Tsc) -> None:
         assert err.count("Warning") == ("tsc warns" in path.read_text(encoding="utf-8")), path
 
 
-if sys.platform == "win32":  # nobody sends Ctrl-C to one process there
+if sys.platform == "win32":  # Windows cannot send Ctrl-C to one process
     pytestmark = pytest.mark.skip(reason="Windows sends no signal to one process")

@@ -1,5 +1,6 @@
-"""Ctrl-C while a program goes to many robots: at whatever stage each of them is, and whoever still
-connects, after it none starts anything, and all stand."""
+"""Ctrl-C while a program goes to many robots: at any stage of each, and with late connections,
+nothing starts afterwards, and all robots stand.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +42,7 @@ class Room:
         self.stages = {pupil.port: stage for pupil, stage in zip(fleet.pupils, stages, strict=True)}
         self.waiting_ports: set[str] = set()
         self.pressed = threading.Event()
-        self.starts: list[int] = []  # of each robot, when Ctrl-C was pressed
+        self.starts: list[int] = []  # when Ctrl-C was pressed, by robot
 
     def at(self, stage: int, port: str) -> None:
         if self.stages[port] == stage and not self.pressed.is_set():
@@ -54,24 +55,24 @@ class Room:
             for pupil in self.fleet.pupils
         )
 
-    def counted(self) -> list[int]:
-        return [pupil.did.count(DRIVES) for pupil in self.fleet.pupils]
+    def count_states(self) -> list[int]:
+        return [pupil.actions.count(DRIVES) for pupil in self.fleet.pupils]
 
 
 def stepping(
     monkeypatch: pytest.MonkeyPatch, room: Room, owner: object, name: str, before: int, after: int
 ) -> None:
-    """Let each call of a function, whose first word is a port or has one, reach two stages."""
+    """Make calls of a function, whose first argument contains a port, pass two stages."""
     whole: Callable[..., Any] = getattr(owner, name)
 
-    def stepped(first: Any, *words: Any, **named: Any) -> Any:
+    def interrupt_step(first: Any, *words: Any, **named: Any) -> Any:
         port = first if isinstance(first, str) else first.port
         room.at(before, port)
         outcome = whole(first, *words, **named)
         room.at(after, port)
         return outcome
 
-    monkeypatch.setattr(owner, name, stepped)
+    monkeypatch.setattr(owner, name, interrupt_step)
 
 
 @pytest.fixture
@@ -86,7 +87,7 @@ def test_after_ctrl_c_nothing_starts(
     fleet: RobotFleet, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     rng = random.Random(seed)
-    first = seed % 6  # each stage comes, beside others
+    first = seed % 6  # the stages of all robots overlap
     room = Room(fleet, [first, *(rng.choice((OPENING, OPENED, ASKED, DRIVING)) for _ in "23")])
     stepping(monkeypatch, room, opening, "connection_to", OPENING, OPENED)
     stepping(monkeypatch, room, Client, "meet", ASKING, ASKED)
@@ -97,16 +98,16 @@ def test_after_ctrl_c_nothing_starts(
         if not room.pressed.is_set() and room.may_press():
             raise KeyboardInterrupt
 
-    def interrupted(its: Fleet) -> None:
+    def interrupt_and_note(its: Fleet) -> None:
         interrupt(its)
-        room.starts = room.starts or room.counted()
+        room.starts = room.starts or room.count_states()
         room.pressed.set()
 
     monkeypatch.setattr(Fleet, "_raise_if_reader_gone", press)
-    monkeypatch.setattr(Fleet, "interrupt_robots", interrupted)
+    monkeypatch.setattr(Fleet, "interrupt_robots", interrupt_and_note)
     result = inside("upload", "-e", ENDLESS, "--all").gives(2)
     assert room.pressed.is_set()
-    assert room.counted() == room.starts, (room.stages, result)
+    assert room.count_states() == room.starts, (room.stages, result)
     assert not any(pupil.moves for pupil in fleet.pupils)
 
 
@@ -120,12 +121,12 @@ def not_passed_on() -> Iterator[None]:
 
 
 class Watched:
-    """A fleet whose robots are silent for ever, on a clock of the test; somebody presses Ctrl-C."""
+    """A fleet whose robots are silent forever, on a clock of the test; somebody presses Ctrl-C."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, presses_s: list[float]) -> None:
         self.now_s = 0.0
         self.presses_s = [*presses_s]
-        self.stopped: list[float] = []  # when each robot was told
+        self.stopped: list[float] = []  # when each robot was told to stop
         monkeypatch.setattr(fleet_of, "monotonic", lambda: self.now_s)
         monkeypatch.setattr(streams, "drop_unread_output", lambda: None)
         options = Namespace(verb="upload", detach=True, json=False)
@@ -164,7 +165,7 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
             )
         room = Watched(monkeypatch, times[:presses])
         limit_s = opening.CONFIRM_TIMEOUT_S + 1
-        if how == "stop":  # nobody can read the output: that is as a first Ctrl-C
+        if how == "stop":  # an unreadable output acts like a first Ctrl-C
             room.presses_s, limit_s = times[1:presses], opening.CONFIRM_TIMEOUT_S
             room.now_s = times[0]
             with not_passed_on():

@@ -40,12 +40,12 @@ def test_a_foreign_file_stays_and_an_own_one_is_replaced(
     tsc: Tsc, working_folder: Path, words: tuple[str, ...], option: str
 ) -> None:
     target = working_folder / "there"
-    assert tsc(*words, target).code == 0  # nothing is there
+    assert tsc(*words, target).code == 0  # the file does not exist
     bytes_before = target.read_bytes()
     assert bytes_before and not is_foreign(target)
-    assert tsc(*words, target).code == 0  # its own
+    assert tsc(*words, target).code == 0  # the file is its own
     target.write_bytes(b"")
-    assert tsc(*words, target).code == 0  # nothing to lose
+    assert tsc(*words, target).code == 0  # there is nothing to lose
     assert target.read_bytes() == bytes_before
     for content in FOREIGN:
         target.write_bytes(content)
@@ -64,10 +64,10 @@ def test_a_table_with_a_column_of_the_teacher_stays(tsc: Tsc, tmp_path: Path, la
     bytes_before = table.read_bytes()
     table.write_bytes(bytes_before.replace(b"\n", b"\r\n"))  # a spreadsheet has kept it
     assert tsc(*words).code == 0 and table.read_bytes() == bytes_before
-    marked = bytes_before.replace(b"\n", b";18\n")
-    table.write_bytes(marked)
+    marked_bytes = bytes_before.replace(b"\n", b";18\n")
+    table.write_bytes(marked_bytes)
     tsc(*words).gives(2, "--csv")
-    assert table.read_bytes() == marked
+    assert table.read_bytes() == marked_bytes
 
 
 def test_the_image_that_nobody_names_spares_a_foreign_file(tsc: Tsc, tmp_path: Path) -> None:
@@ -93,12 +93,14 @@ def test_the_image_that_nobody_names_spares_a_foreign_file(tsc: Tsc, tmp_path: P
     ],
 )  # fmt: skip
 def test_a_pipe_in_a_folder_is_no_file(words: list[str], tmp_path: Path) -> None:
-    """Nobody writes into it: whoever opens it waits for ever."""
+    """Nobody writes to the pipe, so opening it would block forever."""
     for name in ("pipe", "pipe.ts", "pipe.toml", "lesson.toml"):
         (tmp_path / name).unlink(missing_ok=True)
         os.mkfifo(tmp_path / name)
-    given = [word.format(pipe=tmp_path / "pipe", lesson=tmp_path) for word in words]
-    completed = subprocess.run([*TSC, *given], capture_output=True, text=True, timeout=HANGS_S)
+    given_words = [word.format(pipe=tmp_path / "pipe", lesson=tmp_path) for word in words]
+    completed = subprocess.run(
+        [*TSC, *given_words], capture_output=True, text=True, timeout=HANGS_S
+    )
     assert (
         completed.returncode == 2 and completed.stderr.startswith("tsc: ")
     ) or "cannot" in completed.stderr
@@ -120,7 +122,7 @@ def test_nobody_else_reads_the_programs_in_the_cache(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     maps = tmp_path / "tiniscript" / "maps"
     maps.mkdir(parents=True)
-    maps.chmod(0o755)  # of an older tsc
+    maps.chmod(0o755)  # permissions of an older tsc
     (tmp_path / "p.ts").write_text("SI|S // mine")
     assert inside("compile", tmp_path / "p.ts").code == 0
     (file,) = maps.iterdir()
@@ -137,7 +139,7 @@ def test_a_link_leads_to_a_foreign_file_and_a_pipe_is_none(tsc: Tsc, tmp_path: P
     assert letter.read_bytes() == b"a letter"
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
-    assert not is_foreign(pipe)  # it would be waited for
+    assert not is_foreign(pipe)  # opening the pipe would block
 
 
 def test_a_picture_and_rows(tmp_path: Path) -> None:
@@ -150,7 +152,7 @@ def test_a_picture_and_rows(tmp_path: Path) -> None:
 def test_rows_of_a_monitor(pty_robot: PtyRobot, tmp_path: Path) -> None:
     rows, letter = tmp_path / "rows.csv", tmp_path / "letter.csv"
     letter.write_bytes(b"a;b\n1;2\n")
-    rows.write_bytes(b"ms,event,value\n5,SHOW,1\n")  # of an older tsc
+    rows.write_bytes(b"ms,event,value\n5,SHOW,1\n")  # permissions of an older tsc
     for _ in range(2):
         assert on(pty_robot, "monitor", "--csv", rows, "--max-time", "1").code == 0
         assert rows.read_bytes() == b"ms,event,value,name\n"

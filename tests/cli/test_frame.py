@@ -1,4 +1,4 @@
-"""A picture on a terminal: what is seen is right, and only what changes is written."""
+"""A picture on a terminal: it is right, and only changes are written."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Terminal:
         self.written.truncate()
         self.frame.draw(lines, above)
         output = self.written.getvalue()
-        self.stream.feed(output.replace("\n", "\r\n"))  # as a terminal does
+        self.stream.feed(output.replace("\n", "\r\n"))  # line ends as a terminal writes them
         return output
 
     def all_lines(self) -> list[str]:
@@ -60,7 +60,7 @@ def line(chance: random.Random) -> Text:
 
 @pytest.mark.parametrize("seed", range(40))
 def test_what_is_seen_is_the_last_picture_below_all_that_was_said(seed: int) -> None:
-    """With lines that come, go, change in one place, and others that are printed above."""
+    """Includes lines that appear, vanish and change, and lines printed above."""
     chance = random.Random(seed)
     terminal = Terminal()
     lines_above: list[str] = []
@@ -154,12 +154,14 @@ def test_a_small_change_of_the_values_does_not_move_the_axis() -> None:
     plot = Plot()
     plot.add_value(0, 0, False)
     plot.add_value(100, 97_300, False)
-    before = plot.lines(80, 20, 200)
+    lines_before = plot.lines(80, 20, 200)
     plot.add_value(200, 98_900, False)
-    after = plot.lines(80, 20, 300)
-    assert [text.plain[:8] for text in before[1:]] == [text.plain[:8] for text in after[1:]]
-    assert len(after) <= MOST_ROWS + 1
-    assert sum(bool(text.plain[:5].strip()) for text in after[1:]) >= 3, "marks"
+    lines_after = plot.lines(80, 20, 300)
+    assert [text.plain[:8] for text in lines_before[1:]] == [
+        text.plain[:8] for text in lines_after[1:]
+    ]
+    assert len(lines_after) <= MOST_ROWS + 1
+    assert sum(bool(text.plain[:5].strip()) for text in lines_after[1:]) >= 3, "marks"
 
 
 def test_columns_of_values_only_grow() -> None:
@@ -214,11 +216,11 @@ def test_a_line_that_is_too_long_to_be_drawn_whole_ends_soon() -> None:
 
 def test_a_copy_is_another_canvas() -> None:
     canvas = Canvas(1, 1)
-    copied = canvas.copy()
-    copied.draw_lines([(0, 0), (0, 0)])
+    copied_canvas = canvas.copy()
+    copied_canvas.draw_lines([(0, 0), (0, 0)])
     assert plain(canvas) == [" "]
-    copied.clear()
-    assert plain(copied) == [" "]
+    copied_canvas.clear()
+    assert plain(copied_canvas) == [" "]
 
 
 def test_a_character_has_the_dots_of_all_layers_and_the_style_of_the_topmost() -> None:

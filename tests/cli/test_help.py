@@ -1,4 +1,4 @@
-"""Help says what the parsers take, and nothing else, in both languages; and fits a terminal."""
+"""Help lists exactly the parsers' options, in both languages, and fits a terminal."""
 
 from __future__ import annotations
 
@@ -44,17 +44,19 @@ of_each = each_row("verb", COMMANDS)
 
 
 def rows_of(help_text: str) -> list[str]:
-    """Return what a help has in its left column: `-o FILE`, `PROGRAM`."""
+    """Return the left column of a help text: `-o FILE`, `PROGRAM`."""
     return [row.strip() for row in re.findall(r"^  (\S.*?)(?:  |$)", help_text, re.M)]
 
 
 def flags_in_help(verb: str) -> list[str]:
-    """Return the flags that a verb takes, without those that it takes in silence."""
-    taken = {flag for action in PARSERS[verb]._actions for flag in action.option_strings}
+    """Return the flags of a verb, without the silent ones."""
+    used_names = {flag for action in PARSERS[verb]._actions for flag in action.option_strings}
     silent = [option for option in options_of(verb) if option not in shown_of(verb)]
-    unsaid = {flag for option in silent if not option.is_argument for flag in option.flags.split()}
-    assert unsaid <= taken
-    return sorted(taken - unsaid)
+    unsaid_texts = {
+        flag for option in silent if not option.is_argument for flag in option.flags.split()
+    }
+    assert unsaid_texts <= used_names
+    return sorted(used_names - unsaid_texts)
 
 
 @in_both
@@ -62,10 +64,10 @@ def flags_in_help(verb: str) -> list[str]:
 def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
     tsc: Tsc, verb: str, language: str
 ) -> None:
-    """And whether it takes a value."""
+    """Includes whether the flag has a value."""
     words = command_words(verb).split()
-    valued = [] if words[-1] in words_of(verb) else ["x"]
-    result = tsc(*words, *valued, "--help", "--lang", language).gives(0)
+    values = [] if words[-1] in words_of(verb) else ["x"]
+    result = tsc(*words, *values, "--help", "--lang", language).gives(0)
     rows = [row for row in rows_of(result.out) if not row.startswith("tsc ")]
     flags = [flag for row in rows for flag in re.findall(FLAG, row)]
     assert sorted(flags) == flags_in_help(verb)
@@ -73,10 +75,10 @@ def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
     assert len(arguments) == sum(option.is_argument for option in shown_of(verb))
     for argument in arguments:
         assert re.search(rf"\b{argument}\b", result.out.splitlines()[0])
-    known = {
+    known_names = {
         flag for of in PARSERS.values() for action in of._actions for flag in action.option_strings
     }
-    assert set(re.findall(FLAG, result.out)) <= known | {"-N", "-Uz"}  # a number; of zsh
+    assert set(re.findall(FLAG, result.out)) <= known_names | {"-N", "-Uz"}  # a number; of zsh
     for action in PARSERS[verb]._actions:
         if set(action.option_strings) & set(flags):
             (row,) = (
@@ -133,7 +135,7 @@ def test_the_first_help_has_the_ten_that_most_people_need(language: str) -> None
     )
 
 
-@each_row("asked, verb", [
+@each_row("asked_text, verb", [
     ("put firmware on", "firmware"), ("rename robot", "set name"),
     ("list serial ports", "doctor --ports"), ("make it drive straight", "set trim"),
     ("read my program back", "show --port"), ("bluetooth pin", "doctor --module"),
@@ -144,10 +146,10 @@ def test_the_first_help_has_the_ten_that_most_people_need(language: str) -> None
     ("robot does not answer", "doctor"), ("no responde", "doctor"),
     ("ver los sensores", "live"), ("programar con bloques", "studio"),
 ])  # fmt: skip
-def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked: str, verb: str) -> None:
-    result = tsc("help", asked).gives(0)
+def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked_text: str, verb: str) -> None:
+    result = tsc("help", asked_text).gives(0)
     assert re.match(rf"tsc {verb}\b", rows_of(result.out)[0])
-    assert tsc("help", *asked.split()).out == result.out
+    assert tsc("help", *asked_text.split()).out == result.out
 
 
 def test_a_question_that_no_command_answers(tsc: Tsc) -> None:
@@ -186,15 +188,15 @@ def test_every_row_of_the_table_is_for_a_verb_and_says_something_in_both(option:
 
 
 def test_every_text_of_help_is_shown() -> None:
-    """The catalogue has none that no verb or option asks for."""
-    known = {f"option/{option.flags}/{option.verbs.split()[0]}" for option in OPTIONS}
-    known |= {f"value/{option.value}" for option in OPTIONS} | {
+    """The catalogue has no text without a verb or an option."""
+    known_names = {f"option/{option.flags}/{option.verbs.split()[0]}" for option in OPTIONS}
+    known_names |= {f"value/{option.value}" for option in OPTIONS} | {
         f"group/{verb}" for verb in VERBS.values()
     }
-    known |= {f"verb/{verb}/{part}" for verb in (*COMMANDS, "--version")
+    known_names |= {f"verb/{verb}/{part}" for verb in (*COMMANDS, "--version")
               for part in ("example", "summary", "says", "usage", "ends", "words")}  # fmt: skip
-    unused = set(all_said("en", "help")) - known - set(NOTES)
-    assert {key.partition("/")[0] for key in unused} == {
+    unused_names = set(all_said("en", "help")) - known_names - set(NOTES)
+    assert {key.partition("/")[0] for key in unused_names} == {
         "title", "more", "usage", "virtual", "steps", "all", "idle", "wrong",
     }  # fmt: skip
 
@@ -216,8 +218,8 @@ def test_names_that_help_lists_are_those_that_there_are(
     verb: str, flag: str, names: list[str], language: str
 ) -> None:
     (option,) = (option for option in options_of(verb) if option.flags == flag)
-    listed = re.split(r"[^a-z0-9-]+", option.help(language))
-    assert set(names) <= set(listed)
+    listed_names = re.split(r"[^a-z0-9-]+", option.help(language))
+    assert set(names) <= set(listed_names)
 
 
 def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
@@ -252,7 +254,7 @@ def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) 
 
 @pytest.fixture(autouse=True)
 def no_pager(monkeypatch: pytest.MonkeyPatch) -> None:
-    """None that the person who runs this has chosen."""
+    """Remove a pager chosen by the person who runs the tests."""
     for name in ("PAGER", "LESS"):
         monkeypatch.delenv(name, raising=False)
 
@@ -285,7 +287,7 @@ def test_long_help_is_shown_a_page_at_a_time(language: str, keys: str) -> None:
         (12, {"PAGER": "no-such-pager-here --flag"}),
         (12, {"PATH": "/nowhere"}),  # no less either
         (12, {"TERM": "dumb", "PAGER": "false"}),
-        (100, {"PAGER": "false"}),  # it fits
+        (100, {"PAGER": "false"}),  # the text fits on the screen
     ],
 )
 def test_help_is_printed_where_there_is_no_pager(
@@ -342,8 +344,8 @@ def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
     terminal.until("begun")
     terminal.type("\x03")
     assert terminal.end() == 0
-    after = terminal.written.decode().partition("begun\r\n")[2]
-    assert after.replace("^C", "") == output
+    partition_after = terminal.written.decode().partition("begun\r\n")[2]
+    assert partition_after.replace("^C", "") == output
 
 
 @each_row("words, english, spanish", [
@@ -360,7 +362,7 @@ def test_what_argparse_says_is_said_in_plain_words(
         assert result.err.startswith(f"tsc: {expected}. ")
 
 
-@each_row("words, meant", [
+@each_row("words, meant_text", [
     (["firmware", "--wiring", "Grabber"], "--robot grabber"),
     (["upload", "x.ts", "--prot", "C"], "--port"), (["doctor", "--al"], "--all"),
     (["nmae", "ANA"], "set name"), (["idetify"], "doctor --identify"),
@@ -368,9 +370,11 @@ def test_what_argparse_says_is_said_in_plain_words(
     (["flash"], "firmware"), (["serial"], "monitor"), (["simulate", "x"], "robot"),
     (["repl"], "live"), (["version"], "--version"),
 ])  # fmt: skip
-def test_what_was_meant_stands_before_what_to_try(tsc: Tsc, words: list[str], meant: str) -> None:
-    assert f". Did you mean {meant}? Try:  tsc " in tsc(*words, "--lang", "en").err
-    assert f". ¿Quisiste decir {meant}? Prueba:  tsc " in tsc(*words, "--lang", "es").err
+def test_what_was_meant_stands_before_what_to_try(
+    tsc: Tsc, words: list[str], meant_text: str
+) -> None:
+    assert f". Did you mean {meant_text}? Try:  tsc " in tsc(*words, "--lang", "en").err
+    assert f". ¿Quisiste decir {meant_text}? Prueba:  tsc " in tsc(*words, "--lang", "es").err
 
 
 def test_ctrl_c_before_tsc_knows_its_language(monkeypatch: pytest.MonkeyPatch) -> None:

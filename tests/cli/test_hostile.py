@@ -72,11 +72,11 @@ def hostile(many: int) -> dict[str, bytes]:
 @pytest.mark.parametrize("name", sorted(hostile(0)))
 @pytest.mark.parametrize("verb", ["check", "compile", "run", "show", "fmt"])
 def test_any_input_gets_an_answer(tsc: Tsc, tmp_path: Path, verb: str, name: str) -> None:
-    """As large as a program may be for `check`, for the others a tenth of that."""
+    """Inputs are as large as `check` allows, and a tenth of that for the others."""
     program = tmp_path / "any.ts"
     extra = ["--max-steps", "1000"] if verb == "run" else []
     program.write_bytes(hostile(100_000 if verb == "check" else 10_000)[name])
-    # what is said of a program is the same for all verbs: one says it in the other language
+    # Texts about programs are the same for all verbs, so one verb tests the other language.
     result = tsc(verb, program, "--lang", "en" if verb == "compile" else "es", *extra)
     assert result.code in (0, 1), result.err[-2000:]
     if name in ("too large", "ten megabytes", "binary", "nul", "latin-1", "utf-16"):
@@ -120,21 +120,24 @@ def test_the_language_comes_from_the_locale(tsc: Tsc, monkeypatch: pytest.Monkey
         assert word in tsc("check", "-e", "S = 5;F = 6").err
 
 
-@pytest.mark.parametrize(("closed", "program", "code"), [
+@pytest.mark.parametrize(("closed_text", "program", "code"), [
     ("2>&-", "LOOP(3);S;END_LOOP;X = 1", 0), ("2>&-", "F(1", 1), ("<&-", "S", 0), (">&-", "S", 0),
     (">/dev/full", "S", 2),
 ])  # fmt: skip
-def test_closed_and_full_streams(closed: str, program: str, code: int) -> None:
-    """With nowhere to write there is still an exit code, and the trace stays the trace."""
-    if "full" in closed and not Path("/dev/full").exists():
+def test_closed_and_full_streams(closed_text: str, program: str, code: int) -> None:
+    """Without any output there is still an exit code, and the trace is complete."""
+    if "full" in closed_text and not Path("/dev/full").exists():
         pytest.skip("this system has no full device")
-    command = f"{shlex.join(TSC)} run -e {shlex.quote(program)} {closed}"
-    ended = subprocess.run(command, shell=True, capture_output=True, text=True)
-    assert bool(ended.stderr) == (code == 2)
-    assert "Traceback" not in ended.stderr and "ran into something unexpected" not in ended.stderr
-    assert ended.returncode == code
-    if closed == "2>&-":
-        assert ended.stdout == ("0 MOTORS 0 0\n" * 3 + "0 DONE\n" if code == 0 else "")
+    command = f"{shlex.join(TSC)} run -e {shlex.quote(program)} {closed_text}"
+    completed = subprocess.run(command, shell=True, capture_output=True, text=True)
+    assert bool(completed.stderr) == (code == 2)
+    assert (
+        "Traceback" not in completed.stderr
+        and "ran into something unexpected" not in completed.stderr
+    )
+    assert completed.returncode == code
+    if closed_text == "2>&-":
+        assert completed.stdout == ("0 MOTORS 0 0\n" * 3 + "0 DONE\n" if code == 0 else "")
 
 
 def test_ctrl_c_is_said() -> None:
@@ -142,7 +145,7 @@ def test_ctrl_c_is_said() -> None:
     command = Command("run", "-e", loop, "--max-steps", "1000000000")
     command.until("SHOW 1")
     command.signal(signal.SIGINT)
-    result = command.ended()
+    result = command.wait_for_result()
     assert result.code == 2 and result.err.endswith("\nStopped.\n")
 
 
@@ -155,11 +158,11 @@ def test_output_that_is_not_unicode(
     monkeypatch: pytest.MonkeyPatch, stream: str, options: list[str]
 ) -> None:
     """JSON is JSON there, too."""
-    written = in_encoding("ascii")
-    monkeypatch.setattr(sys, stream, written)
+    text_file = in_encoding("ascii")
+    monkeypatch.setattr(sys, stream, text_file)
     assert main(["check", "--lang", "es", "-e", "año = 5", *options]) == 1
-    written.flush()
-    output = written.buffer.getvalue()  # type: ignore[attr-defined]
+    text_file.flush()
+    output = text_file.buffer.getvalue()  # type: ignore[attr-defined]
     if options:
         assert json.loads(output)[0]["severity"] == "mistake"
     else:
@@ -176,7 +179,7 @@ def test_input_that_is_no_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such files")
 @pytest.mark.parametrize("kind", ["pipe", "folder", "device", "circle", "huge"])
 def test_files_of_the_cache_may_be_anything(kind: str) -> None:
-    """No command waits for them, or reads for ever: they say nothing."""
+    """No command waits for them, or reads forever: they say nothing."""
     port = "socket://127.0.0.1:4000"
     robot = directory._folder() / "4000.json"
     paths = [known_ports._path(), robot, registry._path(port), source_map._path(5)]
@@ -215,9 +218,9 @@ def test_a_cache_that_is_damaged_or_cannot_be_written_is_no_trouble(
     for text in ("[" * 200_000, huge, *wrong):
         path.write_text(text)
         assert tsc("show", image).code == 0
-    blocked = program.with_name("blocked")
-    blocked.write_text("")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
+    blocked_path = program.with_name("blocked")
+    blocked_path.write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked_path))
     assert tsc("compile", program).code == 0
     result = tsc("show", image).gives(0)
     assert "line" not in result.out

@@ -1,5 +1,5 @@
-"""What the computer keeps is whole whatever happens while it changes: a kill at any line, a disk
-that is full at any byte, two commands at once.
+"""Files on the computer stay whole during changes: with a kill at any line, a full disk at any
+byte, two commands at once.
 
 A process of its own changes it, and is killed or held at a line of the code that writes. Whoever
 reads then finds what was kept before, with the change or without it; the next change finds it so,
@@ -36,7 +36,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are m
 
 FIRST, SECOND, THIRD = 1, 2, 3
 LONG = "x" * 5000  # a disk that is full cuts it in its middle
-LINES = 8  # of each, at which a commit kills; a run of --whole at all
+LINES = 8  # lines at which a commit kills each action; --whole tries all
 
 
 class Kept(NamedTuple):
@@ -125,7 +125,7 @@ def _folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv(variable, str(tmp_path / variable))
 
 
-def begun(does: Callable[[], object]) -> int:
+def fork_child(does: Callable[[], object]) -> int:
     """Return the number of a process of its own that does something and ends with 0."""
     number = os.fork()
     if number == 0:
@@ -138,13 +138,13 @@ def begun(does: Callable[[], object]) -> int:
     return number
 
 
-def ended(number: int) -> int:
+def wait_for_child(number: int) -> int:
     return os.waitstatus_to_exitcode(os.waitpid(number, 0)[1])
 
 
-def at_line(kept: Kept, line: int, then: Callable[[], object]) -> Callable[[], None]:
-    """Return what counts the lines of the code that writes, and does something at one."""
-    traced_files = {kept.module.__file__, files.__file__}
+def at_line(kept_memory: Kept, line: int, then: Callable[[], object]) -> Callable[[], None]:
+    """Return a tracer that counts the executed lines of the writing code, and acts at one."""
+    traced_files = {kept_memory.module.__file__, files.__file__}
     lines_left = [line]
 
     def trace(frame: FrameType, event: str, _: Any) -> Any:
@@ -159,37 +159,37 @@ def at_line(kept: Kept, line: int, then: Callable[[], object]) -> Callable[[], N
     return lambda: sys.settrace(trace)
 
 
-def lines_of(kept: Kept, number: int) -> int:
-    """Return how many lines that takes, which nobody has done before."""
+def lines_of(kept_memory: Kept, number: int) -> int:
+    """Return the number of lines of a first execution."""
     read, write = os.pipe()
     count = [0]
 
     def does() -> None:
-        traced_files = {kept.module.__file__, files.__file__}
+        traced_files = {kept_memory.module.__file__, files.__file__}
 
         def trace(frame: FrameType, event: str, _: Any) -> Any:
             count[0] += event == "line"
             return trace if frame.f_code.co_filename in traced_files else None
 
         sys.settrace(trace)
-        kept.add(number)
+        kept_memory.add(number)
         sys.settrace(None)
         os.write(write, count[0].to_bytes(4, "little"))
 
-    assert ended(begun(does)) == 0
+    assert wait_for_child(fork_child(does)) == 0
     line_count = int.from_bytes(os.read(read, 4), "little")
     os.close(read)
     os.close(write)
     return line_count
 
 
-def fresh(kept: Kept, tmp_path: Path) -> list[int]:
-    """Begin anew, with the first one kept; return what is kept."""
+def fresh(kept_memory: Kept, tmp_path: Path) -> list[int]:
+    """Restore the state with the first value stored; return the stored values."""
     for folder in tmp_path.iterdir():
         for path in sorted(folder.rglob("*"), reverse=True):
             path.unlink() if path.is_file() else path.rmdir()
-    kept.add(FIRST)
-    assert kept.all() == [FIRST]
+    kept_memory.add(FIRST)
+    assert kept_memory.all() == [FIRST]
     return [FIRST]
 
 
@@ -198,47 +198,47 @@ def fresh(kept: Kept, tmp_path: Path) -> list[int]:
 def test_a_kill_at_any_line_leaves_what_was_kept(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
-    kept = KEPT[name]
-    fresh(kept, tmp_path)
-    lines = lines_of(kept, SECOND)
+    kept_memory = KEPT[name]
+    fresh(kept_memory, tmp_path)
+    lines = lines_of(kept_memory, SECOND)
     assert lines > 10
     lines_reached = set()
     for line in some_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
-        before = fresh(kept, tmp_path)
+        before = fresh(kept_memory, tmp_path)
 
-        def killed(line: int = line) -> None:
-            at_line(kept, line, lambda: os.kill(os.getpid(), signal.SIGKILL))()
-            kept.add(SECOND)
+        def kill_at_line(line: int = line) -> None:
+            at_line(kept_memory, line, lambda: os.kill(os.getpid(), signal.SIGKILL))()
+            kept_memory.add(SECOND)
 
-        assert ended(begun(killed)) == -signal.SIGKILL, line
-        after = kept.all()
-        assert sorted(after) in (before, with_more(kept, before, SECOND)), line
-        lines_reached.add(len(after))
-        kept.add(THIRD)
-        assert sorted(kept.all()) == with_more(kept, sorted(after), THIRD), line
+        assert wait_for_child(fork_child(kill_at_line)) == -signal.SIGKILL, line
+        all_after = kept_memory.all()
+        assert sorted(all_after) in (before, with_more(kept_memory, before, SECOND)), line
+        lines_reached.add(len(all_after))
+        kept_memory.add(THIRD)
+        assert sorted(kept_memory.all()) == with_more(kept_memory, sorted(all_after), THIRD), line
     assert lines_reached
 
 
-def with_more(kept: Kept, before: list[int], number: int) -> list[int]:
-    return [number] if kept.is_alone else [*before, number]
+def with_more(kept_memory: Kept, counts_before: list[int], number: int) -> list[int]:
+    return [number] if kept_memory.is_alone else [*counts_before, number]
 
 
 @each_kept
 def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_path: Path) -> None:
-    kept = KEPT[name]
+    kept_memory = KEPT[name]
     for most in (0, 1, 10, 60):
-        before = fresh(kept, tmp_path)
+        before = fresh(kept_memory, tmp_path)
 
         def cut(most: int = most) -> None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
             with suppress(BadKeys, CommandError, OSError):
-                kept.add(SECOND)
+                kept_memory.add(SECOND)
 
-        assert ended(begun(cut)) == 0
-        assert kept.all() == before, most
+        assert wait_for_child(fork_child(cut)) == 0
+        assert kept_memory.all() == before, most
         assert not [*tmp_path.rglob(f"*{files.NEW_ENDING}")], "nothing is left of what did not fit"
-        kept.add(SECOND)
-        assert sorted(kept.all()) == with_more(kept, before, SECOND), most
+        kept_memory.add(SECOND)
+        assert sorted(kept_memory.all()) == with_more(kept_memory, before, SECOND), most
 
 
 @pytest.mark.sampled("name", keep=2)
@@ -246,31 +246,31 @@ def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_pat
 def test_of_two_at_once_neither_loses_what_the_other_keeps(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
-    """One is held at a line; the other one ends meanwhile, or waits for it."""
-    kept = KEPT[name]
-    fresh(kept, tmp_path)
-    lines = lines_of(kept, SECOND)
+    """One is paused at a line; the other one ends meanwhile, or waits for it."""
+    kept_memory = KEPT[name]
+    fresh(kept_memory, tmp_path)
+    lines = lines_of(kept_memory, SECOND)
     for line in some_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
-        before = fresh(kept, tmp_path)
+        before = fresh(kept_memory, tmp_path)
         arrived, holds = os.pipe(), os.pipe()
         say = os.pipe()
 
-        def held(line: int = line, arrived: Any = arrived, holds: Any = holds) -> None:
-            at_line(kept, line, lambda: (os.write(arrived[1], b"1"), os.read(holds[0], 1)))()
-            kept.add(SECOND)
+        def pause_at_line(line: int = line, arrived: Any = arrived, holds: Any = holds) -> None:
+            at_line(kept_memory, line, lambda: (os.write(arrived[1], b"1"), os.read(holds[0], 1)))()
+            kept_memory.add(SECOND)
 
         def other(say: Any = say) -> None:
             vars(files)["sleep"] = lambda _: os.write(say[1], b"w")
-            kept.add(THIRD)
+            kept_memory.add(THIRD)
             os.write(say[1], b"e")
 
-        first = begun(held)
+        first = fork_child(pause_at_line)
         assert os.read(arrived[0], 1)
-        second = begun(other)
+        second = fork_child(other)
         assert os.read(say[0], 1) in (b"w", b"e")
         os.write(holds[1], b"1")
-        assert (ended(first), ended(second)) == (0, 0), line
-        assert sorted(kept.all()) == [*before, SECOND, THIRD], line
+        assert (wait_for_child(first), wait_for_child(second)) == (0, 0), line
+        assert sorted(kept_memory.all()) == [*before, SECOND, THIRD], line
         for end in (*arrived, *holds, *say):
             os.close(end)
 
@@ -280,8 +280,8 @@ def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The other one keeps it without the lock, or says that it cannot, or leaves it as it was."""
-    kept = KEPT[name]
-    before = fresh(kept, tmp_path)
+    kept_memory = KEPT[name]
+    before = fresh(kept_memory, tmp_path)
     now_s = 0.0
 
     def passes(seconds: float) -> None:
@@ -296,10 +296,10 @@ def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
             stack.enter_context(
                 files.lock_file(lock.with_name(lock.name[: -len(files.LOCK_ENDING)]))
             )
-        for _ in range(2):  # and the second time
+        for _ in range(2):  # the second pass finds the existing files
             now_s = 0.0
             with suppress(BadKeys, OSError):
-                kept.add(SECOND)
-            assert sorted(kept.all()) in (before, with_more(kept, before, SECOND))
-    kept.add(THIRD)
-    assert THIRD in kept.all()
+                kept_memory.add(SECOND)
+            assert sorted(kept_memory.all()) in (before, with_more(kept_memory, before, SECOND))
+    kept_memory.add(THIRD)
+    assert THIRD in kept_memory.all()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.claimed_robots import claimed
+from tests.support.claimed_robots import claim_with_button
 from tests.support.command import Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.link.keys import KeyFile
@@ -23,7 +23,7 @@ VERBS = (
 
 
 def forms(secret: bytes) -> list[bytes]:
-    """Return what a key may look like without spaces: its bytes, in hex, in base 64, as a list."""
+    """Return the forms of a key without spaces: bytes, hex, base 64, and a list."""
     texts = (secret.hex(), secret.hex().upper(), str(list(secret)), repr(secret))
     forms = [secret, base64.b64encode(secret), *(text.encode() for text in texts)]
     return [b"".join(form.split()) for form in forms]
@@ -37,8 +37,8 @@ def test_a_key_is_in_its_file_alone(
     pty_robot: PtyRobot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tiniscript.link.ports.list_ports", list)
-    assert claimed(pty_robot).code == 0
-    assert claimed(pty_robot, "--teacher").code == 0
+    assert claim_with_button(pty_robot).code == 0
+    assert claim_with_button(pty_robot, "--teacher").code == 0
     secrets = [form for key in KeyFile().all() for form in forms(key.key)]
     assert len(secrets) == 12 and has_one(secrets, KeyFile().path.read_bytes())
     output = ""
@@ -58,7 +58,7 @@ def test_a_key_is_in_its_file_alone(
         path = Path("/proc") / str(link.process.pid) / name
         output += path.read_bytes().decode("latin-1") if path.exists() else ""
     link.process.terminate()
-    output += link.ended().out
+    output += link.wait_for_result().out
     assert "tiniscript" in output
     assert not has_one(secrets, output.encode("latin-1", "replace"))
     files = [path for path in tmp_path.rglob("*") if path.is_file() and path != KeyFile().path]

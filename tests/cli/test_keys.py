@@ -70,7 +70,7 @@ def test_what_is_known_of_a_robots_seals_outlives_a_list_that_does_not_say_it(
     key_file.add([ONE, ONE._replace(id=7)])
     assert [key.uses_seals for key in key_file.keys_of_robot(ONE.id)] == [True]
     assert KeyFile(key_file.path, serves_virtual_robots=True).keys_of_robot(ONE.id) == [ONE]
-    key_file.add([ONE._replace(key=b"\2" * 16)])  # another one: nothing is known of it
+    key_file.add([ONE._replace(key=b"\2" * 16)])  # a different key, so nothing is known about it
     assert [key.uses_seals for key in key_file.keys_of_robot(ONE.id)] == [False]
 
 
@@ -139,10 +139,10 @@ def test_the_command_lists_names_and_no_key(tsc: Tsc) -> None:
     assert "tsc set owner" in tsc("set", "owner", "--list").out
     KeyFile().add([ONE, ONE._replace(which=KEY_TEACHER, key=b"\1" * 16)])
     for language, word in (("en", "teacher"), ("es", "docente")):
-        listed = tsc("set", "owner", "--list", "--lang", language).gives(
+        listed_result = tsc("set", "owner", "--list", "--lang", language).gives(
             0, out=(word, "12345678", "TINI")
         )
-        assert SECRET not in listed.out
+        assert SECRET not in listed_result.out
     rows = json.loads(tsc("set", "owner", "--list", "--json").out)
     assert [row["kind"] for row in rows] == ["owner", "teacher"]
     assert SECRET not in json.dumps(rows)
@@ -154,27 +154,29 @@ def test_a_class_list_goes_out_and_in(
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "one"))
     KeyFile().add([ONE])
     KeyFile().create_pending_key(7, KEY_OWNER, "not confirmed")
-    listed = tmp_path / "class.json"
-    output = tsc("set", "owner", "--export", str(listed)).out
-    assert "class.json: 1." in output and f"tsc set owner --import {listed}" in output
-    assert stat.S_IMODE(listed.stat().st_mode) == 0o600
-    tsc("set", "owner", "--export", str(listed)).gives(2, "already exists. Choose another name")
+    listed_path = tmp_path / "class.json"
+    output = tsc("set", "owner", "--export", str(listed_path)).out
+    assert "class.json: 1." in output and f"tsc set owner --import {listed_path}" in output
+    assert stat.S_IMODE(listed_path.stat().st_mode) == 0o600
+    tsc("set", "owner", "--export", str(listed_path)).gives(
+        2, "already exists. Choose another name"
+    )
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "two"))
     assert (
         "class.json: 1. New here, or changed: 1."
-        in tsc("set", "owner", "--import", str(listed)).out
+        in tsc("set", "owner", "--import", str(listed_path)).out
     )
     assert KeyFile().all() == [ONE]
-    listed.write_text("nothing")
-    tsc("set", "owner", "--import", str(listed)).gives(2, "--export")
+    listed_path.write_text("nothing")
+    tsc("set", "owner", "--import", str(listed_path)).gives(2, "--export")
     assert tsc("set", "owner", "--import", str(tmp_path / "none")).code == 2
-    tsc("set", "owner", "--import", str(listed), "--export", str(tmp_path / "x")).gives(
+    tsc("set", "owner", "--import", str(listed_path), "--export", str(tmp_path / "x")).gives(
         2, "use only one of"
     )
 
 
 def test_keys_that_do_not_fit_leave_those_that_are_there(tsc: Tsc, tmp_path: Path) -> None:
-    """As a list of a stranger, who would have a person's own robots gone."""
+    """The keys of a stranger would remove a person's own robots."""
     key_file, many = KeyFile(), tmp_path / "many.json"
     key_file.add([ONE])
     others = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST_KEYS)]
@@ -243,18 +245,22 @@ def test_where_a_robot_was_met_is_kept_for_this_person_alone(key_file: KeyFile) 
     path = key_file.path.with_name("robots.json")
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
-    reopened = KeyFile(key_file.path)
-    assert (reopened.robot_at(PLACE), reopened.robot_at("/dev/ttyUSB0"), reopened.robot_at("")) == (
+    reopened_key_file = KeyFile(key_file.path)
+    assert (
+        reopened_key_file.robot_at(PLACE),
+        reopened_key_file.robot_at("/dev/ttyUSB0"),
+        reopened_key_file.robot_at(""),
+    ) == (
         8,
         7,
         None,
     )
-    assert not reopened.accepts(9)
+    assert not reopened_key_file.accepts(9)
     key_file.accept(9)
-    assert reopened.accepts(9) and reopened.robot_at(PLACE) == 8
+    assert reopened_key_file.accepts(9) and reopened_key_file.robot_at(PLACE) == 8
     assert KeyFile(key_file.path, accepts_all=True).accepts(10)
     KeyFile(key_file.path, serves_virtual_robots=True).remember_robot(PLACE, 11)
-    assert reopened.robot_at(PLACE) == 8
+    assert reopened_key_file.robot_at(PLACE) == 8
 
 
 @pytest.mark.parametrize(

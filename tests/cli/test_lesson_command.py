@@ -22,7 +22,7 @@ RIGHT, SHORT, WRONG = "SI|F(2.5, 80)", "SI|F(2, 80)", "SI|F(2 80)"
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """What a class has handed in."""
+    """A folder with the programs of a class."""
     pupils = tmp_path / "class"
     pupils.mkdir()
     for name, text in {"ana": RIGHT, "beto": SHORT, "carla": WRONG, "=dani": "SI|F(5, 80)"}.items():
@@ -84,7 +84,7 @@ def test_the_table_of_a_teacher_in_lima_is_spanish_and_may_be_written_again(
 ) -> None:
     rows = tmp_path / "notas.csv"
     (folder / "a,=1+1;@x.ts").write_text("F(", encoding="utf-8")
-    for _ in range(2):  # after a lesson pupils repair, and the teacher checks again
+    for _ in range(2):  # pupils repair after a lesson, and the teacher checks again
         assert tsc("lesson", "check", "1", folder, "--lang", "es", "--csv", rows).code == 1
     data = rows.read_bytes()
     assert data.startswith(b"\xef\xbb\xbf")
@@ -93,7 +93,7 @@ def test_the_table_of_a_teacher_in_lima_is_spanish_and_may_be_written_again(
     assert {row[1] for row in cells[1:]} == {"listo", "todavía no", "errores"}
     assert {len(row) for row in cells} == {4}
     assert "a,'=1+1;'@x.ts" in [row[0] for row in cells]  # whatever ends a cell there
-    assert tsc("lesson", "check", "1", folder, "--csv", rows).code == 1  # and in English
+    assert tsc("lesson", "check", "1", folder, "--csv", rows).code == 1  # the same in English
     assert rows.read_text("utf-8-sig").startswith("file,verdict,seed,sentence\n")
 
 
@@ -158,7 +158,7 @@ def test_what_is_no_file_has_a_row(tsc: Tsc, folder: Path, tmp_path: Path) -> No
     (folder / "circle.ts").symlink_to("circle.ts")
     (folder / "nothing.ts").symlink_to("gone")
     (folder / "above").symlink_to(".")
-    os.mkfifo(folder / "pipe.ts")  # nobody writes into it
+    os.mkfifo(folder / "pipe.ts")  # nobody writes to the pipe
     result = tsc("lesson", "check", "1", folder, "--json")
     rows = {row["file"]: row for row in json.loads(result.out)}
     assert (result.code, len(rows), rows["image.ts"]["verdict"]) == (1, 10, "unreadable")
@@ -171,9 +171,9 @@ def test_what_is_no_file_has_a_row(tsc: Tsc, folder: Path, tmp_path: Path) -> No
 
 
 def test_a_lesson_of_ones_own(tsc: Tsc, tmp_path: Path) -> None:
-    shipped = catalogue.folders()[0]
+    shipped_path = catalogue.folders()[0]
     for name in ("lesson.toml", "world.toml"):
-        (tmp_path / name).write_bytes((shipped / name).read_bytes())
+        (tmp_path / name).write_bytes((shipped_path / name).read_bytes())
     assert tsc("lesson", "check", tmp_path, "-e", RIGHT).code == 0
     tsc("lesson", "show", tmp_path).gives(2, "pupil.en.md is missing")
     text = (tmp_path / "world.toml").read_text(encoding="utf-8")
@@ -186,7 +186,7 @@ def test_a_lesson_of_ones_own(tsc: Tsc, tmp_path: Path) -> None:
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("number", range(1, 15))
 def test_sheets_are_whole_pages(tsc: Tsc, number: int, language: str, tmp_path: Path) -> None:
-    """One file: nothing is fetched, every element is closed, the drawing is inside."""
+    """One file: nothing is downloaded, every element is closed, and the drawing is included."""
     for more in ([], ["--teacher"]):
         path = tmp_path / "sheet.html"
         tsc("lesson", "sheet", str(number), "-o", path, "--lang", language, *more).gives(0)
@@ -287,7 +287,7 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
     assert table[-1] == "Lesson 1 done: 5 of 13."
     for name in files:
         (pupils / name).unlink()
-    assert tsc("lesson", "check", "1", pupils).code == 0  # notes are nobody's failure
+    assert tsc("lesson", "check", "1", pupils).code == 0  # notes do not count as failures
     for name in ("Ana", "Beto", "x.ts"):
         (pupils / name / "square.ts").unlink()
     for language, words in (("en", "has no programs"), ("es", "no hay ningún programa")):
@@ -306,7 +306,7 @@ def test_a_wrong_program_of_a_pupil_has_a_row(tsc: Tsc, tmp_path: Path) -> None:
 
 
 def test_a_note_of_empty_lines_is_looked_at_once(tsc: Tsc, tmp_path: Path) -> None:
-    """With quadratic time this takes minutes."""
+    """Quadratic time would take minutes."""
     (tmp_path / "README.txt").write_text("\n" * 100_000 + " " * 100_000 + "." + "a" * 100_000)
     assert "has no programs" in tsc("lesson", "check", "1", tmp_path).err
 

@@ -19,7 +19,7 @@ def test_a_line_is_done_at_once_and_the_program_stays(pty_robot: PtyRobot) -> No
     assert on(pty_robot, "upload", "-e", "SB|W(1)").code == 0
     result = on(pty_robot, "live", "F(0.2, 80);SHOW(1.5)")
     assert (result.code, result.out) == (0, "SHOW 1.5\nDone.\n")
-    assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    assert pty_robot.actions == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
     assert "SB" in on(pty_robot, "show").out
     assert on(pty_robot, "live", "F(2 80)").code == 1
     assert on(pty_robot, "live", "SB|F(2, 80)").code == 1
@@ -61,7 +61,7 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     see("tini> ", 3)
     terminal.type("LOOP(FOREVER);F(1, SPE\t);END_LOOP\n")
     pty_robot.until(lambda: pty_robot.moves, "it drives")
-    assert pty_robot.did[-1] == "MOTORS 55 55"
+    assert pty_robot.actions[-1] == "MOTORS 55 55"
     terminal.type("\x03")
     see("the robot has confirmed the stop.")
     assert not pty_robot.moves
@@ -84,7 +84,7 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     assert terminal.end() == 0
 
 
-# Where a person may be who presses Ctrl-C: what is typed, and what is seen then.
+# Places of a person who presses Ctrl-C: the typed text, and the expected output.
 PLACES = {
     "at the prompt": ("", "tini> "),
     "in a line": ("F(1, ", "F(1, "),
@@ -99,12 +99,12 @@ def test_ctrl_c_stops_what_the_robot_does_wherever_a_person_is(pty_robot: PtyRob
     assert on(pty_robot, "upload", "-e", "SB|F(60, 80)").code == 0
     terminal = Terminal("live", "--port", pty_robot.port)
     terminal.until("tini>")
-    for place, (typed, word_on_screen) in PLACES.items():
+    for place, (typed_text, word_on_screen) in PLACES.items():
         pty_robot.push()
         pty_robot.until(lambda: pty_robot.moves, "it drives")
         terminal.screen.reset()
-        terminal.type(typed)
-        if typed:
+        terminal.type(typed_text)
+        if typed_text:
             terminal.until(re.escape(word_on_screen.rstrip()))
         terminal.type("\x03")
         terminal.until(re.escape("the robot has confirmed the stop."))
@@ -148,43 +148,45 @@ def test_which_ends_are_missing(text: str, ends: str) -> None:
 
 
 def test_what_a_line_needs_goes_with_it_and_nothing_else() -> None:
-    known = LiveState(KIT)
-    known.value_by_name = {
+    known_state = LiveState(KIT)
+    known_state.value_by_name = {
         "X": LiveValue(5000, False),
         "Y": LiveValue(1, True),
         "Z": LiveValue(-1500, False),
     }
-    known.text_by_def = {
+    known_state.text_by_def = {
         "HOP": "DEF HOP; F(1, Z); SKIP; END_DEF",
         "SKIP": "DEF SKIP; W(X); END_DEF",
     }
-    known.text_by_def = dict(
-        sorted(known.text_by_def.items(), reverse=True)
-    )  # what is called stands first
-    line = known.compile_line("HOP", 55)
+    known_state.text_by_def = dict(
+        sorted(known_state.text_by_def.items(), reverse=True)
+    )  # called DEFs come first
+    line = known_state.compile_line("HOP", 55)
     assert line.compilation.is_right
     assert line.compilation.program is not None
     assert line.compilation.program.variables == ("X", "Z")
     assert line.shown_variables == ()
-    line = known.compile_line("SI|Y = NOT Y", 55)
+    line = known_state.compile_line("SI|Y = NOT Y", 55)
     assert line.shown_variables == ("Y",)
     assert line.compilation.source.text.strip() == "Y = NOT Y"
-    assert known.compile_line("Y = NOT Y", 5).loses_values
+    assert known_state.compile_line("Y = NOT Y", 5).loses_values
 
 
 def test_mistakes_and_warnings_are_those_of_the_line() -> None:
-    known = LiveState(KIT)
-    known.value_by_name = {"X": LiveValue(5000, False)}
-    line = known.compile_line("X = X + 1; F(X 2)", 55)
+    known_state = LiveState(KIT)
+    known_state.value_by_name = {"X": LiveValue(5000, False)}
+    line = known_state.compile_line("X = X + 1; F(X 2)", 55)
     (diagnostic,) = line.compilation.diagnostics
     assert diagnostic.code.number == "TS017"
     assert line.compilation.source.text[: diagnostic.span.start].endswith("F(X")
     assert line.compilation.source.position(diagnostic.span.start)[0] == 1
-    assert known.compile_line("A = 5", 55).compilation.diagnostics == []
-    assert known.compile_line("DEF A; S; END_DEF", 55).compilation.diagnostics == []
-    (warning,) = known.compile_line("LOOP(FOREVER); X = 1; END_LOOP", 55).compilation.diagnostics
+    assert known_state.compile_line("A = 5", 55).compilation.diagnostics == []
+    assert known_state.compile_line("DEF A; S; END_DEF", 55).compilation.diagnostics == []
+    (warning,) = known_state.compile_line(
+        "LOOP(FOREVER); X = 1; END_LOOP", 55
+    ).compilation.diagnostics
     assert warning.code.number == "TS804"
     assert [
         diagnostic.code.number
-        for diagnostic in known.compile_line("SHOW(NEW)", 55).compilation.diagnostics
+        for diagnostic in known_state.compile_line("SHOW(NEW)", 55).compilation.diagnostics
     ] == ["TS103"]

@@ -48,7 +48,7 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
     with RobotFleet(kits) as room:
         pupils = room.pupils
         pupils[SILENT].deaf_after = 0
-        pupils[DEAF].deaf_after = 30  # in the middle of the program
+        pupils[DEAF].deaf_after = 30  # the robot fails in the middle of the program
         for number in NOISY:
             pupils[number].damages = 97
         for pupil in pupils:
@@ -63,18 +63,19 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         assert "--robot liner" in str(rows[pupils[OTHER_KIT].port]["said"])
         for pupil in pupils:
             if pupil.port not in bad:
-                assert pupil.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+                assert pupil.actions == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
         events = [json.loads(line) for line in result.out.splitlines()]
         receipts = [row["port"] for row in events if row["event"] == "RECEIPT"]
         assert len(receipts) == len(set(receipts)) >= ROBOTS - 3
         shown = [row["port"] for row in events if row["event"] == "SHOW"]
-        noisy = {pupils[number].port for number in NOISY}  # whose event may be the damaged one
+        noisy = {pupils[number].port for number in NOISY}  # the damaged event may be theirs
         assert set(named) - bad - noisy <= set(shown) <= set(named) - bad
         # the silent one is over last
         assert events[-1]["port"] in bad | {port for port, row in rows.items() if row["is_absent"]}
 
         inside("upload", "-e", FOREVER, "--all", "--detach").gives(3)
-        assert sum(pupil.moves for pupil in pupils) == ROBOTS - 2  # it uses no device of a kit
+        # The program uses no device of a kit.
+        assert sum(pupil.moves for pupil in pupils) == ROBOTS - 2
         result = inside("stop", "--all").gives(3)
         assert not any(pupil.moves for pupil in pupils)
         assert (
@@ -123,33 +124,33 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
 
 
 def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
-    """By `stop --all` of another terminal, by Ctrl-C, and killed."""
+    """By `stop --all` from another terminal, by Ctrl-C, and by a kill."""
 
-    def driven() -> Command:
+    def drive_all() -> Command:
         command = Command("upload", "-e", FOREVER, "--all")
         class_.until(lambda: all(pupil.moves for pupil in class_.pupils), "all drive")
         return command
 
-    command = driven()
+    command = drive_all()
     result = inside("stop", "--all", "--json").gives(0)
     assert not any(pupil.moves for pupil in class_.pupils)
     rows = [row for row in results(result).values() if not row["is_absent"]]
     assert len(rows) == len(class_.pupils)
-    result = command.ended().gives(3)
+    result = command.wait_for_result().gives(3)
     reasons = ("The robot was stopped from a computer.", "another command stopped the robot")
-    assert sum(map(result.out.count, reasons)) == len(class_.pupils)  # before or after its start
-    command = driven()
+    assert sum(map(result.out.count, reasons)) == len(class_.pupils)  # before or after the start
+    command = drive_all()
     command.signal(signal.SIGINT)
-    result = command.ended().gives(2)
+    result = command.wait_for_result().gives(2)
     assert not any(pupil.moves for pupil in class_.pupils)
     assert result.out.count("the robot has confirmed the stop") == len(class_.pupils)
-    command = driven()
+    command = drive_all()
     command.kill()
     class_.until(lambda: not any(pupil.moves for pupil in class_.pupils), "they stop")
 
 
 def test_each_robot_has_a_row(class_: RobotFleet) -> None:
-    """And each port that is named must have a robot."""
+    """Each named port must have a robot."""
     assert inside("upload", "-e", "F(2 80)", "--all").code == 1
     assert not any(pupil.heard for pupil in class_.pupils)
     assert inside("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
@@ -196,8 +197,8 @@ def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> 
         assert pings(pupil.heard[heard[pupil.port] :]) == 3 + 20 * (pupil is weak)
 
 
-def pings(heard: bytes) -> int:
-    frames = [decode_frame(packet) for packet in heard.split(b"\0") if packet]
+def pings(heard_bytes: bytes) -> int:
+    frames = [decode_frame(packet) for packet in heard_bytes.split(b"\0") if packet]
     return sum(frame is not None and frame.number == BY_NAME["PING"].number for frame in frames)
 
 
@@ -225,7 +226,7 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     import pty
 
     ends = [end for _ in range(2) for end in pty.openpty()]
-    port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
+    port, known_text = os.ttyname(ends[1]), os.ttyname(ends[3])
     monkeypatch.setattr(ports, "list_ports", lambda: [ports.ListedPort(port, "")])
     monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_TIMEOUT_S", 1.0)
     result = inside("doctor", "--identify", "--all").gives(0)
@@ -233,9 +234,9 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     assert result.err == f"Done: 4 of 4.\nNo robot responds on {port}.\n"
     monkeypatch.setattr(ports, "list_ports", list)
     monkeypatch.setattr(opening, "ANSWER_TIMEOUT_MS", 1000)
-    known_ports.remember(known, "R9", is_used=False)
+    known_ports.remember(known_text, "R9", is_used=False)
     inside("doctor", "--identify", "--all").gives(
-        3, "Done: 4 of 5.", out=f"R9 ({known}): nothing responds"
+        3, "Done: 4 of 5.", out=f"R9 ({known_text}): nothing responds"
     )
     for end in ends:
         os.close(end)
@@ -296,8 +297,8 @@ def test_every_table_fits_its_terminal(count: int) -> None:
             assert len(lines) <= height
             assert all(line.cell_len <= width for line in lines)
             if count > height > 2:
-                shown = "".join(line.plain for line in lines[1:-1])
-                assert "fine" not in shown or shown.count("\n") >= count // 3
+                shown_text = "".join(line.plain for line in lines[1:-1])
+                assert "fine" not in shown_text or shown_text.count("\n") >= count // 3
                 assert lines[-1].plain.startswith("…")
 
 
@@ -309,11 +310,11 @@ def test_ctrl_c_stops_all_whatever_is_printed_meanwhile(
     at = [Target(port, "", True, True) for port in "AB"]
     fleet = Fleet(at, options, robots.load("tinibot"), "en")
     fleet.members[0].result = Result(True, "fine")
-    pressed: list[str] = []
+    pressed_keys: list[str] = []
 
     def press(*_: object) -> None:
-        if not pressed:
-            pressed.append(when)
+        if not pressed_keys:
+            pressed_keys.append(when)
             raise KeyboardInterrupt
 
     def interrupt() -> None:

@@ -1,4 +1,4 @@
-"""`tsc doctor --module` and a module behind a port: what is printed is what the module has then."""
+"""`tsc doctor --module` with a module on a port: the output matches the module's settings."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_a_module_gets_name_pin_and_speed(tsc: Tsc, module: Simulated) -> None:
 
 @pytest.mark.parametrize("end", [Hc05(57600), Hc06()])
 def test_quick_and_slow_ones_behind_a_real_port(tsc: Tsc, end: Simulated) -> None:
-    """So that a port waits long enough for an answer. All kinds are in `tests/modules/`."""
+    """Tests the port's timeout. All kinds of modules are in `tests/modules/`."""
     pin = "471123"[: len(end.pin)]
     with PtyEnd(end) as pty_end:
         result = tsc("doctor", "--module", "--port", pty_end.port, "--id", "12347f3a", "--pin", pin,
@@ -156,7 +156,7 @@ def test_a_port_that_does_not_open_is_what_the_doctor_says_of_it(
 
 
 def test_how_a_step_ends_is_a_cause_of_the_doctors_table() -> None:
-    """And no other cause is of a setting."""
+    """No other cause concerns a setting."""
     named = {cause: how for how, causes in ENDS.items() for cause in causes}
     assert {*named} == {cause for cause, row in CAUSES.items() if row.part == "setting"}
     assert {cause for cause, how in named.items() if how not in set_up.GOOD_OUTCOMES} == {
@@ -191,7 +191,7 @@ def test_a_pulled_cable_and_ctrl_c_say_at_which_speeds_the_module_may_be(
             pty_end.pull()
         else:
             command.signal(signal.SIGINT)
-        result = command.ended()
+        result = command.wait_for_result()
     assert result.code == code
     assert expected in (result.out if is_pulled else result.err)
     assert ("WRONG  module: The port vanished" in result.out) == is_pulled

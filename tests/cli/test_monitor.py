@@ -27,13 +27,13 @@ def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path
     )
     command = Command("monitor", "--port", pty_robot.port, "--csv", str(rows), "--json")
     assert command.process.stderr
-    command.process.stderr.readline()  # it watches
+    command.process.stderr.readline()  # waits until it watches
     pty_robot.push()
     pty_robot.until(
         lambda: "FAULT" in rows.read_text(encoding="utf-8"), "the fault is written down"
     )
     command.signal(signal.SIGINT)
-    result = command.ended().gives(0)
+    result = command.wait_for_result().gives(0)
     events = [json.loads(line) for line in result.out.splitlines()]
     assert [event["event"] for event in events] == ["SHOW", "SHOW", "FAULT"]
     assert [row.split(",")[1:] for row in rows.read_text(encoding="utf-8").splitlines()] == [
@@ -50,7 +50,7 @@ def test_monitor_keeps_the_last_rows_where_no_robot_answers(tmp_path: Path) -> N
 
 
 def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:
-    """What is written is read as a terminal reads it: of the title only the value changes."""
+    """The output is read as a terminal does: only the value in the title changes."""
     assert on(pty_robot, "upload", "-e", "SB|SHOW(-2.5);W(0.3);SHOW(7);W(0.3);SHOW(TRUE)").code == 0
     terminal = Terminal("monitor", "--port", pty_robot.port, "--plot", types=False)
     terminal.until("── SHOW")
@@ -110,11 +110,11 @@ def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
                 is_there, losses = False, losses + 1
                 return waits, LostEvent()
             return None
-        asked = [search for search in searches if search.outcome is None]
-        assert len(asked) == 1, "nobody looks for it"
+        questions = [search for search in searches if search.outcome is None]
+        assert len(questions) == 1, "nobody looks for it"
         if chance.random() < 0.3:
             is_there = chance.random() < 0.3
-            asked[0].outcome = SimpleNamespace(status=OK if is_there else LOST)
+            questions[0].outcome = SimpleNamespace(status=OK if is_there else LOST)
         return None
 
     def search() -> Any:

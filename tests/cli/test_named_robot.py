@@ -19,10 +19,11 @@ from tiniscript.cli.texts.verbs import VERBS
 LINER = "// robot: liner\nSI|SHOW(LINE_L)\n"
 UNKNOWN = "// robot: linar\nSI|SHOW(LINE_L)\n"
 WINS = "--robot {} takes precedence: {} names the robot {}.\n"
-# Each verb that takes a program, and how it is called with one.
+# Each verb with a program, and its other arguments.
 CALLS = {
     "check": [], "run": [], "compile": [], "show": [], "fmt": ["--check"],
-    "upload": ["--virtual"], "lesson": ["check", "1"], "class": None,  # it sends as upload does
+    # A class sends programs as upload does.
+    "upload": ["--virtual"], "lesson": ["check", "1"], "class": None,
 }  # fmt: skip
 
 
@@ -44,7 +45,7 @@ def test_every_verb_takes_the_robot_that_a_program_names(verb: str, tsc: Tsc, li
     words = CALLS[verb] or []
     result = tsc(verb, *words, liner)
     assert "Error: " not in result.err and "[TS" not in result.err, result
-    assert result.code == (1 if verb == "lesson" else 0)  # it does not drive as lesson 1 wants
+    assert result.code == (1 if verb == "lesson" else 0)  # the program does not solve lesson 1
 
 
 @each_row("verb", ["check", "run", "compile", "show", "upload"])
@@ -53,16 +54,16 @@ def test_an_option_wins_and_says_so_once(verb: str, tsc: Tsc, liner: Path) -> No
     result = tsc(verb, *words, liner, "--robot", "tinibot").gives(1)
     assert result.err.startswith(WINS.format("tinibot", liner, "liner"))
     assert result.err.count(" takes precedence: ") == 1
-    wanted = "Try:  Write --robot liner in the command, not tinibot"
-    assert wanted in result.err  # the comment is there already
+    wanted_text = "Try:  Write --robot liner in the command, not tinibot"
+    assert wanted_text in result.err  # the comment is there already
     same = tsc(verb, *words, liner, "--robot", "LINER").gives(0)
     assert " takes precedence: " not in same.err
 
 
 def test_a_robot_of_ones_own_may_be_named(tsc: Tsc, tmp_path: Path) -> None:
-    shipped = ROOT / "compiler" / "tiniscript" / "robots" / "liner.toml"
+    shipped_path = ROOT / "compiler" / "tiniscript" / "robots" / "liner.toml"
     own = tmp_path / "mine.toml"
-    own.write_text(shipped.read_text(encoding="utf-8"), encoding="utf-8")
+    own.write_text(shipped_path.read_text(encoding="utf-8"), encoding="utf-8")
     path = tmp_path / "line.ts"
     path.write_text(LINER.replace("liner", "mine"), encoding="utf-8")
     assert "No robot is called mine" in tsc("check", path).gives(1).err
@@ -74,7 +75,7 @@ def test_a_name_that_no_robot_has_is_a_mistake(verb: str, tsc: Tsc, tmp_path: Pa
     path = tmp_path / "x.ts"
     path.write_text(UNKNOWN, encoding="utf-8")
     result = tsc(verb, *(CALLS[verb] or []), path).gives(1)
-    assert result.err.count("[TS") == 1  # which words there are nobody knows
+    assert result.err.count("[TS") == 1  # nobody knows the words of this robot
     assert "line 1:  // robot: linar\n                   ^^^^^\n" in result.err
     assert "No robot is called linar; TiniScript includes: tinibot, elegoo4" in result.err
     assert "Try:  // robot: liner   [TS138]" in result.err

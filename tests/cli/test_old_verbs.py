@@ -1,4 +1,4 @@
-"""What was a verb is a part of another command: its name says so, and nothing else has it."""
+"""Former verbs are now parts of other commands, which are named and unique."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from tiniscript.cli.texts.verbs import (
 from tiniscript.cli.verbless import is_help
 
 OLD = "|".join(FORMER_COMMANDS)
-# `tsc name`, as a command or in a list of words; the changelog says what was called how, and when.
+# `tsc name`, as a command or in a list of words; the changelog may mention former names.
 NAMED = re.compile(
     rf"(?:\btsc|-m tiniscript)(?:['\", ]+--lang['\", ]+\w\w)?['\", ]+(?:{OLD})\b(?!=)"
 )
 HISTORY = ("CHANGELOG.md", "tests/cli/test_old_verbs.py")
-MISSPELLED = "complie "  # as a document shows what is said then
+MISSPELLED = "complie "  # the misspelling that a document shows
 KINDS = ("c", "cpp", "h", "html", "ini", "ino", "js", "json", "md", "mjs", "ps1", "py", "sh", "svg",
          "toml", "txt", "yml", "yaml")  # fmt: skip
 NOT_OURS = {".git", ".venv", ".pio", "node_modules", "__pycache__", "build", "dist"}
@@ -84,7 +84,7 @@ def commands_in(text: str, is_document: bool, is_robots: bool = False) -> Iterat
 
 
 def wrong_in(command: str) -> str | None:
-    """Return which word of a command no table has, or None."""
+    """Return the word of a command that no table has, or None."""
     if command.startswith(MISSPELLED):
         return None
     words = re.sub(r"[\"'“”|]|\{\w+\}|…|\.\.\.", "", command).split()
@@ -96,14 +96,14 @@ def wrong_in(command: str) -> str | None:
     heads = {STEPS[step].head for step in steps_of(words[0])} - {words[0]}
     if heads and name == words[0] and re.fullmatch("[a-z]+", "".join(words[1:2])):
         return words[1]  # `tsc set` has its steps by a word
-    known = {
+    known_names = {
         flag
         for option in [*options_of(name), *selecting_options_of(name)]
         for flag in option.flags.split()
     }
     flags = [re.match("-[-a-z0-9]+", word) for word in words[1:]]
-    given = [flag[0] for flag in flags if flag is not None and flag[0].startswith("--")]
-    return next((flag for flag in given if flag not in known), None)
+    given_words = [flag[0] for flag in flags if flag is not None and flag[0].startswith("--")]
+    return next((flag for flag in given_words if flag not in known_names), None)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -118,8 +118,8 @@ def test_what_messages_say_to_type_is_a_command(language: str) -> None:
                 count += 1
                 assert wrong_in(command) is None, (path.stem, key, command)
     assert count > 100
-    owned = all_said(language, "robot")["remark/NOT_OWNER"]
-    assert [*commands_in(owned, is_document=False, is_robots=True)]
+    owned_text = all_said(language, "robot")["remark/NOT_OWNER"]
+    assert [*commands_in(owned_text, is_document=False, is_robots=True)]
 
 
 def test_what_sources_of_robots_say_to_type_is_a_command() -> None:
@@ -144,7 +144,7 @@ def test_what_is_no_command_is_found_in_what_a_robot_says() -> None:
 
 
 def test_what_documents_say_to_type_is_a_command() -> None:
-    """Those that say how something was before do not count."""
+    """Descriptions of the past do not count."""
     count = 0
     for path in files():
         if path.suffix != ".md":
@@ -221,7 +221,7 @@ def test_the_word_after_set_may_come_after_options(tsc: Tsc) -> None:
     for words in (["--port", "trim", "name"], ["--lang", "en", "name"], ["name", "--port", "x"]):
         tsc("set", *words).gives(2, "which name?", out="")
     tsc("set", "--lang", "en").gives(2, "owner, name, trim, text or wifi")
-    for more in ([], ["3", "--balance"]):  # what is wrong first is told first
+    for more in ([], ["3", "--balance"]):  # the first mistake is reported first
         tsc("set", "trmi", *more, "--lang", "en").gives(2, "Did you mean trim?")
 
 

@@ -1,4 +1,4 @@
-"""What a command writes is never what it reads: every output of every verb, by every name."""
+"""No command overwrites its input: every output of every verb, by every name."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ PAIRS = [
     and {other} & {*paths.READ_OPTIONS, *paths.WRITE_OPTIONS}
     if not (verb == "monitor" and output == "plot")
 ]
-# What a verb is told to do, before its files.
+# Arguments of a verb before its files.
 ACTIONS = {"lesson": ("check", "1"), "class": ("upload",)}
 
 
@@ -55,7 +55,7 @@ def arguments(verb: str, files: dict[str, Path]) -> list[str]:
 
 
 def test_every_option_that_takes_a_value_is_known_to_name_a_file_or_not() -> None:
-    """Whoever adds an option says what it is; what names a file in one verb does in all."""
+    """Every new option must be classified; a name of a file in one verb is one in all."""
     kept = {("compile", "map", "program"), ("compile", "output", "program")}
     assert kept | {("show_port", "output", "robot")} <= set(PAIRS)
     for verb, parser in PARSERS.items():
@@ -71,7 +71,7 @@ def test_every_option_that_takes_a_value_is_known_to_name_a_file_or_not() -> Non
 
 
 def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
-    """Whoever writes a file elsewhere adds its option to `WRITES`, and then its line here."""
+    """Anyone who writes a file elsewhere adds its option to `WRITES`, and then its line here."""
     places = {
         "outputs.write_output(target,": "output",  # of compile
         "outputs.write_output(options.output,": "output",
@@ -81,7 +81,7 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
         "outputs.write(Path(options.csv),": "csv",
         "outputs.write(Path(options.plot),": "plot",
         "outputs.write(Path(options.report),": "report",
-        "outputs.write(Path(options.record),": "record",  # of run, as a whole
+        "outputs.write(Path(options.record),": "record",  # of run, for the whole recording
         "outputs.write(Path(self.options.memory),": "memory",
         "outputs.write(program_input.path,": "program",  # fmt, in place; check --fix of one program
         "outputs.write(Path(program_input.name),": "programs",  # check --fix, in place
@@ -93,11 +93,11 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
         for line in file.read_text(encoding="utf-8").splitlines():
             words = ("outputs.write(", "outputs.write_output(", '.open("w', '.open("a',
                      "write_text(", "write_bytes(")  # fmt: skip
-            is_file = "outputs.write_output(None," not in line  # that is standard output
+            is_file = "outputs.write_output(None," not in line  # None means standard output
             if is_file and any(word in line for word in words):
-                known = [place for place in places if place in line]
-                assert known, f"{file.name}: {line.strip()}"
-                known_options |= set(known)
+                known_names = [place for place in places if place in line]
+                assert known_names, f"{file.name}: {line.strip()}"
+                known_options |= set(known_names)
     assert known_options == set(places)
     assert {places[name] for name in known_options} == {*paths.WRITE_OPTIONS, "program", "programs"}
 
@@ -148,7 +148,7 @@ def test_two_outputs_that_are_not_there_yet_are_told_apart(tsc: Tsc, working_fol
         assert not (working_folder / "x").exists()
     assert tsc("compile", "-e", PROGRAM, "-o", "link", "--map", "x").code == 2
     assert tsc("compile", "-e", PROGRAM, "-o", "loop").code == 2
-    for _ in range(2):  # then there they are
+    for _ in range(2):  # in the second pass the files exist
         assert tsc("compile", "-e", PROGRAM, "-o", "x", "--map", "y").code == 0
 
 
@@ -177,7 +177,7 @@ def test_devices_and_pipes_may_be_written(tsc: Tsc, tmp_path: Path) -> None:
     with subprocess.Popen(["cat", pipe], stdout=subprocess.PIPE) as reader:
         result = tsc("compile", program, "-o", pipe)
         if result.code:
-            reader.kill()  # it would wait for somebody who opens the pipe
+            reader.kill()  # otherwise it would wait for a reader of the pipe
         assert result.code == 0
         assert reader.communicate(timeout=HANGS_S)[0].startswith(b"TS\x02")
     assert pipe.is_fifo()

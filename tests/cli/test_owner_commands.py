@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from tests.machines.host_firmware import EMPTY
-from tests.support.claimed_robots import as_another, claimed
+from tests.support.claimed_robots import as_another, claim_with_button
 from tests.support.command import FOREVER, Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.cli import main
@@ -47,7 +47,7 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["owner"] == "free"
-    claimed(pty_robot).gives(0, out="yours")
+    claim_with_button(pty_robot).gives(0, out="yours")
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
     assert ", yours" in on(pty_robot, "doctor").out
     assert ", yours" in on(pty_robot, "doctor", "--count", "1").out
@@ -58,24 +58,28 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
     assert "(de otro dueño)" in on(pty_robot, "doctor", "--ports", "--ask", "--lang", "es").out
     on(pty_robot, "upload", "-e", DRIVES).gives(3, "10 s")
     assert "dueño" in on(pty_robot, "live", "F(1, 80)", "--lang", "es").err
-    refused = on(pty_robot, "set", "owner")
-    assert refused.code == 3 and "10 s" in refused.err and "2 s" not in refused.err
+    refused_result = on(pty_robot, "set", "owner")
+    assert (
+        refused_result.code == 3
+        and "10 s" in refused_result.err
+        and "2 s" not in refused_result.err
+    )
     assert on(pty_robot, "set", "owner", "--give-up").code == 3
     on(pty_robot, "doctor").gives(0, out="The robot has an owner")
     assert on(pty_robot, "doctor", "--identify").code == 0
-    pty_robot.until(lambda: any("BEEP" in line for line in pty_robot.did), "its tune")
+    pty_robot.until(lambda: any("BEEP" in line for line in pty_robot.actions), "its tune")
     assert on(pty_robot, "stop").code == 0
 
 
 def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    assert claimed(pty_robot).code == 0
-    before = KeyFile().all()
+    assert claim_with_button(pty_robot).code == 0
+    all_before = KeyFile().all()
     assert on(pty_robot, "set", "owner", "--give-up").code == 0
-    KeyFile().add(before)  # as on a computer that was not there
+    KeyFile().add(all_before)  # like a computer that was not present
     as_another(monkeypatch, tmp_path)
-    assert claimed(pty_robot).code == 0
+    assert claim_with_button(pty_robot).code == 0
     as_another(monkeypatch, tmp_path, "settings")
     for _ in range(7):  # more often than wrong keys are listened to
         on(pty_robot, "doctor").gives(0, "claimed the robot again.", "10 s")
@@ -88,10 +92,10 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
 
 
 def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
-    """A robot with an owner takes text only while it is told to."""
+    """A robot with an owner accepts text only if allowed."""
     assert "has no owner to remove" in on(pty_robot, "set", "owner", "--give-up").out
     assert "no owner" in on(pty_robot, "set", "text", "off").out
-    assert claimed(pty_robot).code == 0
+    assert claim_with_button(pty_robot).code == 0
     assert len(KeyFile().all()) == 1
     assert "until it is switched off" in on(pty_robot, "set", "text", "on").out
     assert "except S" in on(pty_robot, "set", "text", "off").out
@@ -104,10 +108,10 @@ def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
 
 def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -> None:
     """Variables without room to be shown are forgotten; a longer line gets a message about it."""
-    most = "W(0.01);" * 10 + "W(0.123);" * 4 + "X = 1"  # 38 bytes, and 46 with what tells X
+    most = "W(0.01);" * 10 + "W(0.123);" * 4 + "X = 1"  # 38 bytes, and 46 with the event about X
     result = on(pty_robot, "live", "-", data=f"{most}\nSHOW(X)\n".encode())
     assert result.code == 0 and result.out.count("X 1\n") == 1
-    assert claimed(pty_robot).code == 0
+    assert claim_with_button(pty_robot).code == 0
     on(pty_robot, "live", "-", data=most.encode()).gives(0, "are lost", out="")
     on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8).gives(1, "room for 42")
     result = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8, "--lang", "es")
@@ -117,7 +121,7 @@ def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -
 def test_a_claim_without_the_button_says_what_to_do(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """And where the key could not be kept the robot gives none."""
+    """If the key cannot be stored, the robot issues none."""
     monkeypatch.setattr(connection, "CLAIM_TIMEOUT_MS", 700)
     on(pty_robot, "set", "owner").gives(3, "2 s")
     assert KeyFile().all() == []
@@ -132,11 +136,11 @@ def test_a_claim_without_the_button_says_what_to_do(
 def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    assert claimed(pty_robot, "--teacher").code == 0
+    assert claim_with_button(pty_robot, "--teacher").code == 0
     as_another(monkeypatch, tmp_path, "pupil")
-    assert claimed(pty_robot).code == 0
+    assert claim_with_button(pty_robot).code == 0
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
-    assert "teacher's key" in on(pty_robot, "stop", "--teacher").err  # a pupil has none
+    assert "teacher's key" in on(pty_robot, "stop", "--teacher").err  # a pupil does not get one
     as_another(monkeypatch, tmp_path, "settings")
     assert "will only run again after" in on(pty_robot, "stop", "--teacher").out
     as_another(monkeypatch, tmp_path, "pupil")
@@ -151,16 +155,18 @@ def test_a_shared_port_has_the_authority_and_its_messages_no_key(
 ) -> None:
     link = Command("monitor", "--hold", "--port", pty_robot.port)
     link.until("share this port")
-    assert claimed(pty_robot).code == 0  # the key is made by the command that holds the port
+    assert (
+        claim_with_button(pty_robot).code == 0
+    )  # the key is made by the command that holds the port
     assert [key.which for key in KeyFile().all()] == [KEY_OWNER]
-    as_another(monkeypatch, tmp_path)  # so that this command has no key
+    as_another(monkeypatch, tmp_path)  # removes the key from this command
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
     assert ", yours" in on(pty_robot, "doctor").out
     driving = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
     driving.until("running")
     assert on(pty_robot, "stop").code == 0
-    driving.ended()
-    assert on(pty_robot, "upload", "-e", DRIVES).code == 0  # after a stop, too
+    driving.wait_for_result()
+    assert on(pty_robot, "upload", "-e", DRIVES).code == 0  # also after a stop
     link.kill()
     client: Any = ClientRequests()
     for request in (client.claim(KEY_OWNER), client.disown(KEY_OWNER)):
@@ -171,12 +177,12 @@ def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
     pty_robot: PtyRobot,
 ) -> None:
     """Whoever leads the connection there has a robot, and no key."""
-    claimed(pty_robot).gives(0)
+    claim_with_button(pty_robot).gives(0)
     pty_robot.switch_off()
     pty_robot._memory = EMPTY
-    pty_robot.switch_on()  # another one, with an id of its own
-    refused = on(pty_robot, "upload", "-e", FOREVER, "--detach")
-    refused.gives(3, "a different robot", "tsc set owner --accept")
+    pty_robot.switch_on()  # another robot, with its own id
+    refused_result = on(pty_robot, "upload", "-e", FOREVER, "--detach")
+    refused_result.gives(3, "a different robot", "tsc set owner --accept")
     for words in (
         ["upload", "-e", DRIVES],
         ["live", "F(0.2, 80)"],
@@ -187,9 +193,9 @@ def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
     on(pty_robot, "stop").gives(3, "has not confirmed the stop")
     on(pty_robot, "doctor", "--lang", "es").gives(3, out="responde otro robot")
     on(pty_robot, "doctor", "--lang", "pt").gives(3, out="responde outro robô")
-    driven = [line for line in pty_robot.did if line.startswith("MOTORS")]
-    assert set(driven) <= {"MOTORS 0 0"}
-    [robot] = re.findall("--accept ([0-9a-f]{8})", refused.err)
+    motor_lines = [line for line in pty_robot.actions if line.startswith("MOTORS")]
+    assert set(motor_lines) <= {"MOTORS 0 0"}
+    [robot] = re.findall("--accept ([0-9a-f]{8})", refused_result.err)
     inside("set", "owner", "--accept", robot.upper()).gives(0, "", out=robot)
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
     assert on(pty_robot, "stop").code == 0
@@ -197,8 +203,8 @@ def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
 
 def test_who_claims_many_robots_at_one_cable_is_not_asked(pty_robot: PtyRobot) -> None:
     for _ in range(2):
-        claimed(pty_robot).gives(0, out="yours")
+        claim_with_button(pty_robot).gives(0, out="yours")
         assert on(pty_robot, "upload", "-e", DRIVES).code == 0
         pty_robot.switch_off()
         pty_robot._memory = EMPTY
-        pty_robot.switch_on()  # another one
+        pty_robot.switch_on()  # another robot

@@ -1,4 +1,4 @@
-"""Nothing of others moves the cursor of a person's terminal, hides text or begins a line there."""
+"""Foreign text never moves the cursor of a terminal, hides text or begins a line."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from tiniscript.virtual import worlds
 EVIL = "\x1b[31mx\x9b2J\r\ntsc: done\x08\x7f\u202e\u2066\u200f\u2028"
 BAD = re.compile(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2028\u2029\u2066-\u2069]")
 PARSERS = parsers()
-ENDS = {  # what keeps a verb from waiting for something
+ENDS = {  # values that keep a verb from waiting
     "robot": ["--for", "0.1", "--hurry", "max"],
     "monitor_hold": ["--port", "/none"], "start": ["--port", "/none"],
     "set_trim": ["--port", "/none"],
@@ -98,7 +98,7 @@ def in_toml(text: str) -> str:
     return '"' + "".join(f"\\U{ord(letter):08x}" for letter in text) + '"'
 
 
-def spoiled(toml: str) -> list[str]:
+def spoil_each(toml: str) -> list[str]:
     """Return a text for each of its strings, and for each of its keys, with that one spoiled."""
     values = [match.span() for match in re.finditer(r'"[^"\n]*"', toml)]
     keys = [match.span(1) for match in re.finditer(r"^([a-z_A-Z]+) *=", toml, re.MULTILINE)]
@@ -109,11 +109,11 @@ def spoiled(toml: str) -> list[str]:
 def test_no_string_of_a_profile_reaches_the_terminal_raw(
     tsc: Tsc, verb: str, pytestconfig: pytest.Config
 ) -> None:
-    texts = spoiled(TEXTS[DEFAULT])
+    texts = spoil_each(TEXTS[DEFAULT])
     assert len(texts) > 30
     for number, toml in enumerate(texts):
         if verb in ("run", "robot") and number % 7:
-            continue  # they read it as the others do
+            continue  # these verbs read the file like the others
         Path("evil.toml").write_text(toml, encoding="utf-8")
         words = [*command_words(verb).split(), *([] if verb == "firmware_board" else ["--robot"])]
         words.append("evil.toml")
@@ -126,7 +126,7 @@ def test_no_string_of_a_profile_reaches_the_terminal_raw(
 
 
 def test_no_string_of_a_world_reaches_the_terminal_raw(tsc: Tsc) -> None:
-    texts = spoiled((worlds.FOLDER / "obstacles.toml").read_text(encoding="utf-8"))
+    texts = spoil_each((worlds.FOLDER / "obstacles.toml").read_text(encoding="utf-8"))
     assert len(texts) > 3
     for toml in texts:
         Path("evil.toml").write_text(toml, encoding="utf-8")
@@ -150,10 +150,10 @@ def test_a_line_of_a_program_is_shown_plainly_where_it_faults(tsc: Tsc, tmp_path
 def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:  # fmt: skip # noqa: E501
     from tiniscript.cli import main
 
-    def broken(arguments: list[str], language: str) -> int:
+    def raise_hostile_error(arguments: list[str], language: str) -> int:
         raise RuntimeError(f"the moon {EVIL}")
 
-    monkeypatch.setattr("tiniscript.cli.commands.check.run", broken)
+    monkeypatch.setattr("tiniscript.cli.commands.check.run", raise_hostile_error)
     assert main(["check"]) == 2
     output = capsys.readouterr().err
     assert "RuntimeError: the moon" in output and "Traceback" not in output
@@ -240,8 +240,8 @@ def test_a_port_without_a_robot_says_what_it_is(
     assert listed_port["description"].startswith(expected)
 
 
-def printed(text: str, is_json: bool) -> tuple[str, str]:
-    """Return what is printed of a robot's text, and its row."""
+def print_name(text: str, is_json: bool) -> tuple[str, str]:
+    """Return the printed form of a robot's text, and its row."""
     lines: list[str] = []
     rows = io.StringIO()
     writer = csv.writer(rows, lineterminator="\n")
@@ -256,17 +256,19 @@ def printed(text: str, is_json: bool) -> tuple[str, str]:
 @each_row("sign", ACTING)
 def test_a_text_is_printed_without_them(sign: str) -> None:
     for is_json in (False, True):
-        output, row = printed(f"AB{sign}C", is_json)
+        output, row = print_name(f"AB{sign}C", is_json)
         assert is_harmless(output) and is_harmless(row)
         assert is_harmless(json.loads(output)["text"]) if is_json else "AB" in output
 
 
 @each_row("separator, text", product((",", ";", "\t"), FORMULAS))
 def test_no_cell_of_a_row_is_a_formula(text: str, separator: str) -> None:
-    _, row = printed(text, is_json=False)
+    _, row = print_name(text, is_json=False)
     [cells] = csv.reader([row.strip("\n")], delimiter=separator)
-    quoted = [cell.strip(' "') for cell in cells]
-    assert not [cell for cell in quoted[-1:] + quoted if cell[:1] in tuple("=+-@\uff1d")]
+    quoted_texts = [cell.strip(' "') for cell in cells]
+    assert not [
+        cell for cell in quoted_texts[-1:] + quoted_texts if cell[:1] in tuple("=+-@\uff1d")
+    ]
 
 
 def test_numbers_and_words_stay() -> None:

@@ -45,9 +45,9 @@ def test_a_run_on_the_virtual_robot_is_recorded_and_played_again(tsc: Tsc, tmp_p
     assert result.out.endswith("DONE\n") and not is_foreign(file)
     recording = decode(file.read_bytes())
     assert (recording.seed, recording.world and recording.world.name) == (7, "line")
-    replayed = tsc("run", file)
-    assert (replayed.code, replayed.out) == (0, result.out)
-    assert replayed.err == f"{AGAIN}{len(recording.rows)}.\n"
+    replayed_result = tsc("run", file)
+    assert (replayed_result.code, replayed_result.out) == (0, result.out)
+    assert replayed_result.err == f"{AGAIN}{len(recording.rows)}.\n"
     show = next(row for row in recording.rows if row.event.startswith("SHOW"))
     changed = recordings.encode_row(show), recordings.encode_row(show._replace(event="SHOW 100"))
     file.write_text(file.read_text().replace(*changed))
@@ -74,8 +74,8 @@ def test_a_fault_is_recorded_and_told(tsc: Tsc, tmp_path: Path) -> None:
 
 def test_a_world_of_a_file_is_in_the_file_of_the_run(tsc: Tsc, tmp_path: Path) -> None:
     file, world = tmp_path / "run.tsr", tmp_path / "own.toml"
-    shipped = Path(recordings.__file__).parents[1] / "virtual" / "worlds" / "obstacles.toml"
-    text = shipped.read_text(encoding="utf-8")
+    shipped_path = Path(recordings.__file__).parents[1] / "virtual" / "worlds" / "obstacles.toml"
+    text = shipped_path.read_text(encoding="utf-8")
     world.write_text(text.replace("heading =", "heading = 33.333 #", 1), encoding="utf-8")
     tsc("run", "-e", "F(1, 60) UNTIL(DISTANCE < 15)", "--record", file, "--world", world).gives(0)
     world.unlink()
@@ -268,8 +268,8 @@ def test_what_is_not_recorded_or_played_says_why(
     tsc: Tsc, working_folder: Path, words: tuple[str, ...], message: str
 ) -> None:
     assert tsc("compile", "-e", TEXT, "-o", "p.bin").code == 0
-    shipped = Path(recordings.__file__).parents[1].joinpath("robots/tinibot.toml")
-    own = shipped.read_text(encoding="utf-8").replace('name = "tinibot"', 'name = "own"')
+    shipped_path = Path(recordings.__file__).parents[1].joinpath("robots/tinibot.toml")
+    own = shipped_path.read_text(encoding="utf-8").replace('name = "tinibot"', 'name = "own"')
     Path("own.toml").write_text(own, encoding="utf-8")
     Path("letter").write_bytes(b"a letter")
     Path("r").write_bytes(real((5, "SHOW 5")))
@@ -277,7 +277,7 @@ def test_what_is_not_recorded_or_played_says_why(
     assert Path("r").read_bytes() == real((5, "SHOW 5")) and not Path("new").exists()
 
 
-def recorded(
+def record(
     file: Path, *events: tuple[str, str], began_s: float | None = None, end: str = ""
 ) -> tuple[Row, ...]:
     """Record these events of a robot; return what the file has then."""
@@ -294,23 +294,23 @@ def test_a_recording_has_an_end_and_no_more(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file, show = tmp_path / "run.tsr", ("SHOW", "1")
-    for ends, wanted in (
+    for ends, wanted_texts in (
         ((), ["SHOW 1", "STOPPED"]),
         ((("MISSED", "3"), ("SHOW", "2"), ("DONE", "")), ["SHOW 1", "MISSED"]),
         ((("TEXT", "hello"), ("STOPPED", "BUTTON"), ("DONE", "")), ["SHOW 1", "STOPPED"]),
     ):
-        events = recorded(file, show, *ends, began_s=monotonic())
-        assert [event.event for event in events] == wanted
+        events = record(file, show, *ends, began_s=monotonic())
+        assert [event.event for event in events] == wanted_texts
     with monkeypatch.context() as patch:
         patch.setattr(recordings, "MOST_ROW_BYTES", 30)
-        events = recorded(file, *(("SHOW", str(k)) for k in range(9)), end="LOST")
+        events = record(file, *(("SHOW", str(k)) for k in range(9)), end="LOST")
     assert [event.event for event in events] == ["SHOW 0", "SHOW 1"]
-    assert events[0] == Row(0, "SHOW 0")  # it began with that
+    assert events[0] == Row(0, "SHOW 0")  # the value shown when the recording began
     began_s = monotonic()
     monkeypatch.setattr(recorder, "monotonic", lambda: 1e9)
-    events = recorded(file, show, began_s=began_s)
+    events = record(file, show, began_s=began_s)
     assert events == ()  # longer than may be
-    assert recorded(file) == (Row(0, "STOPPED"),)
+    assert record(file) == (Row(0, "STOPPED"),)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -318,29 +318,31 @@ def test_whatever_a_robot_tells_after_the_end_of_its_run_is_not_recorded(
     tmp_path: Path, seed: int
 ) -> None:
     chance, file, kit = Random(seed), tmp_path / "run.tsr", robots.load("tinibot").kit
-    tested = Recorder(str(file), HEAD, monotonic(), kit=kit)
+    tested_recorder = Recorder(str(file), HEAD, monotonic(), kit=kit)
     for k in range(12):
         name = chance.choice(["SHOW", "READING", "READING", "TEXT", *ENDING_EVENTS])
         if name == "READING":
-            tested.add_reading(ReadingEvent(7, chance.randrange(3), 1000 * k, 0))
+            tested_recorder.add_reading(ReadingEvent(7, chance.randrange(3), 1000 * k, 0))
         else:
-            tested.add_event(7, name, "OVERFLOW" if name == "FAULT" else str(k))
-    tested.close()
+            tested_recorder.add_event(7, name, "OVERFLOW" if name == "FAULT" else str(k))
+    tested_recorder.close()
     names = [row.event.partition(" ")[0] for row in decode(file.read_bytes()).rows]
     assert names[-1] in ENDING_EVENTS and not {*names[:-1]} & {*ENDING_EVENTS}
 
 
-@pytest.mark.parametrize(("event", "wanted"), [("", "STOPPED"), ("LOST", "LOST")])
+@pytest.mark.parametrize(("event", "wanted_text"), [("", "STOPPED"), ("LOST", "LOST")])
 def test_a_recording_ends_when_the_run_does(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, event: str, wanted: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, event: str, wanted_text: str
 ) -> None:
     """A robot that hangs after its first value and is stopped by hand has not done the same."""
     file, clock = tmp_path / "run.tsr", iter((10.2, 70.0))
     monkeypatch.setattr(recorder, "monotonic", lambda: next(clock))
-    events = recorded(file, ("SHOW", "5"), began_s=10.0, end=event)
-    assert events == (Row(200, "SHOW 5"), Row(60_000, wanted))
-    compared = play(prepare(decode(file.read_bytes()))).divergence
-    assert compared is not None and compared.what == ("same" if event else "virtual_more")
+    events = record(file, ("SHOW", "5"), began_s=10.0, end=event)
+    assert events == (Row(200, "SHOW 5"), Row(60_000, wanted_text))
+    compared_divergence = play(prepare(decode(file.read_bytes()))).divergence
+    assert compared_divergence is not None and compared_divergence.what == (
+        "same" if event else "virtual_more"
+    )
 
 
 def test_after_ctrl_c_saving_is_no_time_of_the_run(
@@ -355,9 +357,9 @@ def test_after_ctrl_c_saving_is_no_time_of_the_run(
     def saves(_: Saving) -> None:
         now_s[0] += 30
 
-    def printer(*given: object) -> EventPrinter:
+    def printer(*arguments: object) -> EventPrinter:
         now_s[0] += 3  # the robot runs while this is loaded, and its time counts from before
-        return make_printer(*given)  # type: ignore[arg-type]
+        return make_printer(*arguments)  # type: ignore[arg-type]
 
     make_printer = event_printer.printer_of
     monkeypatch.setattr(upload, "printer_of", printer)
@@ -365,15 +367,15 @@ def test_after_ctrl_c_saving_is_no_time_of_the_run(
     monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(upload, "follow_run", ctrl_c)
     monkeypatch.setattr(Saving, "wait", saves)
-    monkeypatch.setattr(CommandSimulator, "event_ms", None)  # as a real robot, it has no clock
+    monkeypatch.setattr(CommandSimulator, "event_ms", None)  # like a real robot, it has no clock
     tsc("upload", "-e", "SI|F(9, 60)", "--virtual", "--record", file).gives(2, "confirmed")
     assert decode(file.read_bytes()).rows == (Row(5000, "STOPPED"),)
 
 
 def test_a_place_without_room_says_so(tmp_path: Path) -> None:
-    with pytest.raises(CommandError) as refused:
+    with pytest.raises(CommandError) as exception_info:
         Recorder(str(tmp_path / "no" / "run.tsr"), HEAD, began_s=monotonic())
-    assert "with --record" in refused.value.sentence("en")
+    assert "with --record" in exception_info.value.sentence("en")
     if Path("/dev/full").exists():
         with pytest.raises(CommandError, match="unwritable_more"):
             Recorder("/dev/full", HEAD, began_s=monotonic())

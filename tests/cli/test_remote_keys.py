@@ -1,4 +1,4 @@
-"""A terminal as a remote control: what is held, where nobody says that a key is let go."""
+"""A terminal as a remote control, which does not report the release of keys."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ KEYS = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize(("typed", "name"), KEYS)
-def test_a_first_press_holds_for_long_and_a_repeat_briefly(typed: str, name: str) -> None:
-    keys, held = HeldKeys(), remote_state_of([name])
-    assert not keys.press_typed(typed, 10.0)
-    assert keys.keys_at(10.0) == keys.keys_at(10.0 + FIRST_HOLD_S - 0.01) == held
+@pytest.mark.parametrize(("typed_text", "name"), KEYS)
+def test_a_first_press_holds_for_long_and_a_repeat_briefly(typed_text: str, name: str) -> None:
+    keys, held_state = HeldKeys(), remote_state_of([name])
+    assert not keys.press_typed(typed_text, 10.0)
+    assert keys.keys_at(10.0) == keys.keys_at(10.0 + FIRST_HOLD_S - 0.01) == held_state
     assert keys.keys_at(10.0 + FIRST_HOLD_S) == NOTHING_PRESSED
     for k in range(20):  # a terminal repeats it after 0.66 s, 25 times a second
-        assert keys.keys_at(20.66 + k / 25 - 0.01) == (held if k else NOTHING_PRESSED)
-        keys.press_typed(typed, 20.66 + k / 25)
+        assert keys.keys_at(20.66 + k / 25 - 0.01) == (held_state if k else NOTHING_PRESSED)
+        keys.press_typed(typed_text, 20.66 + k / 25)
     last = 20.66 + 19 / 25
-    assert keys.keys_at(last + REPEAT_HOLD_S - 0.01) == held
+    assert keys.keys_at(last + REPEAT_HOLD_S - 0.01) == held_state
     assert keys.keys_at(last + REPEAT_HOLD_S) == NOTHING_PRESSED
 
 
@@ -52,10 +52,10 @@ def test_a_key_that_comes_in_two_pieces(cut: int) -> None:
     assert keys.keys_at(0.2) == remote_state_of(["A", "UP", "LEFT"])
 
 
-@pytest.mark.parametrize("typed", ["\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "\x1bx", "é"])
-def test_what_is_no_key_of_a_remote_control_holds_nothing(typed: str) -> None:
+@pytest.mark.parametrize("typed_text", ["\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "\x1bx", "é"])
+def test_what_is_no_key_of_a_remote_control_holds_nothing(typed_text: str) -> None:
     keys = HeldKeys()
-    assert not keys.press_typed(typed + "\x1b", 0.0)
+    assert not keys.press_typed(typed_text + "\x1b", 0.0)
     assert not keys.press_typed("b", 0.1) and keys.keys_at(0.1) in (
         NOTHING_PRESSED,
         remote_state_of(["B"]),
@@ -64,9 +64,9 @@ def test_what_is_no_key_of_a_remote_control_holds_nothing(typed: str) -> None:
     assert keys.keys_at(0.2) == remote_state_of(["B"])
 
 
-@pytest.mark.parametrize("typed", ["q", "Q", "\x04", UP + "q", "aaaq"])
-def test_who_wants_to_leave(typed: str) -> None:
-    assert HeldKeys().press_typed(typed, 0.0)
+@pytest.mark.parametrize("typed_text", ["q", "Q", "\x04", UP + "q", "aaaq"])
+def test_who_wants_to_leave(typed_text: str) -> None:
+    assert HeldKeys().press_typed(typed_text, 0.0)
 
 
 OTHERS = ("\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "é", "q", "\x04")
@@ -78,8 +78,13 @@ def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
     chance = random.Random(seed)
     whole, cut = HeldKeys(), HeldKeys()
     for k in range(20):
-        typed, now_s = chance.choice([*(typed for typed, _ in KEYS), *OTHERS]), 2.0 * k
-        at = chance.randrange(len(typed) + 1)
-        leaves = [cut.press_typed(piece, now_s) for piece in (typed[:at], "", typed[at:], "")]
-        assert any(leaves) == whole.press_typed(typed, now_s), (k, typed)
-        assert cut.keys_at(now_s) == whole.keys_at(now_s), (k, typed)
+        typed_text, now_s = (
+            chance.choice([*(typed_text for typed_text, _ in KEYS), *OTHERS]),
+            2.0 * k,
+        )
+        at = chance.randrange(len(typed_text) + 1)
+        leaves = [
+            cut.press_typed(piece, now_s) for piece in (typed_text[:at], "", typed_text[at:], "")
+        ]
+        assert any(leaves) == whole.press_typed(typed_text, now_s), (k, typed_text)
+        assert cut.keys_at(now_s) == whole.keys_at(now_s), (k, typed_text)

@@ -1,4 +1,4 @@
-"""The command and a robot: a real port, and the whole firmware behind it.
+"""The command with a robot: a real port, and the whole firmware.
 
 A command is a process where it is interrupted or killed.
 """
@@ -15,7 +15,7 @@ import pytest
 
 from tests.support.command import LONG, Tsc, inside
 from tests.support.pty_robot import PtyRobot, on, uploading
-from tests.support.simulated_port import simulated
+from tests.support.simulated_port import simulate
 from tiniscript import compile_text, robots
 from tiniscript.library import opening
 from tiniscript.link import errors, known_ports, ports, requests
@@ -42,24 +42,24 @@ def test_a_port_that_another_program_uses_is_said(
 
 
 def test_however_a_command_ends_its_robot_stops(pty_robot: PtyRobot) -> None:
-    """By Ctrl-C, by the robot's button, killed, and where the cable is pulled."""
+    """By Ctrl-C, by the robot's button, by a kill, and by pulling the cable."""
     command = uploading(pty_robot)
     pressed_ms = pty_robot.robot_ms
     command.signal(signal.SIGINT)
-    command.ended().gives(2, "Stopped: the robot has confirmed the stop.")
-    assert pty_robot.did[-1] == "MOTORS 0 0"
-    assert int(pty_robot.timed[-1].split()[0]) <= pressed_ms + 1000
+    command.wait_for_result().gives(2, "Stopped: the robot has confirmed the stop.")
+    assert pty_robot.actions[-1] == "MOTORS 0 0"
+    assert int(pty_robot.timed_actions[-1].split()[0]) <= pressed_ms + 1000
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     command = uploading(pty_robot)
     pty_robot.push()
-    command.ended().gives(3, out="with its button")
+    command.wait_for_result().gives(3, out="with its button")
     command = uploading(pty_robot)
     command.kill()
     pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
     assert "LINK_LOST" in on(pty_robot, "doctor").out
     command = uploading(pty_robot)
     pty_robot.pull()
-    command.ended().gives(3, "is gone")
+    command.wait_for_result().gives(3, "is gone")
 
 
 def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: Path) -> None:
@@ -79,16 +79,16 @@ def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: 
 
 
 def test_a_robot_describes_itself_and_its_port_is_remembered(pty_robot: PtyRobot) -> None:
-    assert inside("doctor", "--identify").code == 3  # which port?
+    assert inside("doctor", "--identify").code == 3  # several ports are possible
     result = on(pty_robot, "doctor", "--count", "3").gives(0, out="3 round trips")
-    known = json.loads(inside("doctor", "--json").out)["robot"]
-    assert (known["port"], known["kit"], known["robot"]) == (
+    known_fields = json.loads(inside("doctor", "--json").out)["robot"]
+    assert (known_fields["port"], known_fields["kit"], known_fields["robot"]) == (
         pty_robot.port, f"{KIT.fingerprint:04x}", "tinibot",
     )  # fmt: skip
-    assert known["program"] is None
-    assert known["text_level"] == "uno"
+    assert known_fields["program"] is None
+    assert known_fields["text_level"] == "uno"
     assert "reads text, level uno" in result.out
-    with simulated(pty_robot):  # or what is late counts as lost
+    with simulate(pty_robot):  # otherwise late data would count as lost
         assert json.loads(inside("doctor", "--json").out)["robot"]["round_trips"] == 20
         assert "10 round trips" in inside("upload", "-e", "PING|check_connection").out
 
@@ -114,7 +114,7 @@ def test_the_level_of_text_is_that_of_two_bits(
 
 def test_a_board_that_has_just_been_reset_is_waited_for(pty_robot: PtyRobot) -> None:
     pty_robot.switch_off()
-    timer = threading.Timer(2, pty_robot.switch_on)  # python has to start, too
+    timer = threading.Timer(2, pty_robot.switch_on)  # includes the start of python
     timer.start()
     on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").gives(0)
     timer.join()
@@ -156,7 +156,7 @@ def test_a_person_without_a_port_is_asked_for_one(
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     result = tsc("doctor", "--identify").gives(0, f"  2  {pty_robot.port}   a robot\n")
     assert result.err.count("Number in the list: ") == 3
-    assert tsc("doctor", "--identify").err == ""  # it is remembered
+    assert tsc("doctor", "--identify").err == ""  # the port is remembered
 
 
 def test_nobody_something_else_and_another_version(

@@ -23,7 +23,7 @@ from tests.support.flicker import Flicker
 from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.simulated_ends import Firmware
-from tests.support.simulated_port import simulated
+from tests.support.simulated_port import simulate
 from tests.support.virtual_robot import robot_in
 from tiniscript import robots
 from tiniscript.cli import main
@@ -55,7 +55,7 @@ def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
     assert code == 0
     verdicts = {name: value["verdict"] for name, value in parts.items()}
     sensors = {f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors}
-    asked = {"left", "right", "buzzer"}
+    questions = {"left", "right", "buzzer"}
     sizes = parts["firmware"]["values"]
     assert isinstance(sizes, dict)
     assert {name: sizes[name] for name in ("largest", "window")} == {"largest": "63", "window": "1"}
@@ -68,12 +68,12 @@ def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
     assert {name for name, value in verdicts.items() if value == "ok"} == {
         "answers", "kit", "firmware", "line", "supply", "store", "trim", *sensors
     }  # fmt: skip
-    assert {name for name, value in verdicts.items() if value == "open"} == asked
+    assert {name for name, value in verdicts.items() if value == "open"} == questions
     assert {finding["cause"] for finding in parts.values()} == {
         "is_there", "kit_is", "firmware_is", "line_is", "supply_is", "empty", "trim_is", "reads",
         "unasked",
     }  # fmt: skip
-    assert not any("MOTORS" in line for line in pty_robot.did), "nobody has lifted it"
+    assert not any("MOTORS" in line for line in pty_robot.actions), "nobody has lifted it"
 
 
 @pytest.mark.parametrize("name", [*robots.names()])
@@ -112,7 +112,7 @@ def test_a_robot_that_has_restarted(pty_robot: PtyRobot, reset: str, finding: st
 
 
 def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
-    """One table has the causes: supply, line and kit have no words of their own here."""
+    """The causes are in one table, so supply, line and kit have no texts of their own here."""
     pty_robot.ask(lambda robot: robot.supply(True))
     on(pty_robot, "upload", "-e", "SB|F(1, 50)")
     pty_robot.damages = 97
@@ -155,7 +155,7 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
 @pytest.mark.sampled("kind")
 @pytest.mark.parametrize("kind", ["missing", "other speed", "locked", "silent radio"])
 def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str) -> None:
-    """With its causes, what was seen and the next step: nobody has to type another command."""
+    """With the causes, the evidence and the next step, so that no other command is needed."""
     with ExitStack() as stack:
         port = "/dev/not-there"
         if kind == "silent radio":
@@ -197,7 +197,9 @@ def test_only_the_port_of_the_self_test_is_opened(
 # -- with a person
 
 
-def asked(pty_robot: PtyRobot, answers: Callable[[str], str], *words: str) -> tuple[int, str, str]:
+def run_self_test(
+    pty_robot: PtyRobot, answers: Callable[[str], str], *words: str
+) -> tuple[int, str, str]:
     """Run it with a person: `answers` gets each question and returns what is typed."""
     out, err = io.StringIO(), io.StringIO()
 
@@ -214,7 +216,7 @@ def asked(pty_robot: PtyRobot, answers: Callable[[str], str], *words: str) -> tu
             return f"{answers(question)}\n"
 
     with (
-        simulated(pty_robot), redirect_stdout(out), redirect_stderr(err),
+        simulate(pty_robot), redirect_stdout(out), redirect_stderr(err),
         mock.patch.object(sys, "stdin", Keys()),
     ):  # fmt: skip
         code = main(["doctor", "--selftest", "--port", pty_robot.port, "--lang", "en", *words])
@@ -222,16 +224,16 @@ def asked(pty_robot: PtyRobot, answers: Callable[[str], str], *words: str) -> tu
 
 
 class Wires(NamedTuple):
-    """How the motors of a robot are wired; a motor that is `dead` does not turn."""
+    """The wiring of a robot's motors; a motor that is `dead` does not turn."""
 
     is_exchanged: bool = False
     is_left_reversed: bool = False  # the wheel
     is_right_reversed: bool = False
     is_dead: bool = False
 
-    def answer_after(self, did: Sequence[str]) -> str:
-        """Return what a person answers who has seen the last motor turn."""
-        outputs = [line.split()[-2:] for line in did if "MOTORS" in line]
+    def answer_after(self, actions: Sequence[str]) -> str:
+        """Return the answer of a person who has seen the last motor turn."""
+        outputs = [line.split()[-2:] for line in actions if "MOTORS" in line]
         left, right = next(
             [*map(int, output)] for output in reversed(outputs) if {*output} != {"0"}
         )
@@ -259,7 +261,7 @@ def person(
         elif "its surroundings clear" in question:
             pty_robot.ask(lambda robot: robot.sense(*GOOD))
         elif "motor turned" in question:
-            return wires.answer_after(pty_robot.did)
+            return wires.answer_after(pty_robot.actions)
         return learns if "can remember" in question else "1"
 
     return answer
@@ -272,14 +274,14 @@ def causes(out: str) -> set[str]:
 def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
     assert on(pty_robot, "upload", "-e", "SB|F(1, 50)").code == 0
-    code, out, _ = asked(pty_robot, person(pty_robot), "--json")
+    code, out, _ = run_self_test(pty_robot, person(pty_robot), "--json")
     assert code == 0, out
     assert causes(out) == {
         "is_there", "kit_is", "firmware_is", "line_is", "supply_is", "saved", "trim_is", "changes",
         "turns", "heard",
     }  # fmt: skip
-    turned = [line for line in pty_robot.did if "MOTORS" in line]
-    assert turned == ["MOTORS 60 0", "MOTORS 0 0", "MOTORS 0 60", "MOTORS 0 0"]
+    motor_lines = [line for line in pty_robot.actions if "MOTORS" in line]
+    assert motor_lines == ["MOTORS 60 0", "MOTORS 0 0", "MOTORS 0 60", "MOTORS 0 0"]
 
 
 @pytest.mark.parametrize("motor", [1, 2])
@@ -288,10 +290,10 @@ def test_ctrl_c_stops_the_robot_whichever_motor_turns(pty_robot: PtyRobot, motor
     sensors = 2 * len(pty_robot.kit.sensors)
     answers = b"\n" * (1 + sensors) + b"1\n" * (motor - 1)
     command = Command("doctor", "--selftest", "--port", pty_robot.port, data=answers)
-    begun = ["MOTORS 60 0", "MOTORS 0 60"][motor - 1]
-    pty_robot.until(lambda: begun in pty_robot.did, "a motor turns")
+    begun_text = ["MOTORS 60 0", "MOTORS 0 60"][motor - 1]
+    pty_robot.until(lambda: begun_text in pty_robot.actions, "a motor turns")
     command.signal(signal.SIGINT)
-    assert command.ended().code == 2
+    assert command.wait_for_result().code == 2
     assert not pty_robot.moves
 
 
@@ -301,13 +303,13 @@ def test_what_a_person_sees_is_wrong(pty_robot: PtyRobot) -> None:
     for wires, expected in (
         (Wires(is_exchanged=True), "tsc set trim"), (Wires(is_dead=True), "check its wires"),
     ):  # fmt: skip
-        code, out, err = asked(pty_robot, person(pty_robot, wires))
+        code, out, err = run_self_test(pty_robot, person(pty_robot, wires))
         assert code == 3
         assert out.count("WRONG") == 2
         assert f"Try:  {expected}" in out
         assert ("can remember" in err) == wires.is_exchanged
     assert on(pty_robot, "set", "trim", "--show").out.count("as they are wired") == 1
-    code, out, _ = asked(pty_robot, person(pty_robot, is_noticed=False))
+    code, out, _ = run_self_test(pty_robot, person(pty_robot, is_noticed=False))
     assert code == 3
     assert out.count("does not react") == len(pty_robot.kit.sensors)
 
@@ -318,25 +320,27 @@ def test_each_cause_of_what_a_person_sees(pty_robot: PtyRobot) -> None:
     def answer(question: str) -> str:
         return "2" if "buzzer" in question else deaf(question)
 
-    _, out, _ = asked(pty_robot, answer, "--json")
+    _, out, _ = run_self_test(pty_robot, answer, "--json")
     assert causes(out) > {"same", "still", "unheard"}
-    _, out, _ = asked(pty_robot, person(pty_robot, Wires(is_left_reversed=True)), "--json")
+    _, out, _ = run_self_test(pty_robot, person(pty_robot, Wires(is_left_reversed=True)), "--json")
     assert causes(out) > {"turns", "other_turn"}
     with PtyRobot(robots.load("liner").kit) as robot:
-        _, out, _ = asked(robot, lambda question: "5" if "motor" in question else "1", "--json")
+        _, out, _ = run_self_test(
+            robot, lambda question: "5" if "motor" in question else "1", "--json"
+        )
     assert "as_bright" in causes(out)
 
 
 def test_each_cause_of_a_line_that_the_robot_ends(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It is still there, so all else is looked at, too."""
+    """The robot still answers, so the other parts are checked too."""
 
     def does(test: SelfTest, line: str) -> list[int]:
         raise CommandError(3, "plain", said="stopped")
 
     monkeypatch.setattr(SelfTest, "run_line", does)
-    _, out, _ = asked(pty_robot, person(pty_robot), "--json")
+    _, out, _ = run_self_test(pty_robot, person(pty_robot), "--json")
     causes = [(finding["what"], finding["cause"]) for finding in json.loads(out)["found"]]
     sensors = [("sensor", "no_reading")] * len(pty_robot.kit.sensors)
     assert causes[-3 - len(sensors) :] == [
@@ -353,11 +357,11 @@ def test_a_robot_learns_how_its_motors_are_wired(pty_robot: PtyRobot, wires: Wir
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
     for before in ((), ("--exchange", "yes", "--reverse-left", "yes", "--balance", "7")):
         assert on(pty_robot, "set", "trim", *before, "--least", "3").code == 0
-        code, out, _ = asked(pty_robot, person(pty_robot, wires, learns="1"))
+        code, out, _ = run_self_test(pty_robot, person(pty_robot, wires, learns="1"))
         assert (code, out.count("turns forward"), "WRONG" in out) == (0, 2, False), out
-        kept = json.loads(on(pty_robot, "set", "trim", "--show", "--json").out)
-        assert tuple(kept[name] for name in Wires._fields[:3]) == wires[:3]
-        assert (kept["least"], kept["balance"]) == (3, 7 if before else 0)
+        kept_state = json.loads(on(pty_robot, "set", "trim", "--show", "--json").out)
+        assert tuple(kept_state[name] for name in Wires._fields[:3]) == wires[:3]
+        assert (kept_state["least"], kept_state["balance"]) == (3, 7 if before else 0)
         assert ("motors swapped" in out) == wires.is_exchanged, "what it keeps now is said"
 
 
@@ -365,16 +369,16 @@ def test_once_more_turns_the_motor_again(pty_robot: PtyRobot) -> None:
     """No number that is asked for moves nothing. And where the person leaves, nothing turns."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
     assert on(pty_robot, "doctor", "--selftest").code == 0
-    assert not any("MOTORS" in line for line in pty_robot.did)
+    assert not any("MOTORS" in line for line in pty_robot.actions)
     answers = iter(["6", "7", "6", "1", "3", "1"])
 
     def answer(question: str) -> str:
         return next(answers) if question.endswith("again: ") else ""
 
-    code, _, err = asked(pty_robot, answer)
+    code, _, err = run_self_test(pty_robot, answer)
     assert code == 3, "no sensor has noticed anything"
     assert "a number from 1 to 6" in err
-    assert sum("MOTORS 60 0" in line for line in pty_robot.did) == 3
+    assert sum("MOTORS 60 0" in line for line in pty_robot.actions) == 3
 
 
 # -- discs
@@ -437,10 +441,10 @@ def test_a_robot_that_is_not_there_has_a_report_too(tmp_path: Path) -> None:
 def test_who_has_not_answered_once_is_asked_and_shown_nothing_more(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], answers: int
 ) -> None:
-    """Nothing turns for somebody who is not there, whatever it was that nobody has answered."""
-    did: list[str] = []
+    """Nothing moves after an unanswered question."""
+    actions: list[str] = []
     typed = iter(["1\n"] * answers)
-    monkeypatch.setattr(Conversation, "run_line", lambda _, line: did.append(line))
+    monkeypatch.setattr(Conversation, "run_line", lambda _, line: actions.append(line))
     monkeypatch.setattr("tiniscript.cli.terminal.asking.ask", lambda _: next(typed, ""))
     ways: list[Callable[[Conversation], object]] = [
         lambda talk: talk.ask_to_lift(),
@@ -456,10 +460,10 @@ def test_who_has_not_answered_once_is_asked_and_shown_nothing_more(
             ways[1](talk)
         with pytest.raises(NoPerson):
             last(talk)
-        typed = iter(["1\n"] * 10)  # who comes back then is heard no more
-        did.clear()
+        typed = iter(["1\n"] * 10)  # more answers than questions
+        actions.clear()
         capsys.readouterr()
         for way in ways:
             with pytest.raises(NoPerson):
                 way(talk)
-        assert did == [] and capsys.readouterr().err == ""
+        assert actions == [] and capsys.readouterr().err == ""

@@ -1,4 +1,4 @@
-"""What a robot shows has the name of its SHOW, wherever a command prints, draws or writes it."""
+"""Values have the names of their SHOWs, wherever a command prints, draws or writes them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 
 from tests.support.command import Command
 from tests.support.pty_robot import PtyRobot, on
-from tests.support.source_maps import compiled, mapped
+from tests.support.source_maps import compile_right_text, make_source_map
 from tiniscript.base import files
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import checksum
@@ -23,7 +23,7 @@ from tiniscript.link.outcomes import ShownEvent
 LOOPS = "LOOP(FOREVER); SHOW({}); W(0.05); END_LOOP"
 
 
-def shown(out: str) -> list[str]:
+def list_names(out: str) -> list[str]:
     """Return the names of the values in JSON lines, nothing for one without."""
     events = [json.loads(line) for line in out.splitlines()]
     return [event.get("name", "") for event in events if event["event"] == "SHOW"]
@@ -54,7 +54,7 @@ def test_upload_names_what_its_program_shows(pty_robot: PtyRobot) -> None:
 
 
 def test_monitor_knows_a_program_by_its_checksum(pty_robot: PtyRobot, tmp_path: Path) -> None:
-    """In the middle of its run; one that nobody here has sent has no names.
+    """Also in the middle of a run; programs from elsewhere have no names.
 
     Neither has what the robot still tells a client of before, until it has answered this one.
     """
@@ -62,9 +62,13 @@ def test_monitor_knows_a_program_by_its_checksum(pty_robot: PtyRobot, tmp_path: 
     on(pty_robot, *upload).gives(0)
     sheet = tmp_path / "rows.csv"
     result = on(pty_robot, "monitor", "--json", "--csv", sheet, "--max-time", "1").gives(0)
-    names = shown(result.out)
-    known = names[names.index("TIME > 1") :]
-    assert len(known) > 5 and set(known) == {"TIME > 1"} and not any(names[: -len(known)])
+    names = list_names(result.out)
+    known_names = names[names.index("TIME > 1") :]
+    assert (
+        len(known_names) > 5
+        and set(known_names) == {"TIME > 1"}
+        and not any(names[: -len(known_names)])
+    )
     with sheet.open(encoding="utf-8", newline="") as file:
         head, *table = csv.reader(file)
     assert head == ["ms", "event", "value", "name"]
@@ -82,19 +86,19 @@ def test_monitor_follows_the_program_of_the_button_and_one_that_replaces_it(
     on(pty_robot, "upload", "-e", "SB|SHOW(LIGHT_R + 1); W(1)").gives(0)
     monitor = Command("monitor", "--port", pty_robot.port, "--json")
     assert monitor.process.stderr
-    monitor.process.stderr.readline()  # it watches
+    monitor.process.stderr.readline()  # waits until it watches
     pty_robot.push()
     monitor.until('"name": "LIGHT_R + 1"')
     for expression in ("LIGHT_L + 2", "DISTANCE + 3"):
         assert expression in on(pty_robot, "live", f"SHOW({expression})").gives(0).out
         monitor.until(f'"name": "{expression}"')
     monitor.signal(signal.SIGINT)
-    monitor.ended().gives(0)
+    monitor.wait_for_result().gives(0)
 
 
 def event(text: str, number: int, program: int | None = None) -> ShownEvent:
     """Return the event of a SHOW of a text, by its place among them."""
-    compilation = compiled(text)
+    compilation = compile_right_text(text)
     places = [row.offset for row in rows(compilation.code) if row.text.startswith("SHOW")]
     return ShownEvent(
         2000, 0, 1, checksum(compilation.image) if program is None else program, places[number]
@@ -105,9 +109,9 @@ def test_two_on_one_line_are_told_apart_in_a_table() -> None:
     text = "X = 1; SHOW(-X); SHOW(-X)"
     shown_names: list[str] = []
     table: list[tuple[object, ...]] = []
-    compilation = compiled(text)
+    compilation = compile_right_text(text)
     printer = EventPrinter(
-        "en", program_map=mapped(compilation), checksum=checksum(compilation.image),
+        "en", program_map=make_source_map(compilation), checksum=checksum(compilation.image),
         print_line=shown_names.append, add_row=lambda *cells: table.append(cells),
     )  # fmt: skip
     for number in range(2):
@@ -118,11 +122,11 @@ def test_two_on_one_line_are_told_apart_in_a_table() -> None:
 
 
 def test_the_library_names_values() -> None:
-    compilation = compiled("SHOW(DISTANCE)")
+    compilation = compile_right_text("SHOW(DISTANCE)")
     reader = EventReader()
     robot_event = reader.to_robot_event(0, event("SHOW(DISTANCE)", 0, program=5))
     assert robot_event and dict(robot_event.values) == {"value": 2}
-    reader.map_by_checksum[checksum(compilation.image)] = mapped(compilation)
+    reader.map_by_checksum[checksum(compilation.image)] = make_source_map(compilation)
     robot_event = reader.to_robot_event(0, event("SHOW(DISTANCE)", 0))
     assert robot_event and dict(robot_event.values) == {
         "value": 2,
@@ -153,12 +157,12 @@ def test_no_more_curves_than_colours(width: int) -> None:
     names = [f"X + {k}" for k in range(len(STYLES))]
     for k, name in enumerate(names):
         plot.add_value(k, 1000, False, name)
-    before = dict(plot.style_by_name)
+    style_by_name_before = dict(plot.style_by_name)
     plot.add_value(100, 1000, False, names[0])
     plot.add_value(200, 1000, True, "TIME > 1")
     assert [*plot.values_by_name] == [names[0], *names[2:], "TIME > 1"]
-    assert plot.style_by_name["TIME > 1"] == before[names[1]]
+    assert plot.style_by_name["TIME > 1"] == style_by_name_before[names[1]]
     assert {name: plot.style_by_name[name] for name in names[2:]} == {
-        n: before[n] for n in names[2:]
+        n: style_by_name_before[n] for n in names[2:]
     }
     assert all(line.cell_len <= width for line in plot.lines(width, 9, 300))

@@ -1,4 +1,4 @@
-"""`tsc stop` as people use it: twice, at the same time, and where nobody answers."""
+"""`tsc stop` as people use it: twice, at the same time, and if nobody answers."""
 
 from __future__ import annotations
 
@@ -57,11 +57,11 @@ def test_a_robot_that_its_button_has_started_again_is_stopped(pty_robot: PtyRobo
 def test_who_stops_at_the_same_time_is_told_so(pty_robot: PtyRobot, is_shared: bool) -> None:
     server = uploading(pty_robot) if is_shared else None
     stops = [Command("stop", "--port", pty_robot.port) for _ in range(3)]
-    results = [command.ended() for command in stops]
+    results = [command.wait_for_result() for command in stops]
     assert [(result.code, result.err) for result in results] == [(0, "")] * 3
     assert not pty_robot.moves
     if server is not None:
-        assert server.ended().code == 3
+        assert server.wait_for_result().code == 3
 
 
 def test_a_stop_that_nobody_confirms_holds_up_nobody_for_long(
@@ -116,7 +116,7 @@ def test_the_doctor_tells_what_the_uart_has_noticed(pty_robot: PtyRobot) -> None
 # -- past a holder that does not answer -----------------------------------------------------------
 
 
-def suspended(command: Command) -> Command:
+def suspend(command: Command) -> Command:
     """Return a command after Ctrl-Z."""
     command.signal(signal.SIGSTOP)
     until(lambda: holders.is_suspended(command.process.pid), "it is suspended")
@@ -148,17 +148,17 @@ def test_a_stop_gets_through_beside_a_suspended_tsc(
     holder = Command(*verb.split(), "--port", pty_robot.port, code=code)
     until(lambda: registry.find_registration(pty_robot.port) is not None, "it shares its port")
     pty_robot.until(lambda: b"\x04" in pty_robot.heard, "it talks to the robot")
-    suspended(holder)
+    suspend(holder)
     assert pty_robot.moves
     for _ in range(2):
         on(pty_robot, "stop").gives(0, "", out="has confirmed the stop")
         assert not pty_robot.moves
     assert holders.is_suspended(holder.process.pid)
     holder.signal(signal.SIGCONT)
-    # It shares the port as before. What is asked before it has learned of the stop is told so.
+    # It shares the port as before. Requests made before it learned of the stop are answered so.
     until(lambda: "SHOW 4" in on(pty_robot, "live", "SHOW(4)").out, "others drive")
     holder.signal(signal.SIGINT)
-    assert holder.ended().code == 0
+    assert holder.wait_for_result().code == 0
 
 
 LOCKS = """
@@ -171,15 +171,15 @@ time.sleep(1000)
 
 
 def test_a_stop_gets_past_the_lock_of_another_suspended_program(pty_robot: PtyRobot) -> None:
-    """One that goes on may be writing firmware: it is named."""
+    """A running command may be writing firmware, so it is named."""
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     holder = Command(pty_robot.port, code=LOCKS)
     holder.until("locked")
-    heard = pty_robot.heard
+    heard_bytes = pty_robot.heard
     with mock.patch.object(opening, "STOP_BUSY_TIMEOUT_S", 0.2):
         on(pty_robot, "stop").gives(3, f"(process {holder.process.pid})", "lift it")
-    assert pty_robot.heard == heard and pty_robot.moves
-    suspended(holder)
+    assert pty_robot.heard == heard_bytes and pty_robot.moves
+    suspend(holder)
     on(pty_robot, "start").gives(3, "another program is using")
     on(pty_robot, "stop").gives(0, "", out="has confirmed the stop")
     assert not pty_robot.moves
@@ -206,14 +206,14 @@ while data := peer.recv(1000):
 
 
 def test_the_suspended_holder_of_an_address_is_woken(pty_robot: PtyRobot) -> None:
-    """Nobody else reaches the robot."""
+    """Nobody else can reach the robot."""
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     bridge = Command(pty_robot.port, code=BRIDGE)
     assert bridge.process.stdout
     address = f"socket://127.0.0.1:{int(bridge.process.stdout.readline())}"
     holder = Command("monitor", "--port", address)
     until(lambda: registry.find_registration(address) is not None, "it shares the address")
-    suspended(holder)
+    suspend(holder)
     process("stop", "--port", address).gives(0, "", out="has confirmed the stop")
     assert not pty_robot.moves
     holder.kill()
@@ -241,9 +241,9 @@ def test_who_holds_up_a_stop_is_named(is_known: bool, monkeypatch: pytest.Monkey
         raise RobotError("port_busy", "en", {"port": "/dev/ttyUSB7", "why": ""})
 
     monkeypatch.setattr(opening, "_open_connection", busy)
-    with pytest.raises(RobotError) as failed:
+    with pytest.raises(RobotError) as exception_info:
         opening.connection_to("/dev/ttyUSB7", "stop", 9600, 1)
-    message = str(failed.value)
+    message = str(exception_info.value)
     assert ("tsc monitor (process 77)" in message) == is_known
     assert "lift it" in message and "batteries" in message
     assert bool(woken) == is_known
@@ -252,6 +252,6 @@ def test_who_holds_up_a_stop_is_named(is_known: bool, monkeypatch: pytest.Monkey
 def test_a_process_that_has_ended_holds_nothing() -> None:
     command = Command("--version")
     pid = command.process.pid
-    command.ended()
+    command.wait_for_result()
     assert not holders.is_suspended(pid)
     assert holders.find_holder("/nowhere", pid) is None

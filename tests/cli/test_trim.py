@@ -36,7 +36,7 @@ def on(pty_robot: PtyRobot, *arguments: str, data: str = "") -> CommandResult:
 
 
 def keeps(pty_robot: PtyRobot) -> Trim:
-    """What the robot says that it keeps."""
+    """Return the trim stored by the robot."""
     result = on(pty_robot, "--show", "--json").gives(0)
     fields = json.loads(result.out)
     pace = fields["pace"]
@@ -54,12 +54,12 @@ def computer(nonce: int = 1) -> Session:
     return Session(nonce, 9600, KIT.fingerprint)
 
 
-def driven(robot: HostFirmware, session: Session, left: int, right: int) -> list[str]:
-    """Return what the outputs of the driver get for so much power, in percent."""
-    before = len(robot.did)
+def drive_and_record(robot: HostFirmware, session: Session, left: int, right: int) -> list[str]:
+    """Return the driver's outputs for these powers in percent."""
+    count_before = len(robot.did)
     assert robot.until(session, session.live(bytes((0x5A, left & 0xFF, right & 0xFF)))) == OK
     robot.talk(session, 20)
-    return [line.split(" ", 2)[2] for line in robot.did[before:] if "MOTORS" in line]
+    return [line.split(" ", 2)[2] for line in robot.did[count_before:] if "MOTORS" in line]
 
 
 # -- the robot ------------------------------------------------------------------------------------
@@ -75,14 +75,14 @@ def test_motors_get_what_the_trim_makes_of_it() -> None:
         (Trim(is_exchanged=True, is_left_reversed=True), (80, 40), "40 -80"),
         (Trim(balance=25), (80, 40), "60 40"),
         (Trim(balance=-25), (80, 40), "80 30"),
-        (Trim(least=20), (80, 40), "84 52"),  # 20, and 80 % of what is asked
+        (Trim(least=20), (80, 40), "84 52"),  # 20, and 80 % of the requested power
         (Trim(balance=40, least=40), (80, 40), "56 64"),
         (Trim(balance=10, least=30), (1, -1), "30 -30"),
         (Trim(balance=10, least=30), (100, -100), "90 -100"),
     ):
         assert robot.until(session, session.trim(trim.data())) == OK
-        assert driven(robot, session, *power) == [powers, "0 0"], trim
-    assert driven(robot, session, 0, 0) == []
+        assert drive_and_record(robot, session, *power) == [powers, "0 0"], trim
+    assert drive_and_record(robot, session, 0, 0) == []
 
 
 def test_a_trim_that_makes_no_sense_is_refused() -> None:
@@ -132,17 +132,19 @@ def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot)
     assert keeps(pty_robot) == Trim(True, False, True, -8, 15, Pace())
     assert "a number from 1 to 4" in result.err
     assert result.err.index("One motor turned") < result.err.index("The other motor turned")
-    moves = [line for line in pty_robot.did if line.startswith("MOTORS") and line != "MOTORS 0 0"]
+    moves = [
+        line for line in pty_robot.actions if line.startswith("MOTORS") and line != "MOTORS 0 0"
+    ]
     assert moves == [
-        "MOTORS 60 0", "MOTORS 0 60",  # as they are wired
+        "MOTORS 60 0", "MOTORS 0 60",  # the motors as wired
         "MOTORS -5 5", "MOTORS -10 10", "MOTORS -15 15",
-        "MOTORS -49 49", "MOTORS -42 49", "MOTORS -45 49",  # at 40 %
-        "MOTORS -76 83",  # at 80
+        "MOTORS -49 49", "MOTORS -42 49", "MOTORS -45 49",  # powers at 40 %
+        "MOTORS -76 83",  # powers at 80 %
     ]  # fmt: skip
 
 
 def of_the_table(cause: str, part: str, **values: str) -> str:
-    """What the doctor's table says of a cause, as this verb prints it."""
+    """Return the text of a cause in the doctor's table, as this verb prints it."""
     finding = Finding(cause, True, values, part)
     sentences = causes.sentences_of(finding, "en")
     return (
@@ -169,12 +171,12 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Another terminal stops the robot in the moment in which it is given a trim to try."""
-    given: list[bytes] = []
+    given_bytes: list[bytes] = []
     stops: list[str] = []
 
     class Asked:
         def trim(self, data: bytes) -> None:
-            given.append(data)
+            given_bytes.append(data)
 
     class Connected:
         def request(self, make: Callable[[Asked], None], taken: object) -> None:
@@ -182,16 +184,16 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
                 raise CommandError(3, stops.pop())
             make(Asked())
 
-    def stopped(wizard: trim_wizard.TrimWizard, before: Trim) -> Trim:
+    def refuse_step(wizard: trim_wizard.TrimWizard, trim_before: Trim) -> Trim:
         raise CommandError(3, key)
 
-    monkeypatch.setattr(trim_wizard.TrimWizard, "ask_trim", stopped)
+    monkeypatch.setattr(trim_wizard.TrimWizard, "ask_trim", refuse_step)
     monkeypatch.setattr(trim_wizard.TrimWizard, "__init__", lambda wizard, connection: None)
     for key in ("stopped_elsewhere", "plain"):
-        stops[:] = ["stopped_elsewhere", "plain"]  # it goes on: what is asked meanwhile is stale
+        stops[:] = ["stopped_elsewhere", "plain"]  # the robot runs on, so these causes are stale
         with pytest.raises(CommandError, match=key):
             trim_wizard.guide(cast("Connection", Connected()), Trim(balance=7))
-        assert given.pop() == Trim(balance=7).data() and not given
+        assert given_bytes.pop() == Trim(balance=7).data() and not given_bytes
 
 
 def test_ctrl_c_stops_the_robot_and_it_keeps_what_it_had(pty_robot: PtyRobot) -> None:
@@ -199,7 +201,7 @@ def test_ctrl_c_stops_the_robot_and_it_keeps_what_it_had(pty_robot: PtyRobot) ->
     command = Command("set", "trim", "--port", pty_robot.port, data=b"\n")
     pty_robot.until(lambda: pty_robot.moves, "a motor turns")
     command.signal(signal.SIGINT)
-    assert command.ended().code == 2
+    assert command.wait_for_result().code == 2
     assert not pty_robot.moves
     assert keeps(pty_robot) == Trim(balance=7, pace=Pace())
 
@@ -207,16 +209,16 @@ def test_ctrl_c_stops_the_robot_and_it_keeps_what_it_had(pty_robot: PtyRobot) ->
 # -- how fast it is -------------------------------------------------------------------------------
 
 PACE = Pace(16.5, 33.25, 144, 288)
-LIFTED = "\n1\n3\n1\n\n1\n1\n"  # as it is wired, straight at both powers
+LIFTED = "\n1\n3\n1\n\n1\n1\n"  # answers: wired correctly, straight at both powers
 
 
 def moves_in(robot: HostFirmware, session: Session, line: str) -> list[int]:
-    """Return how long each move of a live line takes, in milliseconds."""
-    before = len(robot.did)
+    """Return the duration of each move of a live line, in milliseconds."""
+    count_before = len(robot.did)
     code = unpack(compile_text(f"SI|{line}", KIT).image).code
     assert robot.until(session, session.live(code)) == OK
     robot.talk(session, 9000)
-    at = [int(row.split()[0]) for row in robot.did[before:] if "MOTORS" in row]
+    at = [int(row.split()[0]) for row in robot.did[count_before:] if "MOTORS" in row]
     return [end - begun for begun, end in zip(at[::2], at[1::2], strict=True)]
 
 
@@ -246,8 +248,8 @@ def test_a_robot_refuses_a_pace_that_does_not_rise_whole() -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.trim(Trim(balance=3, pace=PACE).data())) == OK
     for pace in (Pace(20, 20), Pace(20, 10), Pace(1, 0), Pace(0, 0, 9, 8)):
-        refused = robot.until(session, session.trim(Trim(balance=9, pace=pace).data()))
-        assert refused == STATUSES["BAD_VALUE"], pace
+        refused_count = robot.until(session, session.trim(Trim(balance=9, pace=pace).data()))
+        assert refused_count == STATUSES["BAD_VALUE"], pace
         assert trim_from_reply(robot.complete(session, session.trim())) == Trim(
             balance=3, pace=PACE
         )
@@ -265,10 +267,10 @@ def test_a_pace_survives_a_fault_and_a_torn_save() -> None:
         assert pace_of(memory) == PACE
     assert robot.memory() != memory_before
     slots = [at for at in (66, 97) if robot.memory()[at] != 0xFF]
-    torn = bytearray(robot.memory())
+    torn_bytes = bytearray(robot.memory())
     for at in slots:
-        torn[at + 4 + 20] ^= 1  # a bit of both records
-    assert pace_of(bytes(torn)) == Pace()
+        torn_bytes[at + 4 + 20] ^= 1  # a bit of both records
+    assert pace_of(bytes(torn_bytes)) == Pace()
 
 
 def pace_of(memory: bytes) -> Pace | None:

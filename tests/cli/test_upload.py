@@ -31,7 +31,7 @@ def test_upload_runs_the_program_and_stays_until_it_ends(
         "Done.",
         "Saved. It starts with the button.",
     ]
-    assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    assert pty_robot.actions == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 def test_slots_and_checksums_are_for_those_who_ask(pty_robot: PtyRobot) -> None:
@@ -46,7 +46,7 @@ def test_slots_and_checksums_are_for_those_who_ask(pty_robot: PtyRobot) -> None:
     rows = [json.loads(line) for line in result.out.splitlines()]
     assert (rows[0]["checksum"], rows[0]["code_bytes"]) == (checksum, 1)
     assert {row["slot"] for row in rows if row.get("slot") is not None} == {0}
-    # what is lost without power is told to all
+    # The warning about losing the program without power is always printed.
     result = on(pty_robot, "upload", "-e", "SI|S;S", "--no-save")
     assert result.out.splitlines()[0].endswith("   only in RAM   SI: running")
 
@@ -55,18 +55,18 @@ def test_a_program_goes_on_without_tsc(pty_robot: PtyRobot) -> None:
     result = on(pty_robot, "upload", "-e", OBSTACLE, "--detach")
     assert result.code == 0 and result.out.endswith("SI: running without tsc\n")
     pty_robot.ask(lambda robot: robot.wait(7000))
-    assert pty_robot.did[:3] == ["MOTORS 80 80", "MOTORS 0 0", "MOTORS 60 -60"]
+    assert pty_robot.actions[:3] == ["MOTORS 80 80", "MOTORS 0 0", "MOTORS 60 -60"]
 
 
 def test_a_program_that_waits_ends_with_its_receipt(pty_robot: PtyRobot) -> None:
     result = on(pty_robot, "upload", "-e", "SB|F(0.1, 80)")
-    assert (result.code, pty_robot.did) == (0, [])
+    assert (result.code, pty_robot.actions) == (0, [])
     assert "SB: waiting for the button or tsc start\nSaved." in result.out
     pty_robot.push()
-    pty_robot.until(lambda: "FINISHED" in pty_robot.did, "the button starts it")
+    pty_robot.until(lambda: "FINISHED" in pty_robot.actions, "the button starts it")
     result = on(pty_robot, "start").gives(0)
     assert result.out.endswith("Done.\n")
-    assert pty_robot.did.count("FINISHED") == 2
+    assert pty_robot.actions.count("FINISHED") == 2
 
 
 def test_a_longer_program_goes_in_pieces_and_comes_back(
@@ -78,7 +78,7 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
     for damages in (0, 211):
         pty_robot.damages = damages
         result = on(pty_robot, "upload", ours, "--no-run", "--no-save")
-        assert (result.code, pty_robot.did) == (0, [])
+        assert (result.code, pty_robot.actions) == (0, [])
         assert "only in RAM   SI: waiting" in result.out
         assert on(pty_robot, "show", "-o", theirs).code == 0
         assert theirs.read_bytes() == ours.read_bytes(), damages
@@ -139,12 +139,12 @@ def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
 
 @pytest.mark.parametrize("is_many", [False, True])
 def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) -> None:
-    """Power off and on under a program: it has not ended by itself, whoever has it run."""
+    """After a power cycle, a program has not ended by itself, whoever started it."""
     other = ("--port", "/dev/none") if is_many else ()
     command = Command("upload", "-e", "SI|F(200, 80)", "--port", pty_robot.port, *other)
     pty_robot.until(lambda: pty_robot.moves, "it drives")
     pty_robot.switch_off_and_on()
-    result = command.ended()
+    result = command.wait_for_result()
     assert result.code == 3 and "Done." not in result.out + result.err
     assert "restarted, which ended its program" in result.out + result.err, result
 
@@ -154,9 +154,9 @@ def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) 
 WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
 
 
-def interrupted(command: Command) -> CommandResult:
+def interrupt(command: Command) -> CommandResult:
     command.signal(signal.SIGINT)
-    return command.ended()
+    return command.wait_for_result()
 
 
 def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyRobot) -> None:
@@ -168,7 +168,7 @@ def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyR
 
 
 def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
-    interrupted(uploading(pty_robot)).gives(
+    interrupt(uploading(pty_robot)).gives(
         2, "the robot has confirmed the stop", out="Saved. It starts with the button."
     )
     pty_robot.switch_off_and_on()
@@ -184,7 +184,7 @@ def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: 
         assert "will save it as soon as its motors have stopped" in result.err
     assert "lo guarda en" in on(pty_robot, *naming, "--lang", "es").err
     assert pty_robot.moves, "nothing has stopped it"
-    interrupted(command)
+    interrupt(command)
     for words in (naming, trimming):
         assert on(pty_robot, *words).code == 0, words
     pty_robot.switch_off_and_on()
@@ -218,7 +218,7 @@ def test_a_supply_that_is_enough_again_saves_what_runs(pty_robot: PtyRobot) -> N
     command.until('"saved": "LOW_SUPPLY"')
     pty_robot.ask(lambda robot: robot.supply(is_low=False))
     command.until('"event": "SAVED"')
-    assert interrupted(command).code == 2
+    assert interrupt(command).code == 2
 
 
 # -- the program before comes back, or cannot -----------------------------------------------------
@@ -234,22 +234,24 @@ def with_two(pty_robot: PtyRobot) -> list[str]:
 
 
 def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRobot) -> None:
-    """As data it is a receipt."""
+    """The JSON form is a receipt."""
     first, second = with_two(pty_robot)
-    for language, checksum, expected, saved in (
+    for language, checksum, expected, saved_text in (
         ("en", first, "it has the previous program again, checksum", "Saved. It starts"),
         ("es", second, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
     ):
         result = on(pty_robot, "start", "--previous", "--lang", language).gives(0, "")
         lines = result.out.splitlines()
         assert f"{expected} {checksum}" in lines[0] and "tsc start --previous" in lines[0]
-        assert len(lines) == 2 and lines[1].startswith(saved)
+        assert len(lines) == 2 and lines[1].startswith(saved_text)
         pty_robot.switch_off_and_on()
         assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"] == checksum
-    receipt, kept = map(json.loads, on(pty_robot, "start", "--previous", "--json").out.splitlines())
+    receipt, kept_state = map(
+        json.loads, on(pty_robot, "start", "--previous", "--json").out.splitlines()
+    )
     assert receipt["event"] == "RECEIPT" and receipt["checksum"] == first
     assert receipt["saved"] == "SAVING" and receipt["slot"] is None
-    assert kept["event"] == "SAVED" and kept["slot"] == 0
+    assert kept_state["event"] == "SAVED" and kept_state["slot"] == 0
 
 
 def test_the_file_of_the_program_is_named_where_it_is_known(
@@ -278,7 +280,7 @@ def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> 
     result = on(pty_robot, "start", "--previous").gives(0)
     assert result.out.splitlines()[-1].startswith("Saved.")
     assert not pty_robot.moves
-    assert command.ended().code in (0, 3)
+    assert command.wait_for_result().code in (0, 3)
 
 
 @pytest.mark.sampled(of="slow commands")

@@ -1,4 +1,4 @@
-"""`tsc robot` and `--virtual`: real processes, real sockets, the whole firmware behind them."""
+"""`tsc robot` and `--virtual`: real processes, real sockets, the whole firmware."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
         ]
         assert lines == ["0 START", "0 MOTORS 50 50", "200 MOTORS 0 0", "SHOW 1.5", "BEEP 440 100",
                          "DONE"]  # fmt: skip
-        # where nothing is said it is found, too; and it is no port for another day
+        # Silent virtual robots are found too, but are not remembered.
         assert inside("start").out.startswith("KAT: started")
         assert json.loads(inside("doctor", "--virtual", "--json").out)["robot"]["name"] == "KAT"
         for _ in range(3):
@@ -78,19 +78,20 @@ def test_ctrl_c_counts_wherever_it_comes(monkeypatch: pytest.MonkeyPatch) -> Non
 
     inside = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))
 
-    with handle_signals() as ended:
+    with handle_signals() as ended_end_request:
         inside()
-    assert not dropped and ended.is_set  # who ends a robot reads no lines of Python's
+    # A stopped simulator prints no Python traceback.
+    assert not dropped and ended_end_request.is_set
     sys.unraisablehook(None)  # type: ignore[arg-type]
-    assert len(dropped) == 1  # that of others is as before
+    assert len(dropped) == 1  # other hooks still run
 
 
 def test_a_second_computer_is_told_that_the_port_is_taken() -> None:
-    """What the one before it has begun to say is none of the words of the next one."""
+    """Unfinished text of one client is not part of the next client's."""
     with robot() as running_robot:
         with visitor(running_robot.port) as first:
             first.sendall(b"SHOW(1)\n")
-            assert first.recv(1000)  # it is heard
+            assert first.recv(1000)  # the client is answered
             result = inside("doctor", "--identify", "--port", running_robot.port)
             assert result.code == 3
             assert f"another program is using the port {running_robot.port}" in result.err
@@ -127,7 +128,7 @@ def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
     ("name", "size"), [("tinibot", 1024), ("tinibot2", 1024), ("tinibot32", 16_640)]
 )
 def test_each_robot_reads_what_it_has_written(name: str, size: int, tmp_path: Path) -> None:
-    """And says of what another one has written that it is not its own."""
+    """A robot refuses the memory of another kind."""
     memory = tmp_path / "kept.bin"
     options = ("--robot", name, "--memory", memory, "--for", "3", "--hurry", "max")
     inside("robot", *options, "--name", "INTI").gives(0)
@@ -165,8 +166,8 @@ def test_of_several_robots_one_is_named(tsc: Tsc, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(ports, "list_ports", list)
     with robot() as first, robot("--world", "line") as second:
         result = tsc("doctor", "--identify", "--virtual").gives(3, second.port)
-        asked = tsc("doctor", "--identify")  # without --virtual and without a terminal
-        assert (asked.code, asked.err) == (3, result.err)
+        asked_result = tsc("doctor", "--identify")  # without --virtual and without a terminal
+        assert (asked_result.code, asked_result.err) == (3, result.err)
         places = sorted([(first.port, "obstacles"), (second.port, "a line to follow")])
         with monkeypatch.context() as person:
             person.setattr("sys.stdin.isatty", lambda: True)
@@ -184,7 +185,7 @@ def test_of_several_robots_one_is_named(tsc: Tsc, monkeypatch: pytest.MonkeyPatc
 
 
 def colours(data: bytes) -> dict[str, int]:
-    """Return how many pixels of a picture have about the colour of something."""
+    """Return the number of pixels near each named colour of a picture."""
     from PIL import Image
 
     from tiniscript.virtual import picture
@@ -199,10 +200,10 @@ def colours(data: bytes) -> dict[str, int]:
         ("box", picture.BOX_COLOUR),
         ("robot", picture.ROBOT_COLOUR),
     ):
-        wanted = bytes.fromhex(colour[1:])
+        wanted_bytes = bytes.fromhex(colour[1:])
         colors[name] = sum(  # the borders of lines are mixed
             count for count, pixel in pixels
-            if max(abs(a - b) for a, b in zip(pixel, wanted, strict=True)) < 70
+            if max(abs(a - b) for a, b in zip(pixel, wanted_bytes, strict=True)) < 70
         )  # fmt: skip
     return colors
 
@@ -215,8 +216,8 @@ def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None
     assert result.code == 0
     assert "The time set with --for is over.\nSaved. It starts with the button.\n" in result.out
     assert f"and touched nothing. Picture: {way}\n" in result.out
-    before, after = colours(still.read_bytes()), colours(way.read_bytes())
-    assert before["way"] < 20 < 4000 < after["way"]
+    before, colours_after = colours(still.read_bytes()), colours(way.read_bytes())
+    assert before["way"] < 20 < 4000 < colours_after["way"]
     assert before["robot"] > 200
     assert before["box"] > 10_000
     assert directory.running_robots() == []
@@ -225,7 +226,7 @@ def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None
 def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
     text = "SI|LOOP(20);F(1, 50);B(1, 50);END_LOOP;SHOW(TIME)"
     result = inside("upload", "--virtual", "-e", text, "--hurry", "max", "--faults", "3")
-    assert result.code == 0  # what a radio has written into the line is said, too
+    assert result.code == 0  # text that a radio inserts is printed too
     assert result.out.splitlines()[1:3] in (
         ["TIME 40", "Done."],
         ["Done.", "Saved. It starts with the button."],
@@ -259,7 +260,9 @@ def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path)
     command.until("SI: running")
     command.until("SHOW 1")
     command.signal(signal.SIGINT)
-    command.ended().gives(2, "Stopped: the robot has confirmed the stop.", out=str(picture))
+    command.wait_for_result().gives(
+        2, "Stopped: the robot has confirmed the stop.", out=str(picture)
+    )
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
@@ -310,8 +313,8 @@ def test_wrong_options_are_said(tsc: Tsc, arguments: list[str], message: str) ->
 
 
 def test_a_port_that_is_taken_and_a_memory_that_is_none(tsc: Tsc, tmp_path: Path) -> None:
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        result = tsc("robot", "--listen", str(taken.getsockname()[1]))
+    with socket.create_server(("127.0.0.1", 0)) as server_socket:
+        result = tsc("robot", "--listen", str(server_socket.getsockname()[1]))
     assert result.code == 3
     assert "Choose another port with --listen" in result.err
     small = tmp_path / "small.bin"
@@ -328,6 +331,6 @@ def test_what_is_not_installed_is_said(name: str, commands: list[str]) -> None:
         f"import sys; sys.modules[{name!r}] = None; from tiniscript.cli import main;"
         "sys.exit(str([main(each.split()) for each in sys.argv[1:]]))"
     )
-    result = Command(*commands, code=code).ended()
+    result = Command(*commands, code=code).wait_for_result()
     assert result.err.endswith(f"{[2] * len(commands)}\n")
     assert result.err.count(install_advice.command("virtual")) == len(commands)

@@ -20,15 +20,15 @@ def test_upload_draws_the_world_and_the_way(tmp_path: Path) -> None:
     terminal.until(r"left motor +80 %")
     assert terminal.end() == 1
     lines = terminal.lines()
-    drawn = "\n".join(lines)
-    assert "── TiniBot ── lamps in the dark ──" in drawn
-    assert re.search(r"time +0\.6\d* s +fault", drawn)
-    assert re.search(r"DISTANCE +154\.5 cm +distance sensor", drawn)
-    assert re.search(r"SHOW +154\.5", drawn)
-    assert "→" in drawn
-    assert drawn.count("*") == 2  # the lamps
-    assert "The virtual robot drove 22 cm" in drawn
-    assert "fault DIVIDE_BY_ZERO" in drawn
+    drawn_text = "\n".join(lines)
+    assert "── TiniBot ── lamps in the dark ──" in drawn_text
+    assert re.search(r"time +0\.6\d* s +fault", drawn_text)
+    assert re.search(r"DISTANCE +154\.5 cm +distance sensor", drawn_text)
+    assert re.search(r"SHOW +154\.5", drawn_text)
+    assert "→" in drawn_text
+    assert drawn_text.count("*") == 2  # the lamps
+    assert "The virtual robot drove 22 cm" in drawn_text
+    assert "fault DIVIDE_BY_ZERO" in drawn_text
     assert terminal.written.rfind(b"\x1b[?25h") > terminal.written.rfind(b"\x1b[?25l")  # cursor
 
 
@@ -43,7 +43,8 @@ def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
     terminal.until(r"motor der\. +40 %")
     terminal.type("b")
     terminal.until(r"s +detenido")
-    terminal.until(r"motor der\. +0 %")  # below it: what is drawn next is of the next run
+    # Below the picture, because the next one is of the next run.
+    terminal.until(r"motor der\. +0 %")
     terminal.type("r")
     terminal.type("b")
     terminal.until(r"motor der\. +40 %")
@@ -56,7 +57,7 @@ def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("is_wanted", [True, False])
 def test_without_a_robot_the_virtual_one_is_offered(is_wanted: bool) -> None:
-    """On a computer without any port with a question, else as one of the ports."""
+    """Without any port it asks; otherwise the robot is listed as a port."""
     terminal = Terminal("upload", "-e", "SI|F(0.1, 50)", size=SIZE)
     match = terminal.until(r"\[Y/n\]|(\d+) +\S[^\n]*\nNumber in the list:")
     if match[1]:
@@ -64,8 +65,8 @@ def test_without_a_robot_the_virtual_one_is_offered(is_wanted: bool) -> None:
     else:
         terminal.type("\n" if is_wanted else "n\n")
     assert terminal.end() == (0 if is_wanted else 3)
-    drawn = "\n".join(terminal.lines())
-    assert ("The virtual robot drove" in drawn) == is_wanted
+    drawn_text = "\n".join(terminal.lines())
+    assert ("The virtual robot drove" in drawn_text) == is_wanted
 
 
 def test_the_button_of_a_program_that_waits_is_a_key() -> None:
@@ -77,14 +78,14 @@ def test_the_button_of_a_program_that_waits_is_a_key() -> None:
     terminal.type("b")
     terminal.until(r"s +detenido")
     terminal.until("El robot se detuvo con su botón")
-    terminal.type("b")  # and again
+    terminal.type("b")  # the second press
     terminal.until(r"motor izq\. +80 %")
     terminal.type("q")
     assert terminal.end() == 0
-    drawn = "\n".join(terminal.lines())
-    assert re.search(r"motor izq\. +0 %", drawn)
-    assert re.search(r"s +apagado", drawn)
-    assert "b: botón" not in drawn  # the key does nothing any more
+    drawn_text = "\n".join(terminal.lines())
+    assert re.search(r"motor izq\. +0 %", drawn_text)
+    assert re.search(r"s +apagado", drawn_text)
+    assert "b: botón" not in drawn_text  # the key does nothing any more
 
 
 def test_a_program_that_waits_ends_when_it_has_ended_or_its_time_is_over() -> None:
@@ -94,7 +95,7 @@ def test_a_program_that_waits_ends_when_it_has_ended_or_its_time_is_over() -> No
     assert terminal.end() == 0
     assert "Done." in "\n".join(terminal.lines())
     terminal = Terminal("upload", "-e", "SB|F(0.2, 80)", "--virtual", "--for", "1", size=SIZE)
-    assert terminal.end() == 0  # nobody has pushed it
+    assert terminal.end() == 0  # nobody has pressed the button
     assert "The virtual robot drove 0 cm in 0.0 s" in "\n".join(terminal.lines())
 
 
@@ -103,10 +104,10 @@ def test_after_ctrl_c_the_motors_are_off_in_the_picture_too() -> None:
     terminal.until(r"left motor +80 %")
     terminal.interrupt()
     assert terminal.end() == 2
-    drawn = "\n".join(terminal.lines())
-    assert re.search(r"left motor +0 %", drawn)
-    assert re.search(r"s +stopped", drawn)
-    assert "80 %" not in drawn
+    drawn_text = "\n".join(terminal.lines())
+    assert re.search(r"left motor +0 %", drawn_text)
+    assert re.search(r"s +stopped", drawn_text)
+    assert "80 %" not in drawn_text
 
 
 def test_the_prompt_shows_what_a_person_shows_and_nothing_else() -> None:

@@ -34,7 +34,7 @@ from tiniscript.studio.hosting import Hosting
 
 
 def looks_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let a person look on, for whom everything takes long."""
+    """Simulate a person who watches slow operations."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
 
@@ -68,7 +68,7 @@ def test_who_waits_for_a_board_is_told_until_it_is_written(
     looks_on(monkeypatch)
     output = ""
 
-    def write(*given: object) -> avrdude.WriteResult:
+    def write(*arguments: object) -> avrdude.WriteResult:
         def is_said() -> bool:
             nonlocal output
             output += capsys.readouterr().err
@@ -142,7 +142,7 @@ def test_waits_without_news_are_one_silence(
     assert waits(100, 0.3) == "waits\n"
     quiet.restart()
     assert waits(50, 0.3) == ""  # once
-    now_s += 1  # somebody types
+    now_s += 1  # a person types
     assert waits(1, 1.8) == "" and waits(2, 1.8) == "waits\n"
 
 
@@ -159,9 +159,9 @@ def test_a_bar_is_not_full_before_all_is_done(
 
 
 def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nobody says that it is something else, or that it is silent while it waits for its button."""
+    """It is not reported as foreign or silent while it waits for its button."""
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
-    for late_ms in (990, 1300):  # who is silent for 3 s is lost
+    for late_ms in (990, 1300):  # silence of 3 s counts as a lost link
         with BadLine(Fault("late", late_ms=late_ms), Random(1), 0) as line:
             on(line, "doctor", "--identify").gives(0)
             on(line, "set", "owner").gives(
@@ -172,30 +172,31 @@ def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.Monk
 def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """After HELLO and after what came of it: whoever has waited for one waits for the other."""
+    """After HELLO and after the request: a wait continues from one to the other."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     now_s = 0.0
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
     real = Client.wait
     waits: list[str] = []
 
-    def wait(self: connect.Connection, *given: Any) -> Any:
+    def wait(self: connect.Connection, *arguments: Any) -> Any:
         nonlocal now_s
-        reply = real(self, *given)
+        reply = real(self, *arguments)
         waits.append("wait")
         now_s += 1.5
-        if len(given) > 1 and given[1] is not None:
-            given[1]()
+        if len(arguments) > 1 and arguments[1] is not None:
+            arguments[1]()
         return reply
 
     monkeypatch.setattr(Client, "wait", wait)
     result = tsc("set", "trim", "--show", "--port", pty_robot.port).gives(0)
     assert len(waits) >= 2
-    assert result.err.count("Waiting for the robot") == 1  # nobody has seen 3 s of silence
+    assert result.err.count("Waiting for the robot") == 1  # there were no 3 s of silence
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
     now_s += 100
     result = tsc("set", "trim", "--show", "--port", pty_robot.port).gives(0)
-    assert result.err.count("Waiting for the robot") == 1  # of HELLO, and of the request
+    # One line for HELLO and the request together.
+    assert result.err.count("Waiting for the robot") == 1
 
 
 def test_nothing_is_said_of_a_wait_that_is_over(
@@ -264,13 +265,13 @@ def test_the_end_of_a_studio_says_what_it_waits_for(
             until(is_said, "the sentence")
             return ["/dev/x"]
 
-    def interrupted(*given: object, **values: object) -> None:
+    def raise_interrupt(*arguments: object, **values: object) -> None:
         monkeypatch.undo()
         looks_on(monkeypatch)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(studio, "Hosting", Silent)
-    monkeypatch.setattr(studio, moment, interrupted)
+    monkeypatch.setattr(studio, moment, raise_interrupt)
     monkeypatch.setattr(serving, "is_built", lambda: True)
     monkeypatch.setattr(serving, "files", dict)
     monkeypatch.setattr(building, "is_possible", lambda: False)

@@ -15,14 +15,14 @@ from tiniscript.bytecode.disassembly import rows
 KIT = robots.load("tinibot").kit
 
 
-def compiled(text: str) -> Compilation:
+def compile_right_text(text: str) -> Compilation:
     compilation = compile_text(text, KIT)
     assert compilation.is_right, [diagnostic.code.number for diagnostic in compilation.diagnostics]
     return compilation
 
 
 def instructions(text: str) -> list[str]:
-    return [row.text for row in rows(compiled(text).code)]
+    return [row.text for row in rows(compile_right_text(text).code)]
 
 
 @each_row(
@@ -66,7 +66,7 @@ def instructions(text: str) -> list[str]:
         ("BEEP(0.1, 440)", ["BEEP8 10 440"]),
         ("BEEP(0.1, 440.5)", ["BEEP8 10 441"]),
         ("BEEP(11.5, 440)", ["PUSH_TENTHS 115", "PUSH16 440", "BEEP"]),
-        # a watched move; UNTIL says itself what it compares with: 0 to 255 in 8 bits, else in 16
+        # A watched move; UNTIL includes its comparison: 0 to 255 in 8 bits, otherwise in 16.
         ("F(11.5, 80) UNTIL(DISTANCE > 255)",
          ["PUSH_TENTHS 115", "PUSH_NUM_80", "WATCH_F", "PUSH_READ_2", "UNTIL8_GT 255"]),
         ("R(FOREVER, 80) UNTIL(256 >= DISTANCE)",
@@ -170,10 +170,10 @@ def test_a_jump_is_short_as_long_as_it_reaches(text: str, most: int, name: str) 
 @each_row("text", sorted({text for text, _, _ in JUMPS}))
 def test_jumps_go_to_the_beginning_of_an_instruction(text: str, count: int) -> None:
     """Whatever has become longer in between; and each far jump is one that had to be."""
-    code = compiled(text.format("S;" * count)).code
-    listed = rows(code)
-    starts = {row.offset for row in listed} | {len(code)}
-    for row in listed:
+    code = compile_right_text(text.format("S;" * count)).code
+    listed_rows = rows(code)
+    starts = {row.offset for row in listed_rows} | {len(code)}
+    for row in listed_rows:
         assert row.op is not None
         if "->" in row.text:
             target = int(row.text.rpartition("-> ")[2], 16)
@@ -192,27 +192,27 @@ def test_jumps_go_to_the_beginning_of_an_instruction(text: str, count: int) -> N
     ],
 )
 def test_a_comparing_branch_has_no_far_form(condition: str, short: str, far: list[str]) -> None:
-    """Where it does not reach it becomes what it stands for, and takes the same reading."""
+    """Out of reach, it becomes the longer form, with the same reading."""
     text = f"X = 3; LIGHT_R; LIGHT_L; IF({condition}); {{}} ENDIF; SHOW(X)"
     near = instructions(text.format("S;" * 255))
     assert [line for line in near if line.startswith(short)]
-    code = compiled(text.format("S;" * 256)).code
+    code = compile_right_text(text.format("S;" * 256)).code
     row_texts = [row.text for row in rows(code)]
     at = next(k for k, line in enumerate(row_texts) if line.startswith("IF_FAR"))
     assert [row_texts[at].split()[0], *row_texts[at - 3 : at]] == [far[3], *far[:3]]
-    assert row_texts[at].endswith(f"-> {rows(code)[-2].offset:04x}")  # to PUSH_VAR_0 of SHOW(X)
+    assert row_texts[at].endswith(f"-> {rows(code)[-2].offset:04x}")  # at the PUSH_VAR_0 of SHOW(X)
     assert row_texts.count("READ_0") == near.count("READ_0")
 
 
 def test_one_jump_that_gets_longer_makes_others_longer() -> None:
-    """Of nested IFs the outermost gets its far form first, and each that does moves the others."""
-    opened, closed = "IF(X);" * 8, "ENDIF;" * 8
+    """The outermost of nested IFs gets its far form first, which moves the others."""
+    opened_text, closed_text = "IF(X);" * 8, "ENDIF;" * 8
     border = 255 - 7 * 3  # seven IFs with their PUSH_VAR lie in the outermost one, 3 bytes each
     for count in range(border - 3, 255 + 3):
-        rows = instructions(f"X = TRUE; {opened} {'S;' * count} {closed}")
+        rows = instructions(f"X = TRUE; {opened_text} {'S;' * count} {closed_text}")
         bytes_of = {"IF": 3, "IF_FAR": 4}
         sizes = [bytes_of[line.split()[0]] for line in rows if line.startswith("IF")]
-        over = [count + sum(sizes[k + 1 :]) for k in range(8)]  # what each IF jumps over
+        over = [count + sum(sizes[k + 1 :]) for k in range(8)]  # bytes that each IF jumps over
         assert [size == 4 for size in sizes] == [skipped > 255 for skipped in over]
 
 
@@ -222,5 +222,5 @@ def test_code_that_no_machine_takes_is_refused_and_not_laid_out_for_ever() -> No
     over = compile_text("S;" * (CODE_BYTES + 1), KIT)
     assert [diagnostic.code.number for diagnostic in over.diagnostics] == ["TS306"]
     assert over.diagnostics[0].values["over"] == "1"
-    nested = "X = TRUE;" + "IF(X);" + "S;" * 3 * CODE_BYTES + "ENDIF"
-    assert not compile_text(nested, KIT).is_right
+    nested_text = "X = TRUE;" + "IF(X);" + "S;" * 3 * CODE_BYTES + "ENDIF"
+    assert not compile_text(nested_text, KIT).is_right

@@ -1,4 +1,4 @@
-"""What all tests of the kit need."""
+"""Fixtures for all tests of the kit."""
 
 from __future__ import annotations
 

@@ -60,5 +60,6 @@ def _module_with(fault: Fault) -> ModuleType:
     module = ModuleType(f"tiniscript.{name}")
     exec(compile(source, fault.says, "exec"), vars(module))
     if hasattr(module, "Refused"):
-        vars(module)["Refused"] = verify.Refused  # or nobody would catch its own
+        # Otherwise nothing would catch the module's own Refused.
+        vars(module)["Refused"] = verify.Refused
     return module

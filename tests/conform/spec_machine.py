@@ -22,7 +22,7 @@ class Spec:
     image: Any = image
     machine: Any = machine
     verifier: str = ""
-    refuses_only = False  # what lacks nothing of an image verifies it, if it cannot run it
+    refuses_only = False  # a verifier accepts images that it cannot run
 
     def answer(self, rows: Iterable[str]) -> list[str]:
         """Return the lines of a run."""
@@ -54,14 +54,14 @@ class Spec:
         numbers = {name: int(rows_by_word[name][0][0]) for name in ("seed", "begin", "until")}
         every = [int(number) for number in rows_by_word["every"][0]]
 
-        def late(waited: int, reached: int) -> int:
-            return -reached % every[min(waited, len(every)) - 1]
+        def late(waited_ms: int, reached: int) -> int:
+            return -reached % every[min(waited_ms, len(every)) - 1]
 
         slow = {int(k): tuple(map(int, times)) for k, *times in rows_by_word.get("slow", [])}
 
-        def is_slow(sensor: int, passed: int) -> bool:
+        def is_slow(sensor: int, passed_ms: int) -> bool:
             period_ms, from_ms, to_ms = slow.get(sensor, (1, 0, 0))
-            return from_ms <= passed % period_ms < to_ms
+            return from_ms <= passed_ms % period_ms < to_ms
 
         limits = numbers["until"], numbers["seed"], 10**6
         answer: str = self.machine.trace(code, kit, lists, *limits, late, numbers["begin"], is_slow)

@@ -10,7 +10,7 @@ import pytest
 
 from tests.conform.spec_machine import Spec
 from tests.machines import avr
-from tests.machines.host import host, ran, run_request
+from tests.machines.host import host, parse_run, run_request
 from tests.machines.host import missing as host_missing
 from tests.machines.pace import Pace, trace_at
 from tests.oracle import interpreter
@@ -18,12 +18,12 @@ from tiniscript.base.kit import Kit
 from tiniscript.conformance.kit import MACHINE_FORM, MACHINE_VERSION, cases_in
 from tools.generate.machine_kit import Run, answer_of, case_of, lines_of, runs
 
-AVR_BYTES = 620  # of an image
+AVR_BYTES = 620  # most bytes of an image
 AVR_DEVICES = 14, 4  # sensors and actuators, at most: `kMostSensors` of the chip's runner
 
 
 @lru_cache(maxsize=1)
-def answered() -> list[tuple[Run, list[str]]]:
+def list_answers() -> list[tuple[Run, list[str]]]:
     answers = ((run, answer_of(run)) for run in runs())
     return [(run, answer) for run, answer in answers if answer is not None]
 
@@ -38,7 +38,7 @@ def pace_of(run: Run) -> Pace:
 
 def run_by_host(run: Run) -> str:
     request = run_request(run.image, run.kit, run.senses, begin_ms=run.schedule[0])
-    return ran(host().ask(b"P", pace_of(run).packed(run.kit) + request).decode()).trace
+    return parse_run(host().ask(b"P", pace_of(run).pack(run.kit) + request).decode()).trace
 
 
 def run_by_avr(chip: str, run: Run) -> str:
@@ -55,7 +55,7 @@ def run_by_wasm(run: Run) -> str:
     return trace_at(pace_of(run), machine, run.image, run.kit, run.senses)
 
 
-CPP: dict[str, tuple[Callable[[Run], str], str, int]] = {  # of so many runs it has one
+CPP: dict[str, tuple[Callable[[Run], str], str, int]] = {  # one of so many runs is chosen
     "host": (run_by_host, host_missing(), 1),
     "wasm": (run_by_wasm, "", 5),
     "uno": (partial(run_by_avr, avr.UNO), avr.missing(), 10),
@@ -71,10 +71,11 @@ CPP: dict[str, tuple[Callable[[Run], str], str, int]] = {  # of so many runs it 
     ],
 )
 def test_a_machine_in_cpp_agrees(name: str) -> None:
-    """One that is called at a pace; what is late in another way is compared elsewhere. Images that
-    are refused are the verifiers' own tests'."""
+    """Calls follow a given pace; other delays are tested elsewhere, and refused images by the
+    verifiers' tests.
+    """
     machine, _, one_in = CPP[name]
-    cases = [(run, answer) for run, answer in answered() if is_for(name, run, answer)]
+    cases = [(run, answer) for run, answer in list_answers() if is_for(name, run, answer)]
     assert len(cases) > 800
     assert any(run.slow and run.needs for run, _ in cases)
     for run, answer in cases[::one_in]:
@@ -89,12 +90,13 @@ def is_for(name: str, run: Run, answer: list[str]) -> bool:
         sensors, actuators = AVR_DEVICES
         has_room = len(run.kit.readings) <= sensors and len(run.kit.actuators) <= actuators
         return has_room and len(run.image) < AVR_BYTES
-    return name != "wasm" or not begin_ms  # it is told no time to begin with
+    return name != "wasm" or not begin_ms  # this machine has no start time
 
 
 # -- the oracles --------------------------------------------------------------------------------
 
-UNREAD = "text: The dashes and spaces that phones put in are read"  # by the interpreter
+# A run that the interpreter cannot read.
+UNREAD = "text: The dashes and spaces that phones put in are read"
 
 
 def test_the_oracles_say_the_same() -> None:
@@ -103,22 +105,22 @@ def test_the_oracles_say_the_same() -> None:
     spec = Spec()
     spec.refuses_only = True
     judges = Counter[str]()
-    for run, answer in answered():
+    for run, answer in list_answers():
         if run.text and len(run.schedule[1]) == 1 and not run.name.startswith(UNREAD):
             judges["interpreter"] += 1
-            assert judged(run).splitlines() == answer, run.name
+            assert predict_output(run).splitlines() == answer, run.name
         elif answer[0].startswith("REFUSED") or not run.needs:
             judges["specification"] += 1
             assert spec.answer(request_of(run, answer)) == answer, run.name
         else:
-            judges["nobody"] += 1  # but the document that says what it does
+            judges["nobody"] += 1  # judged only by the document
             assert run.name.startswith("tasks: ") and not run.text, run.name
     assert judges["interpreter"] > 900 and judges["specification"] > 400
     assert judges["nobody"] < 50, "disassemblies of several tasks"
 
 
-def judged(run: Run) -> str:
-    """Return what the interpreter of texts says that a run prints."""
+def predict_output(run: Run) -> str:
+    """Return the output that the text interpreter predicts for a run."""
 
     def is_slow(sensor: str, now_ms: int) -> bool:
         period_ms, from_ms, to_ms = run.slow.get(sensor, (1, 0, 0))

@@ -27,7 +27,7 @@ def test_the_case_notices_the_fault(fault: Fault) -> None:
         parts = {name: module[name] for name in ("load_image", "machine_of") if name in module}
         try:
             answer = answer_of(run, **parts)
-        except (LookupError, AssertionError):  # it has crashed
+        except (LookupError, AssertionError):  # the machine has crashed
             answer = []
     assert answer != right
     assert answer_of(run) == right, "a fault stays behind"

@@ -44,7 +44,7 @@ FROM_SPEC = shlex.join([sys.executable, "-m", "tests.conform.spec_machine"])
 
 
 def test_a_sensor_without_readings_has_a_line_without_values() -> None:
-    """As docs/develop/conformance.md says; the machine that is made from it reads 0 then."""
+    """According to docs/develop/conformance.md; the machine built from it reads 0."""
     case = next(
         machine_case
         for machine_case in machine_cases()
@@ -55,9 +55,9 @@ def test_a_sensor_without_readings_has_a_line_without_values() -> None:
         "readings 0",
         "readings 1 5000 -1",
     ]
-    shown = compile_text("SHOW(LIGHT_R)", robots.load("tinibot").kit).image
+    shown_bytes = compile_text("SHOW(LIGHT_R)", robots.load("tinibot").kit).image
     case = case._replace(
-        devices=TINIBOT, image=shown, readings_by_sensor={0: ()}, every_ms=(1,), begin_ms=0
+        devices=TINIBOT, image=shown_bytes, readings_by_sensor={0: ()}, every_ms=(1,), begin_ms=0
     )
     (rows,) = runs(case.request().splitlines(keepends=True))
     assert Spec().answer(rows) == ["0 READ LIGHT_R 0", "0 SHOW 0", "0 DONE"]
@@ -89,7 +89,7 @@ def conform(tsc: Tsc, command: str, *more: str) -> CommandResult:
 
 
 def found_by(tsc: Tsc, command: str, *more: str) -> list[dict[str, object]]:
-    """Return what differs."""
+    """Return the differences."""
     result = conform(tsc, command, "--json", *more).gives(1)
     rows: list[dict[str, object]] = json.loads(result.out)["found"]
     return rows
@@ -128,7 +128,7 @@ def test_a_machine_lacks_tasks_only_if_it_refuses_the_first_image_with_some(refu
     assert [verdict.what for verdict in judged] == [DIFFERS] + [AGREES] * 3
 
 
-# A file of `tests/oracle`, what it says, what it says then, and a case that must be named.
+# A file of `tests/oracle`, its text, the replacement, and a case that must be named.
 BREAKS = [
     ("arithmetic", "(abs(number) * 2 + abs(by))", "(abs(number) * 2)", "arithmetic: MUL"),
     ("arithmetic", "a - b * (a // b)", "int(a - b * int(a / b))", "arithmetic: MOD"),
@@ -175,7 +175,7 @@ BREAKS = [
 ]  # fmt: skip
 
 
-def changed(name: str, old: str, becomes: str) -> ModuleType:
+def patch_oracle(name: str, old: str, becomes: str) -> ModuleType:
     """Return a module of `tests/oracle` that says something else in one place."""
     module = ModuleType(f"tests.oracle.{name}")
     path = ROOT / "tests" / "oracle" / f"{name}.py"
@@ -185,32 +185,32 @@ def changed(name: str, old: str, becomes: str) -> ModuleType:
     return module
 
 
-@pytest.mark.parametrize(("file", "old", "new", "named"), BREAKS, ids=[b[1] for b in BREAKS])
-def test_a_broken_machine_is_told(file: str, old: str, new: str, named: str) -> None:
+@pytest.mark.parametrize(("file", "old", "new", "named_text"), BREAKS, ids=[b[1] for b in BREAKS])
+def test_a_broken_machine_is_told(file: str, old: str, new: str, named_text: str) -> None:
     spec = Spec()
     if file == "verifier":
         assert old in verifier.text()
         spec.verifier = verifier.text().replace(old, new)
     elif file == "image":
-        spec.image = changed(file, old, new)
+        spec.image = patch_oracle(file, old, new)
     elif file == "machine":
-        spec.machine = changed(file, old, new)
+        spec.machine = patch_oracle(file, old, new)
     else:
-        spec.machine = changed("machine", "", "")
-        spec.machine.__dict__.update(vars(changed(file, old, new)))
-    cases = [case for case in machine_cases() if named in case.name and not case.needs]
+        spec.machine = patch_oracle("machine", "", "")
+        spec.machine.__dict__.update(vars(patch_oracle(file, old, new)))
+    cases = [case for case in machine_cases() if named_text in case.name and not case.needs]
 
-    def asked(request: str, most: int) -> list[str]:
+    def answer_request(request: str, most: int) -> list[str]:
         try:
             return spec.answer(request.splitlines()[:-1])
-        except LookupError:  # it has crashed
+        except LookupError:  # the machine has crashed
             return []
 
-    assert any(verdict.what == DIFFERS for verdict in verdicts(cases, asked))
+    assert any(verdict.what == DIFFERS for verdict in verdicts(cases, answer_request))
 
 
 def test_each_instruction_runs() -> None:
-    """What no case runs, no machine is tested for."""
+    """An instruction without a case would not be tested."""
     opcodes = set()
     for case in machine_cases():
         if case.answer[-1].startswith("REFUSED"):
@@ -249,7 +249,7 @@ def test_names_are_unique_and_each_refusal_is_there() -> None:
     cases = machine_cases()
     assert len({case.name for case in cases}) == len(cases)
     refused = {case.answer[-1].split()[1] for case in cases if "REFUSED" in case.answer[-1]}
-    assert refused == {*REFUSALS, *RULES} - {"CODE_LENGTH"}  # an image says it as BAD_HEADER
+    assert refused == {*REFUSALS, *RULES} - {"CODE_LENGTH"}  # in an image this is BAD_HEADER
 
 
 # -- machines that are no machines ------------------------------------------------------------

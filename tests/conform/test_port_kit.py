@@ -1,4 +1,4 @@
-"""The checks of a robot on a port: our firmware passes, and what is changed on its way is named."""
+"""The checks of a robot on a port: our firmware passes, and changes under way are named."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import pytest
 from tests.support.command import Tsc
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.robot_on_uno import BAUD, NAMES
-from tests.support.simulated_port import simulated
+from tests.support.simulated_port import simulate
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.conformance.comparing import AGREES
 from tiniscript.conformance.kit import link_test_suite
@@ -42,13 +42,13 @@ class ChangedWire(Wire):
     def receive(self, wait_ms: int, quiet_ms: int = 60) -> bytes:
         *packets, self.rest = (self.rest + super().receive(wait_ms, quiet_ms)).split(b"\0")
         frames = (decode_frame(packet) for packet in packets if packet)
-        changed = [self.change(frame) for frame in frames if frame]
-        return b"".join(encode_frame(frame) for frame in changed if frame)
+        changed_frames = [self.change(frame) for frame in frames if frame]
+        return b"".join(encode_frame(frame) for frame in changed_frames if frame)
 
 
 @contextmanager
-def asked(robot: PtyRobot, change: Change) -> Iterator[WireRobot]:
-    with simulated(robot):
+def open_changed_robot(robot: PtyRobot, change: Change) -> Iterator[WireRobot]:
+    with simulate(robot):
         wire = ChangedWire(robot.port, change)
         try:
             yield WireRobot(wire, 5, 300)
@@ -65,7 +65,7 @@ def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
     count = len(all_checks(link_test_suite()))
     assert count > 200
     assert result.out == f"{count} of {count} checks pass. Kit 1, link {LINK}, bytecode {ISA}.\n"
-    assert not any("MOTORS" in row and row != "MOTORS 0 0" for row in pty_robot.did)
+    assert not any("MOTORS" in row and row != "MOTORS 0 0" for row in pty_robot.actions)
 
 
 @pytest.mark.sampled("group")
@@ -77,8 +77,8 @@ def test_an_uno_passes(group: str, sketch: Path, tmp_path: Path, tsc: Tsc) -> No
     assert result.code == 0, result.out
 
 
-def altered(name: str, **fields: Callable[[bytes], bytes]) -> Change:
-    """Return what changes the payload of one message."""
+def alter_payload(name: str, **fields: Callable[[bytes], bytes]) -> Change:
+    """Return a change of one message's payload."""
 
     def change(frame: Frame) -> Frame | None:
         if frame.number != of(name):
@@ -88,12 +88,12 @@ def altered(name: str, **fields: Callable[[bytes], bytes]) -> Change:
     return change
 
 
-def lost(name: str) -> Change:
+def drop_message(name: str) -> Change:
     return lambda frame: None if frame.number == of(name) else frame
 
 
 def with_status(number: int, status: int) -> Change:
-    """Return what has every answer of a message say another status."""
+    """Return a change of the status in every answer to a message."""
 
     def change(frame: Frame) -> Frame | None:
         if frame.number != number or frame.payload[:1] == b"\0":
@@ -105,48 +105,53 @@ def with_status(number: int, status: int) -> Change:
 
 CHANGES: dict[str, tuple[Change, str]] = {
     "a value is one more": (
-        altered("SHOW", payload=lambda p: bytes([p[0] ^ 1]) + p[1:]), "programs: values"),
+        alter_payload("SHOW", payload=lambda p: bytes([p[0] ^ 1]) + p[1:]), "programs: values"),
     "a value is a number, not TRUE": (
-        altered("SHOW", payload=lambda p: p[:4] + b"\0"), "programs: instructions: What is not 0"),
-    "values get lost": (lost("SHOW"), "programs: values"),
+        alter_payload("SHOW", payload=lambda p: p[:4] + b"\0"),
+        "programs: instructions: What is not 0"),
+    "values get lost": (drop_message("SHOW"), "programs: values"),
     "a fault is elsewhere": (
-        altered("FAULT", payload=lambda p: p[:2] + b"\x07" + p[3:]), "programs: arithmetic: DIV"),
-    "STOPPED gets lost": (lost("STOPPED"), "stops: STOP"),
+        alter_payload("FAULT", payload=lambda p: p[:2] + b"\x07" + p[3:]),
+        "programs: arithmetic: DIV"),
+    "STOPPED gets lost": (drop_message("STOPPED"), "stops: STOP"),
     "the cause of a stop is another": (
-        altered("STOPPED", payload=lambda p: b"\3"), "stops: the stop sequence"),
+        alter_payload("STOPPED", payload=lambda p: b"\3"), "stops: the stop sequence"),
     "an event has another form": (
-        altered("STOPPED", payload=lambda p: p + b"?"), "stops: STOP"),
+        alter_payload("STOPPED", payload=lambda p: p + b"?"), "stops: STOP"),
     "a rule is another": (with_status(of("PROGRAM"), 21), "refused: refused: A power over 100"),
     "a message that nobody knows": (with_status(31, 65), "link: a message that nobody knows"),
     "a place of something else": (
-        altered("PING", payload=lambda p: p[:3] + bytes(len(p) - 3)), "link: where a program is"),
+        alter_payload("PING", payload=lambda p: p[:3] + bytes(len(p) - 3)),
+        "link: where a program is"),
     "a long payload": (with_status(of("PING"), 64), "link: a payload that is too long"),
     "damaged frames are not counted": (
-        altered("STATUS", payload=lambda p: p[:-4] + bytes(4)), "link: a damaged frame"),
+        alter_payload("STATUS", payload=lambda p: p[:-4] + bytes(4)), "link: a damaged frame"),
     "a wrong checksum is another error": (
         with_status(of("COMMIT"), 76), "images: another checksum"),
     "what is fetched is other code": (
-        altered("FETCH", payload=lambda p: p[:-1] + b"\xff"), "images: FETCH"),
+        alter_payload("FETCH", payload=lambda p: p[:-1] + b"\xff"), "images: FETCH"),
 }  # fmt: skip
 
 
 @pytest.mark.sampled("what", keep=len(CHANGES) // 4)
 @pytest.mark.parametrize("what", CHANGES)
 def test_what_is_changed_on_its_way_is_named(what: str, pty_robot: PtyRobot) -> None:
-    change, named = CHANGES[what]
-    checks = [check for check in all_checks(link_test_suite()) if check.name.startswith(named)][:3]
+    change, named_text = CHANGES[what]
+    checks = [
+        check for check in all_checks(link_test_suite()) if check.name.startswith(named_text)
+    ][:3]
     assert checks
-    with asked(pty_robot, lambda frame: frame) as robot:
+    with open_changed_robot(pty_robot, lambda frame: frame) as robot:
         greet(robot)
         assert {verdict.what for verdict in verdicts(robot, checks)} == {AGREES}
-    with asked(pty_robot, change) as robot:
+    with open_changed_robot(pty_robot, change) as robot:
         greet(robot)
         judged = list(verdicts(robot, checks))
     assert any(verdict.what != AGREES for verdict in judged), judged
 
 
 def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
-    with asked(pty_robot, lambda frame: frame) as robot:
+    with open_changed_robot(pty_robot, lambda frame: frame) as robot:
         greet(robot)
         robot.answer_timeout_ms = 10
         assert isinstance(robot.wire, ChangedWire)
@@ -207,10 +212,10 @@ def test_somebody_else_on_the_port(serve: Callable[[socket.socket], None], sente
 
 
 def test_a_cable_that_is_pulled(pty_robot: PtyRobot, tsc: Tsc) -> None:
-    pulled = threading.Timer(3.0, pty_robot.pull)
-    pulled.start()
+    pulled_timer = threading.Timer(3.0, pty_robot.pull)
+    pulled_timer.start()
     result = tsc("doctor", "--conform", "--port", pty_robot.port)
-    pulled.join()
+    pulled_timer.join()
     assert result.code == 3
     assert "disappeared after" in result.err
 

@@ -1,4 +1,4 @@
-"""Where a person is told to look: each place its caret, in any text whatever."""
+"""The places of messages: each caret is right, in any text."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ def picture(text: str, start: int, end: int) -> list[str]:
         ("🤖;x", 2, 3, (1, 3, 1, 4)),
         ("ab\ncd", 1, 4, (1, 2, 2, 2)),  # over two lines
         ("ab\r\ncd\r\n", 0, 4, (1, 1, 1, 3)),  # the line end is left out
-        ("ab\n", 2, 3, (1, 3, 1, 4)),  # nothing but a line end
+        ("ab\n", 2, 3, (1, 3, 1, 4)),  # only a line end
         ("ab", 2, 2, (1, 2, 1, 3)),  # the end of the text: its last character
         ("ab;  \n\n", 7, 7, (1, 3, 1, 4)),
         ("ab\ncd", 2, 2, (1, 2, 1, 3)),  # an empty place at a line's end
-        ("ab\ncd", 3, 3, (2, 1, 2, 2)),  # and at a line's beginning
+        ("ab\ncd", 3, 3, (2, 1, 2, 2)),  # at the beginning of a line
         ("\n\n", 2, 2, (1, 1, 1, 2)),
         ("", 0, 0, (1, 1, 1, 1)),
         ("ab", 5, 9, (1, 2, 1, 3)),  # outside

@@ -1,4 +1,4 @@
-"""What a person is told: each code has its words, and each example its diagnostic."""
+"""The texts of diagnostics: each code has its message, and each example its diagnostic."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_the_right_example_has_no_diagnostic(code: str) -> None:
 def test_the_examples_fill_all_gaps_of_their_messages(code: str) -> None:
     compilation = compile_text(TEXTS[SOURCE_LANGUAGE][f"{code}/wrong"], KIT)
     values = compilation.diagnostics[0].values
-    if compilation.diagnostics[0].repair is None:  # else what it becomes is told
+    if compilation.diagnostics[0].repair is None:  # otherwise the message shows the result
         assert gap_names(code) <= set(values)
     for lang in LANGUAGES:
         full_message = message(compilation.diagnostics[0], compilation.source, lang)
@@ -138,10 +138,10 @@ def test_a_program_that_is_too_long_for_any_robot_says_by_how_much() -> None:
 
 
 def test_a_text_with_an_empty_gap_gives_way_to_the_next() -> None:
-    known = Diagnostic(codes.UNKNOWN_NAME, Span(0, 1), {"found": "Y", "near": "YY"})
-    unknown = known._replace(values={"found": "Y", "near": ""})
+    known_diagnostic = Diagnostic(codes.UNKNOWN_NAME, Span(0, 1), {"found": "Y", "near": "YY"})
+    unknown = known_diagnostic._replace(values={"found": "Y", "near": ""})
     source = Source("Y")
-    assert message(known, source, "en").message.endswith("Did you mean YY?")
+    assert message(known_diagnostic, source, "en").message.endswith("Did you mean YY?")
     assert message(unknown, source, "en").message == "There is no variable or sensor Y"
     assert message(unknown, source, "en").fix.startswith("Which number is Y?")
 
@@ -180,9 +180,9 @@ def test_long_pieces_of_a_program_are_shortened() -> None:
 def test_colors_change_nothing_but_colors() -> None:
     for text in ("F(2 80)", "W(0.12345)"):
         message, source = first(text)
-        colored = as_text(message, source, "en", color=True)
-        assert colored != as_text(message, source, "en")
-        assert re.sub(r"\033\[[0-9;]*m", "", colored) == as_text(message, source, "en")
+        colored_text = as_text(message, source, "en", color=True)
+        assert colored_text != as_text(message, source, "en")
+        assert re.sub(r"\033\[[0-9;]*m", "", colored_text) == as_text(message, source, "en")
 
 
 def test_as_json() -> None:

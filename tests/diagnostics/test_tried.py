@@ -1,4 +1,4 @@
-"""What messages say to try: itself right, and once for what is wrong once."""
+"""The suggestions of messages: they are correct, and appear once per mistake."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TINIBOT = robots.load(robots.DEFAULT)
 
 
 def messages_of(program: str, language: str = "en") -> list[Message]:
-    """Return what is said of a program for the robot that it names."""
+    """Return the messages about a program for the robot that it names."""
     robot = robot_of(program.encode(), TINIBOT)
     compilation = compile_source(program.encode(), robot, "", is_strict=True)
     return [
@@ -29,7 +29,7 @@ def messages_of(program: str, language: str = "en") -> list[Message]:
 @each_row("word", "FBLR")
 @each_row("number", (1, 2, 19, 20, 30, 45, 60, 90, 100, 101, 180, 360))
 def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: int) -> None:
-    """As power, centimetres or degrees: never with a gap between the brackets."""
+    """As power, centimetres or degrees, and without a gap between the brackets."""
     (message,) = messages_of(f"{word}({number})", language)
     calls = re.findall(r"\b[FBLR]\([^()]*\d[^()]*\)", message.fix)
     assert calls or number < 20, message
@@ -40,7 +40,7 @@ def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: 
 
 
 @each_row(
-    "program, wanted",
+    "program, wanted_text",
     [
         ("IF(NO(DISTANCE < 10));S;END_IF", "IF(NOT(DISTANCE < 10));S;END_IF"),
         ("W(5) UNTIL(NÃO(DISTANCE > 9))", "W(5) UNTIL(NOT(DISTANCE > 9))"),
@@ -49,12 +49,12 @@ def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: 
         ("// robot: grabber\nLED LOW", "// robot: grabber\nLED(FALSE)"),
     ],
 )
-def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted: str) -> None:
+def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted_text: str) -> None:
     robot = robot_of(program.encode(), TINIBOT)
-    repaired = repair_program(
+    repaired_program = repair_program(
         program, lambda to: compile_source(to.encode(), robot, "", True).diagnostics
     )
-    assert repaired.text == wanted and not repaired.diagnostics_left
+    assert repaired_program.text == wanted_text and not repaired_program.diagnostics_left
 
 
 @each_row(
@@ -80,19 +80,23 @@ def test_what_a_pin_is_said_to_be_is_a_yes_or_no(program: str, fix: str) -> None
     ],
 )
 def test_words_of_another_kit_are_one_mistake(program: str, words: list[tuple[str, str]]) -> None:
-    """And what it says to write makes all of them known."""
+    """The suggested line makes all of them known."""
     messages = messages_of(program)
     source = Source(program)
     named = []
-    for shown in messages:
-        if shown.code == "TS119":
+    for shown_message in messages:
+        if shown_message.code == "TS119":
             rows = source.text.split("\n")
-            word = rows[shown.line - 1][shown.column - 1 : shown.end_column - 1]
-            named.append((word, shown.fix.rpartition(" ")[2]))
+            word = rows[shown_message.line - 1][
+                shown_message.column - 1 : shown_message.end_column - 1
+            ]
+            named.append((word, shown_message.fix.rpartition(" ")[2]))
     assert named == words and len(messages) == max(1, len(words))
     if len(words) == 1:
-        changed = f"// robot: {words[0][1]}\n{program.rpartition(chr(10))[2]}"
-        assert not [message for message in messages_of(changed) if message.severity == "mistake"]
+        changed_text = f"// robot: {words[0][1]}\n{program.rpartition(chr(10))[2]}"
+        assert not [
+            message for message in messages_of(changed_text) if message.severity == "mistake"
+        ]
 
 
 @each_row(
@@ -111,12 +115,12 @@ def test_words_of_another_kit_are_one_mistake(program: str, words: list[tuple[st
     ],
 )  # fmt: skip
 def test_what_is_tried_does_what_was_written(program: str, fixes: list[str]) -> None:
-    """A robot that stands goes on standing, and one condition is told of once."""
+    """A robot at rest stays at rest, and one condition is reported once."""
     assert [message.fix for message in messages_of(program)] == fixes
 
 
 @each_row(
-    "program, wanted",
+    "program, wanted_text",
     [
         ("AL MISMO TIEMPO\nBEEP(1, 440)\nFIN\nF(2, 60)", "TASK\nBEEP(1, 440)\nEND_TASK\nF(2, 60)"),
         ("AO MESMO TEMPO\nBEEP(1, 440)\nFIM\nF(2, 60)", "TASK\nBEEP(1, 440)\nEND_TASK\nF(2, 60)"),
@@ -125,11 +129,11 @@ def test_what_is_tried_does_what_was_written(program: str, fixes: list[str]) -> 
         ("WHENEVER DISTANCE < 9\nB(1, 60)\nEND", "WHEN(DISTANCE < 9)\nB(1, 60)\nEND_WHEN"),
     ],
 )
-def test_what_is_done_beside_is_a_task(program: str, wanted: str) -> None:
-    repaired = repair_program(
+def test_what_is_done_beside_is_a_task(program: str, wanted_text: str) -> None:
+    repaired_program = repair_program(
         program, lambda to: list(compile_source(to.encode(), TINIBOT, "", True).diagnostics)
     )
-    assert (repaired.text, repaired.diagnostics_left) == (wanted, [])
+    assert (repaired_program.text, repaired_program.diagnostics_left) == (wanted_text, [])
 
 
 def test_what_spanish_pupils_say_for_when_is_shown() -> None:
@@ -152,7 +156,7 @@ def test_an_unknown_word_is_one_mistake(program: str, lines: list[int]) -> None:
 
 
 @each_row(
-    "program, repaired",
+    "program, repaired_text",
     [
         ("SI|IF(DISTANCE < 9)\nS\nENDIF\nELSE\nW(1)\nENDIF",
          "SI|IF(DISTANCE < 9)\nS\nELSE\nW(1)\nENDIF"),
@@ -163,7 +167,8 @@ def test_an_unknown_word_is_one_mistake(program: str, lines: list[int]) -> None:
         ("import robot\nF(2, 80)", "F(2, 80)"),
     ],
 )  # fmt: skip
-def test_what_is_taken_out_leaves_no_line_and_no_blank(program: str, repaired: str) -> None:
+def test_what_is_taken_out_leaves_no_line_and_no_blank(program: str, repaired_text: str) -> None:
     assert (
-        repair_program(program, lambda to: check_text(to, TINIBOT.kit).diagnostics).text == repaired
+        repair_program(program, lambda to: check_text(to, TINIBOT.kit).diagnostics).text
+        == repaired_text
     )

@@ -1,4 +1,4 @@
-"""What a message calls the things that it names, in each language."""
+"""The names of things in messages, in each language."""
 
 from __future__ import annotations
 

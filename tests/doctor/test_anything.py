@@ -27,7 +27,7 @@ WORDS = (
     b"\0",
     b"// ",
 )
-LONGEST_MS = 400_000  # of simulated time, for whoever never stops sending
+LONGEST_MS = 400_000  # simulated time after which a sender that never stops is left
 
 
 class Chance(Nobody):

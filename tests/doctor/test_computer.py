@@ -1,4 +1,4 @@
-"""What a computer tells: trees of files of Linux, and answers of programs of macOS and Windows.
+"""Facts of a computer: file trees of Linux, and program outputs of macOS and Windows.
 
 Those of macOS and Windows were written after their papers, not recorded on such a system.
 """
@@ -26,7 +26,7 @@ def linux(tmp_path: Path) -> FakeComputer:
 
 def test_a_computer_without_anything(linux: FakeComputer) -> None:
     assert diagnosis.inspect_computer(linux).adapters is None  # no sysfs: nothing is known of USB
-    linux.usb("usb1", "1d6b", "0002")  # its own hub
+    linux.usb("usb1", "1d6b", "0002")  # the computer's own hub
     computer = diagnosis.inspect_computer(linux)
     assert (computer.adapters, computer.bluetooth, computer.paired_names) == ((), NONE, ())
     assert computer.has_module is False
@@ -97,7 +97,7 @@ def test_a_program_of_another_user_is_known_by_its_lock(linux: FakeComputer) -> 
     linux.program(812, "screen")
     linux.write("/run/lock/LCK..ttyUSB0", "       812\n")
     assert diagnosis.port_access(linux, port).using_programs == ("screen",)
-    linux.write("/run/lock/LCK..ttyUSB0", "999")  # it has ended
+    linux.write("/run/lock/LCK..ttyUSB0", "999")  # process 999 has ended
     assert diagnosis.port_access(linux, port).using_programs == ()
     for other in ("socket://robot:7000", "/dev/ttyUSB9"):
         assert diagnosis.port_access(linux, other) == computer.FREE_ACCESS

@@ -1,4 +1,4 @@
-"""From a computer and a port to causes: every one that the table has is found somewhere here."""
+"""Diagnoses from a computer and a port: every cause of the table is found here."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Shared:
 
 
 class Case:
-    """A computer, what is on its ports, and what the user answers."""
+    """A computer, the devices on its ports, and the user's answers."""
 
     def __init__(self, tmp_path: Path) -> None:
         self.system = FakeComputer(tmp_path, "linux")
@@ -177,15 +177,15 @@ def _brltty(case: Case) -> None:
 
 
 def _other_tsc(case: Case) -> None:
-    held = Registration(CABLE, 1, "t", "a", "link", 9600, 5)
-    case.with_port(CABLE).other = OtherVersion(held, "0.1")
+    held_registration = Registration(CABLE, 1, "t", "a", "link", 9600, 5)
+    case.with_port(CABLE).other = OtherVersion(held_registration, "0.1")
 
 
-def _plugged(vendor: str, product: str, driver: str = "") -> Make:
+def _plug(vendor: str, product: str, driver: str = "") -> Make:
     return lambda case: case.system.usb("1-1", vendor, product, driver)
 
 
-def _paired(reason: str, *names: str, is_off: bool = False) -> Make:
+def _pair(reason: str, *names: str, is_off: bool = False) -> Make:
     """Bluetooth is there, and the port does not open."""
     return lambda case: case.with_bluetooth(*names, is_off=is_off).failing(reason)
 
@@ -203,17 +203,17 @@ REFUSED = os.strerror(errno.ECONNREFUSED)
 ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
     (None, _ports(), "no_port", True),
     (CABLE, _ports(), "no_port", True),
-    (None, _plugged(*HUB), "charging_cable", False),
-    (CABLE, _plugged(*HUB), "charging_cable", False),
+    (None, _plug(*HUB), "charging_cable", False),
+    (CABLE, _plug(*HUB), "charging_cable", False),
     (CABLE, _ports("/dev/ttyUSB7"), "port_missing", True),
     (None, _ports(CABLE, "/dev/ttyACM0"), "which_port", True),
-    (None, _plugged(*CH340), "driver_missing", True),
+    (None, _plug(*CH340), "driver_missing", True),
     (None, _brltty, "brltty", True),
-    (None, _plugged(*CH340, "usbfs"), "brltty", False),
+    (None, _plug(*CH340, "usbfs"), "brltty", False),
     (RADIO, _failing(errors.MISSING), "no_bluetooth", True),
-    (RADIO, _paired(errors.MISSING, is_off=True), "bluetooth_off", True),
-    (RADIO, _paired(errors.MISSING, "Telephone"), "not_paired", True),
-    (RADIO, _paired(errors.MISSING, "HC-05"), "no_rfcomm", True),
+    (RADIO, _pair(errors.MISSING, is_off=True), "bluetooth_off", True),
+    (RADIO, _pair(errors.MISSING, "Telephone"), "not_paired", True),
+    (RADIO, _pair(errors.MISSING, "HC-05"), "no_rfcomm", True),
     (CABLE, _stranger, "no_permission", True),
     (CABLE, _member, "login_again", True),
     (CABLE, _used("minicom"), "busy", True),
@@ -221,10 +221,10 @@ ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
     (CABLE, _other_tsc, "other_tsc", True),
     (RADIO, _failing(errors.BUSY), "busy", True),
     (RADIO, _failing(errors.BUSY, os.strerror(errno.EBUSY)), "other_host", False),
-    (RADIO, _paired(errors.UNREACHABLE, "HC-05"), "out_of_reach", False),
-    (RADIO, _paired(errors.UNREACHABLE, "Telephone"), "not_paired", False),
+    (RADIO, _pair(errors.UNREACHABLE, "HC-05"), "out_of_reach", False),
+    (RADIO, _pair(errors.UNREACHABLE, "Telephone"), "not_paired", False),
     (RADIO, _failing(errors.UNREACHABLE, REFUSED), "other_host", False),
-    (RADIO, _paired(errors.SLOW, "HC-05"), "slow_port", False),
+    (RADIO, _pair(errors.SLOW, "HC-05"), "slow_port", False),
     (RADIO, _failing(errors.NO_PORT), "no_serial_port", True),
     (RADIO, _failing(errors.BROKEN, "Input/output error"), "port_broken", True),
     (RADIO, _failing(errors.FORBIDDEN), "no_permission", True),
@@ -253,7 +253,7 @@ def test_a_port_of_a_cable_is_opened_after_a_yes_alone_and_a_radio_without(case:
     case.says_yes = True
     assert case.cause() == ("fine", True)
     assert case.opened == [CABLE]
-    assert case.wire is not None and case.wire.is_gone  # it is closed
+    assert case.wire is not None and case.wire.is_gone  # the port is closed
 
 
 def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
@@ -347,23 +347,30 @@ def test_what_another_tsc_has_heard_of_a_board_that_is_not_ours(case: Case) -> N
     assert (finding.cause, finding.values["said"]) == ("firmata", "StandardFirmata.ino 2.5")
 
 
-@pytest.mark.parametrize("answered", [0, 3, 12])
+@pytest.mark.parametrize("answered_count", [0, 3, 12])
 def test_a_robot_that_falls_silent_behind_another_tsc_is_given_up(
-    case: Case, answered: int
+    case: Case, answered_count: int
 ) -> None:
     """Each request waits for the retries of that tsc, and for its search for the robot."""
-    known = [Reply(OK, 0, HELLO), Reply(OK, 0, STATUS), *[Reply(OK, 0, PONG)] * answered]
-    lost: list[Reply[Any]] = [Reply(LOST)] * MOST_UNANSWERED
-    case.shared = Shared(*known, *lost)
+    known_replies = [
+        Reply(OK, 0, HELLO),
+        Reply(OK, 0, STATUS),
+        *[Reply(OK, 0, PONG)] * answered_count,
+    ]
+    lost_replies: list[Reply[Any]] = [Reply(LOST)] * MOST_UNANSWERED
+    case.shared = Shared(*known_replies, *lost_replies)
     assert "falls_silent" in [finding.cause for finding in case.diagnosis().findings]
-    case.shared = Shared(*known, *lost[1:], *[Reply(OK, 0, PONG)] * 3, *lost)
+    case.shared = Shared(
+        *known_replies, *lost_replies[1:], *[Reply(OK, 0, PONG)] * 3, *lost_replies
+    )
     assert "falls_silent" in [finding.cause for finding in case.diagnosis().findings]
     assert case.shared.replies == [], "one that is heard again has all of them again"
 
 
 def test_a_robot_is_watched_where_nothing_else_is_wrong_and_its_port_is_shared(case: Case) -> None:
     case.watch_ms = 1000
-    assert case.cause(RADIO) == ("falls_silent", False)  # as the shared connection says
+    # The reason that the shared connection reports.
+    assert case.cause(RADIO) == ("falls_silent", False)
     assert case.wire is not None and case.wire.is_gone
     case.end = Nobody()
     assert case.cause(RADIO) == ("crossed", False)
@@ -390,7 +397,7 @@ def test_a_robot_that_may_be_another_one_is_asked_nothing_more(case: Case, cause
 def test_the_key_of_a_robot_with_an_owner_is_shown_by_the_connection(
     case: Case, features: int, has_key: bool, cause: str
 ) -> None:
-    """What it says of its owner without that is not so."""
+    """The robot's unproven statement about its owner is false."""
     case.end = Firmware(features=features)
     case.expected = case.expected._replace(has_key=lambda robot: has_key)
     assert case.diagnosis(RADIO).findings[0].cause == cause
@@ -405,7 +412,7 @@ def test_whose_a_robot_is_says_what_it_says_after_a_key(case: Case) -> None:
 
 
 def test_what_was_not_opened_is_not_said_to_have_been(case: Case) -> None:
-    _plugged(*CH340)(case)
+    _plug(*CH340)(case)
     diagnosis = case.diagnosis(None)
     assert diagnosis.findings[0].values == {"chip": "CH340", "driver": "ch341"}
     assert not diagnosis.is_opened

@@ -1,4 +1,4 @@
-"""What is at the other end of a port: every kind is recognized, and none is disturbed."""
+"""Devices at the other end of a port: each is recognized, and none is disturbed."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from tiniscript.link.payloads import TrimReply
 from tiniscript.link.wire import QUIET_MS
 from tiniscript.robots import load
 
-# Those that say nothing after they have started.
+# Devices that are silent after their start.
 SAY_NOTHING = (boards.Esp32Board, boards.SilentPython, boards.DownloadBoard)
 RESTARTED = (115200, 57600)  # the speeds of bootloaders: there a board is heard when it starts
 NAMES = {load(name).kit.fingerprint: name for name in ("tinibot", "liner", "grabber")}
@@ -54,7 +54,7 @@ def findings_on(
     baud: int = 9600,
     its_key: int | None = None,
 ) -> list[Finding]:
-    """Return what is found; `its_key` is the id of the robot whose key the computer has."""
+    """Return the findings; `its_key` is the id of the robot whose key the computer has."""
     wire = SimulatedWire(end, baud)
     expected = Expectations(kit, "tinibot", NAMES.get, lambda robot: robot == its_key)
     findings = diagnose_line(wire, PortFacts(baud, is_radio, 4711), expected)
@@ -65,15 +65,15 @@ def findings_on(
 
 
 class WireEcho(Echo):
-    """TX on RX: what is sent comes back, whatever its speed is."""
+    """TX wired to RX: it returns everything, at any speed."""
 
     def __init__(self) -> None:
         super().__init__()
         self.is_bare = True
 
 
-def watched(end: OtherEnd, watch_ms: int) -> dict[str, Finding]:
-    """Return what is found where a robot is watched for so long."""
+def watch_line(end: OtherEnd, watch_ms: int) -> dict[str, Finding]:
+    """Return the findings after a robot is watched for so long."""
     robot = WireRobot(SimulatedWire(end), 4711, KIT)
     reply = robot.hello()
     assert reply is not None
@@ -210,15 +210,15 @@ def test_a_robot_that_restarts_when_its_motors_start(resets: str, is_sure: bool)
 
     class Driver(Firmware):
         def answer(self, data: bytes) -> bytes:
-            if self.now_ms == 9000:  # its button
+            if self.now_ms == 9000:  # the button is pressed
                 self.hello["state"] = state("RUNNING")
             return super().answer(data)
 
     ends = [Driver(), Driver()]
     for end in ends:
         end.restarts_ms, end.resets = 10_000, resets
-    assert watched(ends[0], 12_000)["motors_restart"].is_sure == is_sure
-    assert "motors_restart" not in causes(ends[1])  # it was not watched for so long
+    assert watch_line(ends[0], 12_000)["motors_restart"].is_sure == is_sure
+    assert "motors_restart" not in causes(ends[1])  # the watch was too short for that
 
 
 @pytest.mark.parametrize("is_radio", [False, True])
@@ -242,12 +242,14 @@ def test_a_robot_tells_all_of_itself_whatever_was_stopped_before(epoch: int) -> 
     assert told[0].trim == TrimReply(**end.trim)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(("damaged", "is_lossy"), [(1, False), (2, True)])
-def test_a_robot_that_hears_badly_and_answers_all_the_same(damaged: int, is_lossy: bool) -> None:
+@pytest.mark.parametrize(("damaged_count", "is_lossy"), [(1, False), (2, True)])
+def test_a_robot_that_hears_badly_and_answers_all_the_same(
+    damaged_count: int, is_lossy: bool
+) -> None:
     class Noisy(Firmware):
         def answer(self, data: bytes) -> bytes:
             if len(self.requests) == 10:  # in the middle of the PINGs
-                self.counts["framing"] = damaged
+                self.counts["framing"] = damaged_count
             return super().answer(data)
 
     assert ("lossy" in causes(Noisy())) == is_lossy
@@ -328,8 +330,8 @@ def test_what_is_heard_at_one_speed_alone_is_told(speed: int) -> None:
 
     class Deaf(SimulatedWire):
         def receive(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
-            heard = super().receive(wait_ms, quiet_ms)
-            return heard if self.baud == speed else b""
+            heard_bytes = super().receive(wait_ms, quiet_ms)
+            return heard_bytes if self.baud == speed else b""
 
     wire = Deaf(Babble(speed), BAUDS[0])
     expected = Expectations(None, "tinibot", NAMES.get)
@@ -340,9 +342,9 @@ def test_what_is_heard_at_one_speed_alone_is_told(speed: int) -> None:
 @pytest.mark.parametrize(
     ("end", "cause", "is_sure"),
     [
-        (Echo(), "echo", False),  # or a sketch: the radio has one speed
+        (Echo(), "echo", False),  # radios have one speed, so this may be a sketch
         (Sketch(), "other_sketch", True),
-        (Babble(), "module_baud", False),  # the module's wire garbles what the radio carries
+        (Babble(), "module_baud", False),  # the module's wire garbles the radio's data
         (Nobody(), "crossed", False),
     ],
 )
@@ -387,7 +389,7 @@ def test_a_board_that_is_not_ours_on_a_cable(
 def test_a_board_that_is_not_ours_by_radio(
     kind: type[boards.Board], cause: str, sentence: str
 ) -> None:
-    """It was not restarted, so what it says when it starts is not heard."""
+    """The board was not restarted, so its start message is not received."""
     end = kind(9600)
     end.now_ms = end._since_ms = 10_000
     (finding,) = findings_on(end, is_radio=True)

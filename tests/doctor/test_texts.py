@@ -34,7 +34,7 @@ VALUES = {
 }  # fmt: skip
 
 
-# Of a part that is looked at whole nothing more is seen; several causes may have one next step.
+# Parts with a single cause need no further symptom; several causes may share a next step.
 OF_A_PART = [
     value for value, row in CAUSES.items() if row.next_key or (row.verdict == OK and row.part)
 ]
@@ -76,24 +76,31 @@ def test_a_board_that_is_not_ours_says_what_it_is_what_was_seen_and_what_to_do(c
 
 
 def test_no_sentence_is_of_a_board_that_has_no_row() -> None:
-    named = {key.partition("/")[0] for key in all_said("en", "foreign")}
-    assert named == {*foreign.NAMES, "says"}
+    names = {key.partition("/")[0] for key in all_said("en", "foreign")}
+    assert names == {*foreign.NAMES, "says"}
 
 
 def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
-    known = {f"found_{cause}" for cause in CAUSES}
-    known |= {f"next_{row.next_key or cause}" for cause, row in CAUSES.items()}
-    known -= {f"next_{cause}" for cause in OF_A_PART}
-    known |= {f"next_{CAUSES[cause].next_key}" for cause in OF_A_PART if CAUSES[cause].next_key}
-    known |= {f"seen_{cause}" for cause in CAUSES if cause not in OF_A_PART}
-    for kind in ("found", "seen", "next"):  # those of other boards are in a catalogue of their own
-        known -= {f"{kind}_{cause}" for cause in foreign.NAMES}
-    known |= {"seen_busy_unknown", "seen_other_sketch_silent", "seen_foreign", "seen_echo_sketch"}
-    known |= {"seen_restarts_once", "seen_motors_restart_once"}
-    known |= {"seen_no_permission_other", "next_no_permission_other"}
-    known |= {"seen_no_port_others", "next_no_port_others"}
-    named = {key for key in all_said("en") if key.startswith(("found_", "seen_", "next_"))}
-    assert named == known
+    known_names = {f"found_{cause}" for cause in CAUSES}
+    known_names |= {f"next_{row.next_key or cause}" for cause, row in CAUSES.items()}
+    known_names -= {f"next_{cause}" for cause in OF_A_PART}
+    known_names |= {
+        f"next_{CAUSES[cause].next_key}" for cause in OF_A_PART if CAUSES[cause].next_key
+    }
+    known_names |= {f"seen_{cause}" for cause in CAUSES if cause not in OF_A_PART}
+    for kind in ("found", "seen", "next"):  # texts about other boards have their own catalogue
+        known_names -= {f"{kind}_{cause}" for cause in foreign.NAMES}
+    known_names |= {
+        "seen_busy_unknown",
+        "seen_other_sketch_silent",
+        "seen_foreign",
+        "seen_echo_sketch",
+    }
+    known_names |= {"seen_restarts_once", "seen_motors_restart_once"}
+    known_names |= {"seen_no_permission_other", "next_no_permission_other"}
+    known_names |= {"seen_no_port_others", "next_no_port_others"}
+    names = {key for key in all_said("en") if key.startswith(("found_", "seen_", "next_"))}
+    assert names == known_names
 
 
 def test_each_part_has_a_name() -> None:

@@ -35,7 +35,7 @@ def robot(board: str, sketches: Callable[[str], Path], memory: Path) -> Iterator
 
 @pytest.fixture
 def brokers(request: pytest.FixtureRequest, tmp_path: Path) -> Callable[..., Mosquitto]:
-    """What begins a broker of the test's own; the words are those of `Mosquitto`."""
+    """Return a factory of brokers for a test; the arguments are those of `Mosquitto`."""
 
     def begin(user: str = "", password: str = "", more: str = "") -> Mosquitto:
         mosquitto = Mosquitto(tmp_path, user, password, more)

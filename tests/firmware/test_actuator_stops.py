@@ -1,4 +1,4 @@
-"""What becomes of actuators when a program ends: in the firmware, and as the virtual robot says."""
+"""Actuators at the end of a program: in the firmware, and in the virtual robot."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ WAITS = "SI|LED(TRUE);GRIPPER(90);W(60)"
 SET = ["SET 1 1", "SET 0 90000"]
 
 
-def started(text: str, **how: bool) -> tuple[HostFirmware, Session]:
+def start_program(text: str, **how: bool) -> tuple[HostFirmware, Session]:
     robot = HostFirmware(KIT)
     robot.wait(200)
     session = Session(1, 9600, KIT.fingerprint)
@@ -43,7 +43,7 @@ def message(robot: HostFirmware, session: Session) -> None:
     robot.talk(session, 300)
 
 
-def replaced(robot: HostFirmware, session: Session) -> None:
+def replace_program(robot: HostFirmware, session: Session) -> None:
     assert robot.until(session, session.upload(image_of("SI|W(60)"))) == OK
 
 
@@ -54,17 +54,17 @@ ENDS: dict[str, Callable[[HostFirmware, Session], object]] = {
     "a lost link": lambda robot, session: robot.wait(1200),
     "nobody connected": lambda robot, session: robot.step(flags=8),
     "a stall": lambda robot, session: robot.step(flags=4),
-    "another program": replaced,
+    "another program": replace_program,
 }
 
 
 @pytest.mark.parametrize("end", ENDS)
 def test_what_does_not_come_to_its_own_end_lets_go(end: str) -> None:
-    robot, session = started(WAITS)
+    robot, session = start_program(WAITS)
     ENDS[end](robot, session)
     robot.wait(5)
-    did = [line.split(" ", 1)[1] for line in robot.did]
-    assert [line for line in did if "SET" in line or "ACT" in line] == [*SET, "ACTUATORS OFF"]
+    actions = [line.split(" ", 1)[1] for line in robot.did]
+    assert [line for line in actions if "SET" in line or "ACT" in line] == [*SET, "ACTUATORS OFF"]
 
 
 @pytest.mark.parametrize(("text", "lets_go"), [
@@ -72,11 +72,11 @@ def test_what_does_not_come_to_its_own_end_lets_go(end: str) -> None:
     ("SI|LED(TRUE);GRIPPER(90);X = 0;SHOW(1 / X)", True),
 ])  # fmt: skip
 def test_its_own_end_leaves_them_and_a_fault_does_not(text: str, lets_go: bool) -> None:
-    robot, session = started(text)
+    robot, session = start_program(text)
     robot.talk(session, 500)
     assert ("ACTUATORS OFF" in "".join(robot.did)) == lets_go
     assert any("FINISHED" in line or "FAULTED" in line for line in robot.did)
-    sequence(robot, session)  # a stop reaches a robot that stands, too
+    sequence(robot, session)  # a stop also reaches a robot at rest
     assert "ACTUATORS OFF" in "".join(robot.did)
 
 

@@ -1,4 +1,4 @@
-"""What the sketch does with sensors, buzzer, lamps and servos: seen on a simulated board."""
+"""The sketch's sensors, buzzer, lamps and servos on a simulated board."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 
 from tests.machines.board import HERTZ, MS, Board
-from tests.support.board_states import START, STEADY, WORKSHOP, on_board, pulses, started
+from tests.support.board_states import START, STEADY, WORKSHOP, on_board, pulses, start_board
 from tiniscript import robots
 from tiniscript.robots.profile import Robot
 
@@ -27,10 +27,10 @@ def test_an_echo_on_other_pins_of_a_mega(echo: str) -> None:
     robot = on_board("tinibot", "mega", ("echo = 3", f"echo = {echo}"), ("= 2 ", "= 4 "),
                      ("trigger = 4", "trigger = 20"),
                      ("right_backward = 10", "right_backward = 40"))  # fmt: skip
-    board = started(robot, shown_as_power("DISTANCE"))
+    board = start_board(robot, shown_as_power("DISTANCE"))
     pins = robot.board.sensors[2].pins
     board.echoes(pins["trigger"], pins["echo"], [50 * 2 / 0.0343])
-    board.ran(START + 80)
+    board.run_for(START + 80)
     assert board.motors(START + 75)[0] == f"pwm {50 * 653 >> 8}"
 
 
@@ -39,13 +39,13 @@ def test_an_echo_on_other_pins_of_a_mega(echo: str) -> None:
     ("echo", "group", "mask"), [("14", 1, 2), ("15", 1, 1), ("A8", 2, 0), ("A15", 2, 7)]
 )
 def test_interrupts_that_are_not_simulated(echo: str, group: int, mask: int) -> None:
-    """Port J and K of a Mega: what is on while the sketch listens."""
+    """Port J and K of a Mega: the interrupts that are on while the sketch listens."""
     robot = on_board(
         "tinibot", "mega", ("echo = 3", f'echo = "{echo}"' if "A" in echo else f"echo = {echo}")
     )
-    board = started(robot, shown_as_power("DISTANCE"))
+    board = start_board(robot, shown_as_power("DISTANCE"))
     board.watched |= {PCICR, PCMSK0 + group}
-    board.ran(START + 10)
+    board.run_for(START + 10)
     assert board.register(PCICR, START + 5) == 1 << group
     assert board.register(PCMSK0 + group, START + 5) == 1 << mask
 
@@ -58,10 +58,10 @@ def test_no_echo_is_far_away_and_takes_three_times_25_ms(width_us: int) -> None:
     """A later reading waits until the sensor has lowered its echo."""
     robot = robots.load("tinibot")
     text = "SI|IF(DISTANCE = 400);M(10, 0);ENDIF;W(0.04);IF(DISTANCE < 400);M(20, 0);ENDIF;W(5)"
-    board = started(robot, text)
+    board = start_board(robot, text)
     pins = robot.board.sensors[2].pins
     board.echoes(pins["trigger"], pins["echo"], [width_us] * 3 + [50 * 2 / 0.0343])
-    board.ran(START + 250)
+    board.run_for(START + 250)
     level = f"pwm {10 * 653 >> 8}"
     third = 2 * max(30, 0.46 + width_us / 1000)
     assert board.motors(START + third + 24)[0] == "low"
@@ -81,18 +81,18 @@ def test_no_echo_is_far_away_and_takes_three_times_25_ms(width_us: int) -> None:
 def test_a_voltage_is_a_reading(
     name: str, reading: str, channel: int, millivolts: int, power: float
 ) -> None:
-    board = started(robots.load(name), shown_as_power(reading))
+    board = start_board(robots.load(name), shown_as_power(reading))
     board.analog(channel, millivolts)
-    board.ran(START + 10)
+    board.run_for(START + 10)
     shown = int(board.motors(START + 9)[0].removeprefix("pwm "))
     assert abs(shown - power * 2.55) < 3
 
 
 def is_true(robot: Robot, condition: str, set_up: Callable[[Board], object]) -> bool:
-    """Return what a program finds, which shows it as a power."""
-    board = started(robot, f"SI|IF({condition});M(20, 0);ELSE;M(10, 0);ENDIF;W(5)")
+    """Return the value of a condition, which a program shows as a power."""
+    board = start_board(robot, f"SI|IF({condition});M(20, 0);ELSE;M(10, 0);ENDIF;W(5)")
     set_up(board)
-    board.ran(START + 5)
+    board.run_for(START + 5)
     level = board.motors(START + 4)[0]
     assert level in (f"pwm {20 * 653 >> 8}", f"pwm {10 * 653 >> 8}")
     return level == f"pwm {20 * 653 >> 8}"
@@ -119,7 +119,7 @@ def test_a_threshold_and_thousandths() -> None:
 
 @pytest.mark.parametrize(("sensor", "channel"), [("LINE_L", 2), ("LINE_M", 1), ("LINE_R", 0)])
 def test_a_car_is_over_black_from_250_on(sensor: str, channel: int) -> None:
-    """As ELEGOO's own program has it."""
+    """The threshold is that of ELEGOO's own program."""
     car = robots.load("elegoo4")
     for millivolts, says in ((1180, False), (1260, True)):
         is_black = is_true(car, sensor, lambda board, mv=millivolts: board.analog(channel, mv))  # type: ignore[misc]
@@ -134,7 +134,7 @@ DIM = (
     ),
     ("[body]\n", '[board.sensors.DIM]\ndriver = "analog"\npin = "A2"\n\n[body]\n'),
 )
-# Of every reading how long it took, and how many there were.
+# The time of every reading, and the number of readings.
 READS = "BEGUN_{0} = TIME;X = {1};LONGEST = MAX(LONGEST, TIME - BEGUN_{0});COUNT = COUNT + 1;"
 SEEN_AT_THE_END = """
 WHEN(TIME > 0.5)
@@ -157,7 +157,7 @@ def test_each_task_gets_its_readings_in_time(seed: int) -> None:
     own, *others = tasks[:3]
     text = f"SI|LONGEST = 0;COUNT = 0\n{own}\n"
     text += "".join(f"TASK\n{other}\nEND_TASK\n" for other in others) + SEEN_AT_THE_END
-    board = started(on_board("tinibot", "mega", *DIM), text).ran(START + 530)
+    board = start_board(on_board("tinibot", "mega", *DIM), text).run_for(START + 530)
     longest, count = (int(board.motors(START + 529)[pin].removeprefix("pwm ")) for pin in (0, 3))
     assert 0 < longest <= 3 * 26 and count > 20
 
@@ -175,9 +175,9 @@ def buzzer_of(robot: Robot) -> int:
 @pytest.mark.parametrize("name", ["tinibot", "grabber"])
 def test_a_beep_has_its_frequency_and_its_length(name: str, hertz: int) -> None:
     robot = robots.load(name)
-    board = started(robot, f"SI|BEEP(0.3, {hertz})")
+    board = start_board(robot, f"SI|BEEP(0.3, {hertz})")
     board.watch(buzzer_of(robot))
-    board.ran(START + 290)
+    board.run_for(START + 290)
     edges = board.edges(buzzer_of(robot))
     periods = (len(edges) - 1) // 2
     measured_hertz = HERTZ * periods / (edges[2 * periods] - edges[0])
@@ -186,9 +186,9 @@ def test_a_beep_has_its_frequency_and_its_length(name: str, hertz: int) -> None:
 
 def test_a_beep_of_no_time_ends_the_one_before() -> None:
     robot = on_board("tinibot", "mega")
-    board = started(robot, "SI|BEEP(0.5, 440)\nTASK\nW(0.1);BEEP(0, 440);W(9)\nEND_TASK")
+    board = start_board(robot, "SI|BEEP(0.5, 440)\nTASK\nW(0.1);BEEP(0, 440);W(9)\nEND_TASK")
     board.watch(buzzer_of(robot))
-    board.ran(START + 300)
+    board.run_for(START + 300)
     edges = [cycle / MS - START for cycle in board.edges(buzzer_of(robot))]
     assert 95 < edges[-1] < 103
 
@@ -197,10 +197,10 @@ def test_a_program_that_has_ended_plays_its_tune_and_the_light_says_that_one_cou
     robot = robots.load("tinibot")
     light = robot.board.status_led
     assert light is not None
-    board = started(robot, "SI|F(0.1, 50)")
+    board = start_board(robot, "SI|F(0.1, 50)")
     board.watch(buzzer_of(robot))
     board.watch(light)
-    board.ran(START + 500)
+    board.run_for(START + 500)
     edges = [cycle / MS - START for cycle in board.edges(buzzer_of(robot))]
     assert 99 < edges[0] < 102
     assert 338 < edges[-1] < 342
@@ -212,10 +212,10 @@ def test_a_program_that_has_ended_plays_its_tune_and_the_light_says_that_one_cou
 def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
     """The button starts the program again while the first note of its end sounds."""
     robot = robots.load("tinibot")
-    board = started(robot, "SI|BEEP(0.05, 880);W(0.2)")
+    board = start_board(robot, "SI|BEEP(0.05, 880);W(0.2)")
     board.watch(buzzer_of(robot))
     board.press(START + 255, START + 345 - STEADY)
-    board.ran(START + 590)
+    board.run_for(START + 590)
     edges = [cycle / MS - START for cycle in board.edges(buzzer_of(robot))]
     assert any(255 < edge < 340 for edge in edges), "the tune has begun"
     assert any(350 < edge < 390 for edge in edges), "the program runs again"
@@ -224,12 +224,12 @@ def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
 
 def test_a_servo_and_a_lamp() -> None:
     robot = robots.load("grabber")
-    board = started(
+    board = start_board(
         robot, "SI|GRIPPER(0);LED(TRUE);W(0.1);GRIPPER(90);W(0.1);GRIPPER(9 * 9 * 9);W(0.1)"
     )
     for pin in (11, 30):
         board.watch(pin)
-    board.ran(START + 320)
+    board.run_for(START + 320)
     pulse_list = pulses(board, 11)
     assert pulse_list[0][0] > START
     for after, us in ((25, 600), (125, 1500), (225, 2400)):
@@ -240,12 +240,12 @@ def test_a_servo_and_a_lamp() -> None:
 
 def test_a_fan_and_a_lamp_that_is_on_when_low() -> None:
     robot = on_board("tinibot", "uno", *WORKSHOP)
-    board = started(
+    board = start_board(
         robot, "SI|FAN(-30000);LAMP(TRUE);W(0.1);FAN(0);LAMP(FALSE);W(0.1);FAN(999 * 99)"
     )
     for pin in (9, 19):
         board.watch(pin)
-    board.ran(START + 250)
+    board.run_for(START + 250)
     assert [board.pin(9, START + ms) for ms in (-1, 50, 150, 240)] == [
         "low", "pwm 0", "pwm 128", "pwm 255",
     ]  # fmt: skip
@@ -256,11 +256,11 @@ def test_a_reading_of_the_last_program_is_none_of_the_next() -> None:
     """A program is stopped while it measures; the next one measures again."""
     robot = robots.load("tinibot")
     pins = robot.board.sensors[2].pins
-    board = started(robot, "SI|W(0.05);M(DISTANCE, 0);W(5)")
+    board = start_board(robot, "SI|W(0.05);M(DISTANCE, 0);W(5)")
     board.echoes(pins["trigger"], pins["echo"], [2000, 80 * 2 / 0.0343])
     board.press(START + 51, START + 100)
     board.press(START + 150, START + 200)
-    board.ran(START + 400)
+    board.run_for(START + 400)
     assert board.motors(START + 390)[0] == f"pwm {80 * 653 >> 8}"
 
 
@@ -268,16 +268,16 @@ def test_a_reading_of_the_last_program_is_none_of_the_next() -> None:
 @pytest.mark.parametrize("name", ["tinibot", "liner", "grabber"])
 def test_a_remote_control_is_read_after_the_sensors_of_the_kit(name: str) -> None:
     robot = on_board(name, "mega")
-    board = started(robot, "SI|IF(KEY_DOWN AND NOT KEY_A);M(PAD_X, PAD_Y);ENDIF;W(5)")
-    board.ran(START + 50)
+    board = start_board(robot, "SI|IF(KEY_DOWN AND NOT KEY_A);M(PAD_X, PAD_Y);ENDIF;W(5)")
+    board.run_for(START + 50)
     motors = [motor for motor in board.motors(START + 40) if motor.startswith("pwm")]
     assert motors == [f"pwm {60 * 653 >> 8}", f"pwm {70 * 653 >> 8}"]
 
 
 def test_a_board_without_room_for_a_remote_control_refuses_a_program_that_reads_it() -> None:
     for text, moves in (("SI|M(60, PAD_Y);W(5)", False), ("SI|M(60, 70);W(5)", True)):
-        board = started(robots.load("tinibot"), text)  # an Uno without tasks
-        board.ran(START + 50)
+        board = start_board(robots.load("tinibot"), text)  # an Uno without tasks
+        board.run_for(START + 50)
         assert (f"pwm {60 * 653 >> 8}" in board.motors(START + 40)) == moves
 
 
@@ -290,7 +290,7 @@ def test_interrupts_are_never_off_for_long(name: str) -> None:
         text = text.replace("A = DIS", "GRIPPER(90);A = DIS")
     at = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
     pins = robot.board.sensors[at].pins
-    board = started(robot, text)
+    board = start_board(robot, text)
     board.echoes(pins["trigger"], pins["echo"], [1000])
-    board.ran(START + 200)
+    board.run_for(START + 200)
     assert 0 < board.quiet_us < 25

@@ -1,4 +1,4 @@
-"""What an Uno and a Mega count of their discs' edges, on simulated chips: each, and no glitch.
+"""Edge counts of an Uno and a Mega on simulated chips: every edge, and no glitch.
 
 And how far a tinibot2 goes whose wheels turn discs.
 """
@@ -55,7 +55,7 @@ def pins(robot: Robot) -> tuple[int, int]:
 
 
 def counts(board: Board, ms: float) -> tuple[int, int]:
-    """Return what it has counted until then, from 20 ms on."""
+    """Return the counts at a time, measured from 20 ms on."""
     begun = (board.register(LEFT, 20), board.register(RIGHT, 20))
     then = (board.register(LEFT, ms), board.register(RIGHT, ms))
     return (then[0] - begun[0]) % 256, (then[1] - begun[1]) % 256
@@ -73,7 +73,7 @@ def test_each_edge_of_both_counts(name: str) -> None:
         board.level(30 + 2 * k, right, k % 2 == 0)
     for k in range(6):
         board.level(100 + 65.6 * k, left, k % 2 == 0)
-    board.ran(450)
+    board.run_for(450)
     assert counts(board, 90) == (20, 20)
     assert counts(board, 445) == (26, 20)
 
@@ -83,7 +83,7 @@ def test_each_edge_of_both_counts(name: str) -> None:
 @pytest.mark.parametrize("span_us", [1, 5, 20, 60, 200])
 @pytest.mark.parametrize("is_high", [False, True])
 def test_pulses_that_are_too_short_do_not_count(name: str, span_us: float, is_high: bool) -> None:
-    """Whether the line rests low or high: a motor's brushes do that. Edges between them count."""
+    """Motor brushes cause such pulses on a low or a high line. Edges between them count."""
     robot = robots.load("tinibot2", name)
     board = counting(robot)
     left, _ = pins(robot)
@@ -97,7 +97,7 @@ def test_pulses_that_are_too_short_do_not_count(name: str, span_us: float, is_hi
     board.level(at_ms + 5, left, not is_high)
     for k in range(3):  # an edge that bounces
         board.level(at_ms + 12 + 0.03 * k, left, is_high == (k % 2 == 0))
-    board.ran(at_ms + 40)
+    board.run_for(at_ms + 40)
     assert counts(board, at_ms + 35) == (is_high + 2, 0)
 
 
@@ -116,7 +116,7 @@ def test_a_line_that_glitches_without_end_counts_again_afterwards(
     for k in range(16):
         board.level(30 + 2.3 * k, right, k % 2 == 0)
         board.level(80 + 2.3 * k, left, k % 2 == 0)
-    board.ran(140)
+    board.run_for(140)
     assert counts(board, 135) == (16, 16)
 
 
@@ -132,10 +132,10 @@ def test_two_channels_count_back(name: str) -> None:
     for k in range(16):  # four holes ahead
         for pin, level in zip((a, b), states[k % 4], strict=True):
             board.level(30 + 2 * k, pin, level)
-    for k in range(10):  # and back
+    for k in range(10):  # and back again
         for pin, level in zip((a, b), states[(2 - k) % 4], strict=True):
             board.level(100 + 2 * k, pin, level)
-    board.ran(150)
+    board.run_for(150)
     assert counts(board, 90) == (8, 0)
     assert counts(board, 145) == (3, 0)
 
@@ -166,22 +166,22 @@ WHEN(X < 3 AND TIME > 0.35 + X * 0.65); X = X + 1; M(0, 0); W(0.4); END_WHEN"""
 def test_it_goes_straight_after_a_wheel_was_held(sketches: Callable[[str], Path]) -> None:
     """The fault is that of the wheel. The next program is as straight as the first one."""
     robot = Driven(sketches(ENVIRONMENT), 1, (107.5, 92.5), Roughness(0.005))
-    held = robot.wheels.wheels[1]
+    held_wheel = robot.wheels.wheels[1]
     with robot.uno:
-        with mock.patch.object(held, "step", lambda has_two: 0.0):
+        with mock.patch.object(held_wheel, "step", lambda has_two: 0.0):
             assert robot.drive("F(60 CM, 80)") == "FAULT"
         assert robot.until(robot.session.clear()) == OK
-        before = robot.pose
+        pose_before = robot.pose
         assert robot.drive("F(100 CM, 80)") == "DONE"
         pose = robot.pose
-    along = math.radians(before.heading)
-    x, y = pose.x_cm - before.x_cm, pose.y_cm - before.y_cm
+    along = math.radians(pose_before.heading)
+    x, y = pose.x_cm - pose_before.x_cm, pose.y_cm - pose_before.y_cm
     assert abs(x * math.cos(along) + y * math.sin(along) - 100) <= 1.5
     assert abs(y * math.cos(along) - x * math.sin(along)) <= 2.4
 
 
 def flicker(uno: Uno, hertz: int, milliseconds: int, run_ms: Callable[[int], None]) -> None:
-    """Let both discs change as fast as is said."""
+    """Toggle both discs at this rate."""
     half = CYCLES_PER_MS * 1000 // (2 * hertz)
     at, level = uno.cycle, False
     for _ in range(milliseconds):
@@ -210,16 +210,20 @@ def test_a_typed_stop_gets_through_while_both_discs_flicker(
         image = image_of(program, ROBOT.kit)
         assert robot.until(robot.session.upload(image, is_detached=True)) == OK
         robot.run(50)
-        begun = len(uno.events)
+        event_count_before = len(uno.events)
         pending_request = robot.session.ping()
         flicker(uno, hertz, 350, robot.run)  # wheels that show no edge are stuck later
         assert pending_request.outcome and pending_request.outcome.status == OK
-        assert not any(event.kind in ("reset", "watchdog") for event in uno.events[begun:])
+        assert not any(
+            event.kind in ("reset", "watchdog") for event in uno.events[event_count_before:]
+        )
         assert [uno.pins[pin].state for pin in MOTORS] == ["pwm", "pwm"]
-        begun = len(uno.events)
+        event_count_before = len(uno.events)
         uno.send(b"STOP\r")
         flicker(uno, hertz, 20, uno.run_ms)
-        ended = [event.cycle for event in uno.events[begun:] if event.kind == "received"][-1]
+        ended = [
+            event.cycle for event in uno.events[event_count_before:] if event.kind == "received"
+        ][-1]
         for motor in MOTORS:
             change = uno.pins[motor]
             assert change.state == "low" and 0 < change.cycle - ended < CYCLES_PER_MS

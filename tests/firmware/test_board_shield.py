@@ -1,4 +1,4 @@
-"""Motors behind a shield with a 74HC595: what the sketch writes, read as the shield reads it.
+"""Motors on a shield with a 74HC595: the sketch's output as the shield reads it.
 
 `tests/machines/shift_register.py` is the part; what of each L293D turns its motor is here.
 """
@@ -12,13 +12,13 @@ import pytest
 
 from tests.machines.board import CONTROLS, HERTZ, MS, PORTS, Board
 from tests.machines.shift_register import HOLD_NS, ShiftRegister, WrongTiming
-from tests.support.board_states import BACK, FORWARD, MOVES, OFF, START, STOPS, TURN, started
+from tests.support.board_states import BACK, FORWARD, MOVES, OFF, START, STOPS, TURN, start_board
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
 
-NS = 1e9 / HERTZ  # of a cycle
-# Of the schematic of Adafruit's shield: its outputs at the inputs of each half L293D, and its PWM.
+NS = 1e9 / HERTZ  # nanoseconds in a cycle
+# From the schematic of Adafruit's shield: outputs wired to each half L293D, and its PWM.
 MOTORS = {"M1": (2, 3, 11), "M2": (1, 4, 3), "M3": (5, 7, 6), "M4": (0, 6, 5)}
 WIRES = {"latch": 12, "enable": 7, "data": 8, "clock": 4}
 SIDES = {"two": ("M3", "M4"), "four": ("M1 M2", "M3 M4"), "crossed": ("M2 M4", "M1 M3")}
@@ -67,7 +67,7 @@ def shield(left: str, right: str, chip: str = "uno") -> Robot:
 
 
 class Seen(NamedTuple):
-    """What the motors do from a cycle on: `M1` forward with 204 is `{"M1": 204}`."""
+    """The state of the motors from a cycle on: `M1` forward with 204 is `{"M1": 204}`."""
 
     cycle: int
     powers: dict[str, int]
@@ -102,7 +102,7 @@ def seen_by_the_motors(board: Board) -> list[Seen]:
 
 
 def level_of(board: Board, pin: int, values: dict[int, int]) -> int:
-    """Return what a PWM pin gives, 255 of 255 where it is simply high."""
+    """Return the level of a PWM pin; 255 if it is constantly high."""
     timer, channel = board.avr.compare_by_pin[pin]
     connection = {"a": 0x80, "b": 0x20, "c": 0x08}[channel]
     if values.get(CONTROLS[timer], 0) & connection:
@@ -125,14 +125,14 @@ def both(sides: tuple[str, str], left: int, right: int) -> dict[str, int]:
 @pytest.mark.parametrize("name", SIDES)
 def test_the_motors_of_a_side_do_what_the_side_does(name: str, chip: str) -> None:
     sides = SIDES[name]
-    board = started(shield(*sides, chip), MOVES).ran(START + OFF + 50)
+    board = start_board(shield(*sides, chip), MOVES).run_for(START + OFF + 50)
     states = seen_by_the_motors(board)
     assert at(states, START - 1) == {}
     assert at(states, START + FORWARD) == both(sides, 204, 204)
     assert at(states, START + BACK) == both(sides, -102, -102)
     assert at(states, START + TURN) == both(sides, 127, -255)
     assert at(states, START + OFF) == {}
-    assert board.quiet_us < 40  # half of what two bytes take at 115,200 baud
+    assert board.quiet_us < 40  # half the time of two bytes at 115,200 baud
 
 
 @pytest.mark.sampled("seed", keep=2)
@@ -144,7 +144,7 @@ def test_no_motor_turns_another_way_than_its_side(seed: int) -> None:
              for _ in range(12)]  # fmt: skip
     text = "SI|" + ";".join(f"M({left}, {right});W(0.02)" for left, right in moves)
     sides = SIDES["crossed"]
-    states = seen_by_the_motors(started(shield(*sides), text).ran(START + 300))
+    states = seen_by_the_motors(start_board(shield(*sides), text).run_for(START + 300))
     left_of = set(sides[0].split())
     previous = (0, 0)
     for number, (left, right) in enumerate(moves):
@@ -166,11 +166,11 @@ def test_no_motor_turns_another_way_than_its_side(seed: int) -> None:
 def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     robot = shield(*SIDES["four"], chip)
     more = STOPS if chip == "uno" else ""
-    board = started(robot, "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);END_LOOP", more)
+    board = start_board(robot, "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);END_LOOP", more)
     if chip == "uno":
         board.level(START + 50.123, 19, True)
     board.press(400, 450)
-    board.ran(430)
+    board.run_for(430)
     states = seen_by_the_motors(board)
     assert all(state.cycle >= (START - 1) * MS for state in states if state.powers)
     stopped = START + 50.123 + 0.02 if chip == "uno" else 402
@@ -210,9 +210,9 @@ def test_the_part_shows_eight_bits_at_its_latch_and_not_before() -> None:
 
 
 def messages_of(robot: str) -> list[str]:
-    with pytest.raises(ProfileRefused) as caught:
+    with pytest.raises(ProfileRefused) as exception_info:
         read(robot, "test")
-    return describe(caught.value, "en")
+    return describe(exception_info.value, "en")
 
 
 def test_what_takes_the_shields_pins_is_named() -> None:

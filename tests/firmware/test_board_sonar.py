@@ -1,4 +1,4 @@
-"""When a distance sensor pings, and what it hears: seen on a simulated board, with a bad wire."""
+"""The pings and echoes of a distance sensor on a simulated board, with a bad wire."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from tests.machines.board import HERTZ, MS, PORTS, Board
-from tests.support.board_states import START, on_board, started
+from tests.support.board_states import START, on_board, start_board
 from tests.support.sonar import (
     US_PER_CM,
     approaching_obstacle,
@@ -20,20 +20,20 @@ from tiniscript.robots.profile import Robot
 
 SPACING_MS, FRESH_MS = 30.0, 60.0
 FIRST = 3  # samples of a run's first value
-DELAY_US = 460  # from the trigger to the echo
+DELAY_US = 460  # time from the trigger to the echo
 
 
 def looking(text: str, *distances_cm: float, robot: Robot | None = None, more: str = "") -> Board:
     """The distances of its pings, one after the other; the last one stays."""
     robot = robot or robots.load("tinibot")
     trigger, echo = sonar_pins(robot)
-    board = started(robot, text, more)
+    board = start_board(robot, text, more)
     board.watch(trigger)
     board.echoes(trigger, echo, [distance_cm * US_PER_CM for distance_cm in distances_cm])
     return board
 
 
-def shown(board: Board, ms: float) -> int:
+def read_power_cm(board: Board, ms: float) -> int:
     """Return the whole centimetres that the power of the left motor stands for."""
     level = board.motors(ms)[0]
     return 0 if level == "low" else round(int(level.removeprefix("pwm ")) / 2.55)
@@ -48,10 +48,10 @@ def test_pings_leave_30_ms_apart_and_hear_how_far_it_is(name: str, distance_cm: 
     robot = robots.load(name)
     at = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
     trigger, echo = sonar_pins(robot, at)
-    board = started(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);END_LOOP")
+    board = start_board(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);END_LOOP")
     board.watch(trigger)
     board.echoes(trigger, echo, [distance_cm * US_PER_CM])
-    board.ran(START + 400)
+    board.run_for(START + 400)
     gaps = [b - a for a, b in pairwise(ping_starts_ms(board, trigger))]
     assert len(gaps) >= 10
     assert min(gaps) >= SPACING_MS
@@ -64,19 +64,19 @@ def test_pings_leave_30_ms_apart_and_hear_how_far_it_is(name: str, distance_cm: 
 
 def test_a_reading_is_used_again_until_the_next_ping_may_leave() -> None:
     text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.01);END_LOOP"
-    board = looking(text, *[20] * FIRST, 60).ran(START + 160)
+    board = looking(text, *[20] * FIRST, 60).run_for(START + 160)
     first, second, third = ping_starts_ms(board, sonar_pins(board.robot)[0])[FIRST - 1 : FIRST + 2]
     assert SPACING_MS <= second - first < SPACING_MS + 11  # the program asks every 10 ms
-    assert shown(board, first + 5) == shown(board, second) == 20
+    assert read_power_cm(board, first + 5) == read_power_cm(board, second) == 20
     assert SPACING_MS <= third - second < SPACING_MS + 2, "it waits for what it has asked"
-    assert shown(board, third) == 20
-    assert shown(board, third + 5) == 60
+    assert read_power_cm(board, third) == 20
+    assert read_power_cm(board, third + 5) == 60
 
 
 def test_until_looks_again_every_40_ms() -> None:
-    """It checks every 20 ms; in between the last reading is fresh."""
+    """The check runs every 20 ms, with a fresh reading every second time."""
     text = "SI|F(1, 20)UNTIL(DISTANCE < 10)"
-    board = looking(text, *[50] * FIRST, 50, 8).ran(START + 250)
+    board = looking(text, *[50] * FIRST, 50, 8).run_for(START + 250)
     left = [ms - START for ms in ping_starts_ms(board, sonar_pins(board.robot)[0])]
     assert [round(ms / 10) for ms in left] == [0, 3, 6, 10, 14, 17]
     assert board.motors(START + 173)[0] == "pwm 51"
@@ -100,20 +100,20 @@ extern "C" void test_turn() {
 @pytest.mark.sampled("after_ms")
 @pytest.mark.parametrize("after_ms", [0.0, 0.02, 0.04, 0.06, 0.3, 1.0, 5.0, 20.0])
 def test_a_start_forgets_readings_but_not_the_spacing(after_ms: float) -> None:
-    """At any time of a measurement: the next reading is one of its own ping, 30 ms later."""
+    """At any time of a measurement, the next reading is from a new ping 30 ms later."""
     robot = robots.load("tinibot")
     trigger, _ = sonar_pins(robot)
     text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.002);S;END_LOOP"
-    plain = looking(text, 20, 70).ran(START + 40)
+    plain = looking(text, 20, 70).run_for(START + 40)
     left = plain.edges(trigger)[0] / MS
     board = looking(text, 20, 70, robot=robot, more=AGAIN)
     board.level(left + after_ms, 19, True)
-    board.ran(START + 160)
+    board.run_for(START + 160)
     first, second, *others = ping_starts_ms(board, trigger)
     assert SPACING_MS <= second - first < SPACING_MS + 2
-    driven = driven_ms(board, 1)
-    assert not [ms for ms in driven if left + after_ms + 0.5 < ms < others[1] + 3]
-    assert {shown(board, ms) for ms in driven if ms > second} == {70}
+    drive_starts_ms = driven_ms(board, 1)
+    assert not [ms for ms in drive_starts_ms if left + after_ms + 0.5 < ms < others[1] + 3]
+    assert {read_power_cm(board, ms) for ms in drive_starts_ms if ms > second} == {70}
 
 
 TWO = (
@@ -138,26 +138,24 @@ TWO = (
 def test_two_sensors_never_hear_each_other(text: str) -> None:
     """Pings of both keep the distance, none is forgotten, and no reading is older than 60 ms."""
     robot = on_board("tinibot", "uno", *TWO)
-    board = started(robot, text)
-    rows = [(3, range(20, 60)), (0, range(60, 100))]  # what comes nearer with each ping
+    board = start_board(robot, text)
+    rows = [(3, range(20, 60)), (0, range(60, 100))]  # obstacles that come nearer with each ping
     for number, distances in rows:
         trigger, echo = sonar_pins(robot, number)
         board.watch(trigger)
         board.echoes(trigger, echo, [distance * US_PER_CM for distance in distances])
-    board.ran(START + 600)
+    board.run_for(START + 600)
     starts_ms = [ping_starts_ms(board, sonar_pins(robot, number)[0]) for number, _ in rows]
     both = sorted(ms for times in starts_ms for ms in times)
     assert min(b - a for a, b in pairwise(both)) >= SPACING_MS
     assert min(len(times) for times in starts_ms) >= 4
-    driven = driven_ms(board, 2)
-    assert len(driven) > 10
+    drive_starts_ms = driven_ms(board, 2)
+    assert len(drive_starts_ms) > 10
     for motor, (times, (_, distances)) in enumerate(zip(starts_ms, rows, strict=True)):
-        for ms in driven:
+        for ms in drive_starts_ms:
             level = board.motors(ms)[3 * motor]
             cm = round(int(level.removeprefix("pwm ")) / 2.55)
-            if (
-                cm != distances[1]
-            ):  # the middle one of the first three, each of which takes its time
+            if cm != distances[1]:  # the median of the first three, each of which takes time
                 assert 0 < ms - times[cm - distances[0]] <= FRESH_MS
 
 
@@ -165,7 +163,7 @@ def test_two_sensors_never_hear_each_other(text: str) -> None:
 
 GLITCH_US = 30.0
 ECHO_US = 50 * US_PER_CM
-EDGE_US = 100.0  # so near to an end of the echo a glitch may be taken for it
+EDGE_US = 100.0  # distance from an edge within which a glitch may count as the edge
 PHASES = [
     *range(5, 440, 29),  # before the echo
     *(DELAY_US + at for at in (-60, -31, -20, -5, 5, 20, 40, 71, 95, 130)),
@@ -175,28 +173,30 @@ PHASES = [
 ]
 
 
-def glitched(width_us: float) -> list[tuple[int, int]]:
-    """Return each phase at which the wire says for a moment the opposite, and what is read.
+def find_glitches(width_us: float) -> list[tuple[int, int]]:
+    """Return each phase of a short glitch on the wire, and the reading.
 
     The sensor itself does it, so phases are to the cycle: a glitch moves the pings after it by
     some us, and its end must not be taken for a line that stays high after the echo.
     """
     robot = robots.load("tinibot")
     trigger, echo = sonar_pins(robot)
-    board = started(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.032);END_LOOP")
+    board = start_board(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.032);END_LOOP")
     board.watch(trigger)
     rows = [(0.0, 0.0)] * FIRST + [(phase, width_us) for phase in PHASES]
     board.echoes(trigger, echo, [ECHO_US] * (len(rows) + 1), rows)
-    times = ping_starts_ms(board.ran(START + 33 * len(rows)), trigger)[FIRST:]
+    times = ping_starts_ms(board.run_for(START + 33 * len(rows)), trigger)[FIRST:]
     gaps = [b - a for a, b in pairwise(times)]
     assert max(gaps) < 33  # no reading came late
-    return [(phase, shown(board, ms + 31)) for ms, phase in zip(times, PHASES, strict=False)]
+    return [
+        (phase, read_power_cm(board, ms + 31)) for ms, phase in zip(times, PHASES, strict=False)
+    ]
 
 
 @pytest.mark.sampled("width_us")
 @pytest.mark.parametrize("width_us", [2.0, 10.0, GLITCH_US, 80.0])
 def test_a_glitch_at_any_phase_is_no_echo(width_us: float) -> None:
-    measurements = glitched(width_us)
+    measurements = find_glitches(width_us)
     assert len(measurements) == len(PHASES)
     for phase, cm in measurements:
         nearest = min(
@@ -215,43 +215,43 @@ def test_a_glitch_without_an_echo_is_far_away() -> None:
     for ms in (1.0, 3.0, 10.0, 20.0):
         board.level(START + ms, echo, True)
         board.level(START + ms + 0.06, echo, False)
-    board.ran(START + 110)
-    assert shown(board, START + 100) == 10
+    board.run_for(START + 110)
+    assert read_power_cm(board, START + 100) == 10
 
 
 # -- an echo that stays high
 
-HUNG_MS = 300.0  # from the ping on
+HUNG_MS = 300.0  # time from the ping
 
 
 @pytest.mark.sampled("high_ms")
 @pytest.mark.parametrize("high_ms", [38.0, 70.0, 200.0])
 def test_a_healthy_sensor_that_hears_nothing_is_far_away(high_ms: float) -> None:
-    """It holds its echo for so long, and is asked again when it has lowered it: never 0."""
+    """The echo line stays high for this time, and the next ping follows its fall: never 0."""
     text = "SI|LOOP(FOREVER);IF(DISTANCE = 400);M(10, 0);ELSE;M(90, 0);ENDIF;END_LOOP"
     robot = robots.load("tinibot")
-    board = looking(text, high_ms * 1000 / US_PER_CM, robot=robot).ran(START + 1000)
-    assert shown(board, START + 3 * high_ms) == 10
-    assert {shown(board, ms) for ms in driven_ms(board, 1)} == {10}
+    board = looking(text, high_ms * 1000 / US_PER_CM, robot=robot).run_for(START + 1000)
+    assert read_power_cm(board, START + 3 * high_ms) == 10
+    assert {read_power_cm(board, ms) for ms in driven_ms(board, 1)} == {10}
     assert len(ping_starts_ms(board, sonar_pins(robot)[0])) >= 5
 
 
 @pytest.mark.sampled("chip")
 @pytest.mark.parametrize("chip", ["uno", "mega"])
 def test_an_echo_that_stays_high_is_read_as_0_until_it_answers(chip: str) -> None:
-    """So who asks `DISTANCE < 15` stops. It pulls the echo low for a moment, again and again."""
+    """Therefore `DISTANCE < 15` stops. The board pulls the echo low repeatedly."""
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
     robot = on_board("tinibot", chip)
     echo = sonar_pins(robot)[1]
     board = looking(text, *[50] * FIRST, 1_000_000 / US_PER_CM, 50, robot=robot)
     board.watch(echo)
-    board.ran(START + 1300)
+    board.run_for(START + 1300)
     hangs = ping_starts_ms(board, sonar_pins(robot)[0])[FIRST]
-    assert shown(board, hangs) == 10
-    assert shown(board, hangs + HUNG_MS - 1) == 10, "it may be one that hears nothing"
-    assert shown(board, hangs + HUNG_MS + 35) == 90
-    assert shown(board, hangs + 990) == 90
-    assert shown(board, hangs + 1100) == 10, "it answers again"
+    assert read_power_cm(board, hangs) == 10
+    assert read_power_cm(board, hangs + HUNG_MS - 1) == 10, "it may be one that hears nothing"
+    assert read_power_cm(board, hangs + HUNG_MS + 35) == 90
+    assert read_power_cm(board, hangs + 990) == 90
+    assert read_power_cm(board, hangs + 1100) == 10, "it answers again"
     port, bit = board.bit(echo)
     pulled = [change.cycle / MS for change in board.changes
               if change.address == PORTS[port] - 1 and change.value >> bit & 1]  # fmt: skip
@@ -267,8 +267,8 @@ def test_a_line_that_is_high_for_a_moment_only_is_no_hung_sensor() -> None:
     for number in range(200):
         board.level(START + 400 + 3 * number, sonar_pins(robot)[1], True)
         board.level(START + 401.5 + 3 * number, sonar_pins(robot)[1], False)
-    board.ran(START + 1200)
-    assert {shown(board, ms) for ms in driven_ms(board, 1)} == {10}
+    board.run_for(START + 1200)
+    assert {read_power_cm(board, ms) for ms in driven_ms(board, 1)} == {10}
 
 
 # -- a wrong sample
@@ -278,9 +278,9 @@ def test_a_line_that_is_high_for_a_moment_only_is_no_hung_sensor() -> None:
 @pytest.mark.parametrize("seed", range(12))
 def test_one_wrong_sample_in_fifty_is_never_a_reading(seed: int) -> None:
     """Whenever it comes, at the first ping of a run too: a reading is off by 20 % at most."""
-    true, heard = approaching_obstacle(seed, 100)
-    board = looking("SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP", *heard)
-    times = ping_starts_ms(board.ran(START + 2900), sonar_pins(board.robot)[0])
+    true, heard_cm = approaching_obstacle(seed, 100)
+    board = looking("SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP", *heard_cm)
+    times = ping_starts_ms(board.run_for(START + 2900), sonar_pins(board.robot)[0])
     assert len(times) > 90
     readings = driven_ms(board, 1)
     assert len(readings) > 60
@@ -288,24 +288,24 @@ def test_one_wrong_sample_in_fifty_is_never_a_reading(seed: int) -> None:
         number = sum(sent < ms for sent in times) - 1
         cm = 2 * int(board.motors(ms)[0].removeprefix("pwm ")) / 2.55
         most = max(4, 0.2 * true[number] + 3)
-        assert abs(cm - true[number]) < most, (number, heard[number - 2 : number + 1])
+        assert abs(cm - true[number]) < most, (number, heard_cm[number - 2 : number + 1])
 
 
 @pytest.mark.sampled("number", keep=2)
 @pytest.mark.parametrize("wrong_cm", [3, 400])
 @pytest.mark.parametrize("number", range(FIRST))
 def test_a_first_value_is_the_middle_of_three(number: int, wrong_cm: float) -> None:
-    heard: list[float] = [50] * (FIRST + 1)
-    heard[number] = wrong_cm
-    board = looking("SI|LOOP(FOREVER);M(DISTANCE / 10, 0);END_LOOP", *heard).ran(START + 200)
-    assert {shown(board, ms) for ms in driven_ms(board, 1)} == {5}
+    heard_cm: list[float] = [50] * (FIRST + 1)
+    heard_cm[number] = wrong_cm
+    board = looking("SI|LOOP(FOREVER);M(DISTANCE / 10, 0);END_LOOP", *heard_cm).run_for(START + 200)
+    assert {read_power_cm(board, ms) for ms in driven_ms(board, 1)} == {5}
 
 
 @pytest.mark.parametrize("before_cm", [400, 100])
 def test_what_is_suddenly_there_takes_a_second_ping(before_cm: float) -> None:
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
-    board = looking(text, *[before_cm] * 10, 8).ran(START + 500)
+    board = looking(text, *[before_cm] * 10, 8).run_for(START + 500)
     comes, confirmed = ping_starts_ms(board, sonar_pins(board.robot)[0])[10:12]
-    assert shown(board, confirmed) == 10
-    assert shown(board, confirmed + 2) == 90
+    assert read_power_cm(board, confirmed) == 10
+    assert read_power_cm(board, confirmed + 2) == 90
     assert confirmed - comes < SPACING_MS + 2

@@ -1,11 +1,11 @@
-"""What a stop does with actuators: seen on a simulated board, from the button to the pins."""
+"""The effect of a stop on actuators on a simulated board, from the button to the pins."""
 
 from __future__ import annotations
 
 import pytest
 
 from tests.machines.board import MS, Board
-from tests.support.board_states import START, STEADY, STOPS, WORKSHOP, on_board, pulses, started
+from tests.support.board_states import START, STEADY, STOPS, WORKSHOP, on_board, pulses, start_board
 from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import Robot
 
@@ -20,18 +20,18 @@ def grabber(holds: bool = False) -> Robot:
 
 
 def busy(robot: Robot, text: str, more: str = "") -> Board:
-    board = started(robot, text, more)
+    board = start_board(robot, text, more)
     board.watch(GRIPPER)
     board.watch(LED)
     return board
 
 
 def interrupt(code: str) -> str:
-    """Return what is done when the wire changes, instead of what a stop of the link does."""
+    """Return code that replaces the interrupt of the stop wire."""
     bit = AVRS["mega"].interrupt_by_pin[WIRE].bit
     text = STOPS.replace("1 << 1", "1 << 0").replace("PCMSK1 = 1 << 5", f"PCMSK0 = 1 << {bit}")
-    before = next(line for line in text.splitlines() if line.startswith("ISR"))
-    return text.replace(before, code)
+    next_before = next(line for line in text.splitlines() if line.startswith("ISR"))
+    return text.replace(next_before, code)
 
 
 def pulses_from(board: Board, ms: float) -> int:
@@ -44,7 +44,7 @@ def test_a_stop_turns_actuators_off(holds: bool) -> None:
     """A lamp in any case; a servo gets no more pulses, unless its profile says that it holds."""
     board = busy(grabber(holds), "SI|GRIPPER(90);LED(TRUE);W(5)")
     board.press(START + 105, START + 300)
-    board.ran(START + 280)
+    board.run_for(START + 280)
     assert board.pin(LED, START + 104) == "high"
     assert board.pin(LED, START + 106) == "low"
     assert pulses_from(board, START) >= 5
@@ -56,7 +56,7 @@ def test_what_was_turned_off_stays_off_until_a_program_sets_it() -> None:
     board = busy(grabber(), "SI|W(0.1);GRIPPER(90);LED(TRUE);W(5)")
     board.press(START + 150, START + 200)
     board.press(START + 300, START + 400 - STEADY)
-    board.ran(START + 600)
+    board.run_for(START + 600)
     assert board.pin(LED, START + 140) == "high"
     for ms in (152, 299, 399, 450, 498):
         assert board.pin(LED, START + ms) == "low"
@@ -71,7 +71,7 @@ def test_a_program_that_is_being_stopped_sets_nothing() -> None:
     stop = "ISR(PCINT0_vect) { tiniscript::motors_stop(); }"
     board = busy(grabber(), "SI|LOOP(FOREVER);LED(TRUE);LED(FALSE);END_LOOP", interrupt(stop))
     board.level(START + 50.123, WIRE, True)
-    board.ran(START + 80)
+    board.run_for(START + 80)
     edges = [cycle / MS - START for cycle in board.edges(LED)]
     assert [at for at in edges if at < 50.1]
     assert not [at for at in edges if at > 50.3]
@@ -80,10 +80,10 @@ def test_a_program_that_is_being_stopped_sets_nothing() -> None:
 @pytest.mark.sampled("holds")
 @pytest.mark.parametrize("holds", [False, True])
 def test_a_main_loop_that_hangs_lets_everything_go(holds: bool) -> None:
-    """What a profile holds, too: nobody looks after it any more."""
+    """This includes outputs that a profile holds, because nothing controls them any more."""
     board = busy(grabber(holds), "SI|GRIPPER(90);LED(TRUE);W(5)", interrupt(HANGS))
     board.level(START + 50, WIRE, True)
-    board.ran(START + 170)
+    board.run_for(START + 170)
     assert board.pin(LED, START + 140) == "high"
     assert board.pin(LED, START + 160) == "low"
     assert pulses_from(board, START + 60) >= 4
@@ -91,10 +91,10 @@ def test_a_main_loop_that_hangs_lets_everything_go(holds: bool) -> None:
 
 
 def test_a_stop_turns_a_fan_and_a_lamp_off_that_is_on_when_low() -> None:
-    board = started(on_board("tinibot", "uno", *WORKSHOP), "SI|FAN(80);LAMP(TRUE);W(5)")
+    board = start_board(on_board("tinibot", "uno", *WORKSHOP), "SI|FAN(80);LAMP(TRUE);W(5)")
     for pin in (9, 19):
         board.watch(pin)
     board.press(START + 100, START + 200)
-    board.ran(START + 150)
+    board.run_for(START + 150)
     assert [board.pin(9, START + ms) for ms in (90, 101)] == ["pwm 128", "low"]
     assert [board.pin(19, START + ms) for ms in (90, 101)] == ["low", "high"]

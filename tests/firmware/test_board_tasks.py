@@ -15,9 +15,7 @@ from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 AWAY = (ROOT / "examples" / "away.ts").read_text(encoding="utf-8")
-LOOK_MS = (
-    90.0  # until a WHEN has seen what comes near: 20 ms, and an echo 30 ms after the one before
-)
+LOOK_MS = 90.0  # time for a WHEN to notice: 20 ms, plus an echo 30 ms after the previous one
 BUSY = "F(FOREVER, 60);" + "TASK;X = 0;LOOP(FOREVER);X = X + 1;END_LOOP;END_TASK;" * 4
 STOP = bytes(8)
 STOP_ZEROS = (
@@ -48,8 +46,8 @@ def test_while_four_tasks_count_the_clock_goes_on(robot: Uno) -> None:
     )
 
 
-def driven(robot: Uno, since: int) -> list[Setting]:
-    """Return how the motors have driven since a cycle, without the time in which they stand."""
+def list_settings(robot: Uno, since: int) -> list[Setting]:
+    """Return the motor settings since a cycle, without those of standing."""
     return [setting for setting in motor_settings(robot, since) if setting[1:] != (0, 0)]
 
 
@@ -57,18 +55,18 @@ def driven(robot: Uno, since: int) -> list[Setting]:
 def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
     """Each time: and what has gone in the meantime is driven on to at once."""
     robot.sonar("trigger", "echo", 80)
-    wired = computer(robot)
-    send(wired, AWAY, is_detached=True)
-    wired.run(500)
+    wired_uno = computer(robot)
+    send(wired_uno, AWAY, is_detached=True)
+    wired_uno.run(500)
     assert states(robot) == FORWARD
     for wait_ms in (0, 7):
-        wired.run(wait_ms)
+        wired_uno.run(wait_ms)
         near = robot.cycle
         robot.sonar("trigger", "echo", 10)
-        wired.run(700)
+        wired_uno.run(700)
         robot.sonar("trigger", "echo", 80)
-        wired.run(800)
-        settings = driven(robot, near)
+        wired_uno.run(800)
+        settings = list_settings(robot, near)
         assert [setting[1:] for setting in settings] == [(-60, -60), (60, -60), (60, 60)]
         begins, turns, goes_on = (setting.ms for setting in settings)
         assert begins < LOOK_MS and abs(turns - begins - 500) < OFF_MS
@@ -78,12 +76,12 @@ def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
 @each_board
 def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
     robot.sonar("trigger", "echo", None)
-    wired = computer(robot)
-    heard = len(robot.received_bytes)
-    send(wired, "LOOP(4);F(0.2, 60);B(0.2, 60);END_LOOP;WHEN(DISTANCE < 15);S;END_WHEN",
+    wired_uno = computer(robot)
+    heard_count = len(robot.received_bytes)
+    send(wired_uno, "LOOP(4);F(0.2, 60);B(0.2, 60);END_LOOP;WHEN(DISTANCE < 15);S;END_WHEN",
          is_detached=True)  # fmt: skip
-    wired.run(2000)
-    settings = driven(robot, last_zero(robot, heard))
+    wired_uno.run(2000)
+    settings = list_settings(robot, last_zero(robot, heard_count))
     assert [setting[1:] for setting in settings] == [(60, 60), (-60, -60)] * 4
     for number, setting in enumerate(settings):
         assert abs(setting.ms - 200 * number) < OFF_MS, settings
@@ -96,60 +94,63 @@ def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
 def test_an_echo_from_before_an_interruption_ends_no_move(later_ms: int, robot: Uno) -> None:
     """A ping is under way when a WHEN takes the motors: after that a new one is heard."""
     robot.sonar("trigger", "echo", 350)
-    wired = computer(robot)
+    wired_uno = computer(robot)
     backing_when = f"WHEN(LIGHT_R + LIGHT_L > 1000);B({later_ms / 1000}, 60);END_WHEN"
-    send(wired, f"F(FOREVER, 60)UNTIL(DISTANCE < 300);S;{backing_when}", is_detached=True)
-    wired.run(300)
+    send(wired_uno, f"F(FOREVER, 60)UNTIL(DISTANCE < 300);S;{backing_when}", is_detached=True)
+    wired_uno.run(300)
     robot.run_until("trigger", "low", 60)
     robot.run_ms(35)
-    robot.sonar("trigger", "echo", 250)  # of the next ping
+    robot.sonar("trigger", "echo", 250)  # distance of the next ping
     robot.analog("A0", 1023)
-    begun = robot.run_until("trigger", "low", 60)
-    wired.run(6)
-    assert driven(robot, begun.cycle)[0][1:] == (-60, -60)
+    begun_pin_change = robot.run_until("trigger", "low", 60)
+    wired_uno.run(6)
+    assert list_settings(robot, begun_pin_change.cycle)[0][1:] == (-60, -60)
     robot.sonar("trigger", "echo", 350)
     robot.analog("A0", 0)
-    wired.run(later_ms + 200)
-    assert [setting[1:] for setting in driven(robot, begun.cycle)] == [(-60, -60), (60, 60)]
+    wired_uno.run(later_ms + 200)
+    assert [setting[1:] for setting in list_settings(robot, begun_pin_change.cycle)] == [
+        (-60, -60),
+        (60, 60),
+    ]
     assert states(robot) == FORWARD
 
 
 @each_board
 def test_a_stop_in_the_middle_of_busy_tasks(robot: Uno) -> None:
-    """It is at the pins as soon as in any program; then nothing starts again."""
-    wired = computer(robot)
-    send(wired, BUSY, is_detached=True)
-    wired.run(50)
+    """It reaches the pins as fast as in any program; nothing starts again."""
+    wired_uno = computer(robot)
+    send(wired_uno, BUSY, is_detached=True)
+    wired_uno.run(50)
     assert states(robot) == FORWARD
     robot.send(STOP)
     robot.run_ms(20)
-    stopped = max(robot.pins[name].cycle for name in ("left", "right"))
+    stop_cycle = max(robot.pins[name].cycle for name in ("left", "right"))
     last = robot.received_bytes[STOP_ZEROS - 1 - len(STOP)].cycle
     assert states(robot) == OFF
-    assert 0 < stopped - last < STOP_US * CYCLES_PER_MS // 1000
-    wired.run(300)
+    assert 0 < stop_cycle - last < STOP_US * CYCLES_PER_MS // 1000
+    wired_uno.run(300)
     assert states(robot) == OFF
-    assert wired.session.events()[-1].name == "STOPPED"
+    assert wired_uno.session.events()[-1].name == "STOPPED"
 
 
 @pytest.mark.sampled("state", "board", keep=2)
 @BOARDS
 @pytest.mark.parametrize("state", STATES)
 def test_a_stop_ends_all_tasks(state: str, robot: Uno) -> None:
-    """None goes on afterwards, nor in the next program."""
-    wired = computer(robot)
-    send(wired, STATES[state], is_detached=True)
-    wired.run(300)
+    """No task continues, even in the next program."""
+    wired_uno = computer(robot)
+    send(wired_uno, STATES[state], is_detached=True)
+    wired_uno.run(300)
     assert (states(robot) == OFF) == (state == "a task waits")
     robot.send(STOP)
     robot.run_ms(20)
     assert states(robot) == OFF
-    stopped = robot.cycle
-    wired.run(2000)
-    assert not [name for name in MOTORS if robot.pins.history(name)[-1].cycle > stopped]
-    status = wired.session.status()
-    assert wired.until(status) == OK
+    stop_cycle = robot.cycle
+    wired_uno.run(2000)
+    assert not [name for name in MOTORS if robot.pins.history(name)[-1].cycle > stop_cycle]
+    status = wired_uno.session.status()
+    assert wired_uno.until(status) == OK
     assert outcome(status).values.state == STATE_STOPPED
-    send(wired, "F(600, 80)", is_detached=True)
-    wired.run(100)
+    send(wired_uno, "F(600, 80)", is_detached=True)
+    wired_uno.run(100)
     assert states(robot) == FORWARD

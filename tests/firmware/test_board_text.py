@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.uno import needed
+from tests.machines.uno import skip_unless_available
 from tests.support.board_builds import each_board
-from tests.support.platformio import copied, pio
+from tests.support.platformio import copy_sketch, pio
 from tests.support.robot_on_uno import (
     BAUD,
     FORWARD,
@@ -31,19 +31,19 @@ from tools.generate.packed_texts import pack_texts
 from tools.generate.remark_tables import rows
 from tools.uno import CYCLES_PER_MS, Uno
 
-LINE_MS = 5  # from the end of a line to the pins, at most
+LINE_MS = 5  # longest time from the end of a line to the pins
 STOP_MS = 2  # the same for S
-PROGRAM_MS = 10  # and for the last line of the obstacle program
-STOP_CYCLES = 192  # from the last byte of a stop to the pins: 12 us
+PROGRAM_MS = 10  # the same for the last line of the obstacle program
+STOP_CYCLES = 192  # longest time from the last byte of a stop to the pins: 12 us
 BYTE_MS = 10_000 / BAUD
 
 
-def typed(uno: Uno, text: str, milliseconds: float) -> list[str]:
+def type_and_listen(uno: Uno, text: str, milliseconds: float) -> list[str]:
     """Type a text; return what the robot has answered after so many milliseconds."""
-    before = len(uno.sent_bytes)
+    count_before = len(uno.sent_bytes)
     uno.send(text.encode())
     uno.run_ms(milliseconds)
-    return bytes(byte.value for byte in uno.sent_bytes[before:]).decode().splitlines()
+    return bytes(byte.value for byte in uno.sent_bytes[count_before:]).decode().splitlines()
 
 
 def since_the_line_end_ms(uno: Uno) -> float:
@@ -57,15 +57,15 @@ def since_the_line_end_ms(uno: Uno) -> float:
 def test_a_program_whose_line_never_ends_runs(
     sketch_name: str, sketches: Callable[[str], Path], memory: Path
 ) -> None:
-    """On a Nano, too; a second time, and only a whole one."""
+    """Also on a Nano; a second time, and only complete ones."""
     with switched_on(sketches(sketch_name), memory) as robot:
         for _ in range(2):
-            answers = typed(robot, "SI|F(1, 60)", 2800)
+            answers = type_and_listen(robot, "SI|F(1, 60)", 2800)
             assert (states(robot), answers[:-1]) == (OFF, [])
-            assert typed(robot, "", 400)[-1:] == ["// OK"]
+            assert type_and_listen(robot, "", 400)[-1:] == ["// OK"]
             assert states(robot) == FORWARD
             robot.run_ms(1500)
-        assert typed(robot, "SI|F(1", 3500) == ["// End the line with Enter (\\n)"]
+        assert type_and_listen(robot, "SI|F(1", 3500) == ["// End the line with Enter (\\n)"]
         assert states(robot) == OFF
 
 
@@ -77,33 +77,36 @@ def test_a_start_begins_a_line_anew(
     """After a module's message, and after a program that never ended; nowhere else."""
     with switched_on(sketches(sketch_name), memory) as robot:
         for message in ("OK+CONN", "OK+CONN", "+CONNECTED:12 ", "OK+LOST\r\nOK+CONN"):
-            assert typed(robot, message + "SI|F(0.5, 60)\r\n", 80) == ["// OK"]
+            assert type_and_listen(robot, message + "SI|F(0.5, 60)\r\n", 80) == ["// OK"]
             assert states(robot) == FORWARD
             robot.run_ms(600)
             assert states(robot) == OFF
-        assert typed(robot, "OK+CONN", 1500) == []  # a message alone, and a pause
-        assert typed(robot, "SI|F(0.5, 60)\n", 80) == ["// OK"]
-        assert typed(robot, "SI|LOOP(2)\nSI|F(0.5, 60)\n", 120) == ["// Started again", "// OK"]
+        assert type_and_listen(robot, "OK+CONN", 1500) == []  # a message alone, and a pause
+        assert type_and_listen(robot, "SI|F(0.5, 60)\n", 80) == ["// OK"]
+        assert type_and_listen(robot, "SI|LOOP(2)\nSI|F(0.5, 60)\n", 120) == [
+            "// Started again",
+            "// OK",
+        ]
         assert states(robot) == FORWARD
         robot.run_ms(600)
-        assert ", kit " in typed(robot, "OK+CONNPING|CHECK_CONNECTION\n", 120)[0]
-        assert typed(robot, "HELLO SI|F(0.5, 60)\n", 80)[0].startswith("// 1: ")
-        assert typed(robot, "OK+CONN F(0.5, 60)\n", 80) == []
+        assert ", kit " in type_and_listen(robot, "OK+CONNPING|CHECK_CONNECTION\n", 120)[0]
+        assert type_and_listen(robot, "HELLO SI|F(0.5, 60)\n", 80)[0].startswith("// 1: ")
+        assert type_and_listen(robot, "OK+CONN F(0.5, 60)\n", 80) == []
         assert states(robot) == OFF
 
 
 @each_board
 def test_a_line_turns_the_motors_and_s_stops_them(robot: Uno) -> None:
-    assert typed(robot, "SI|F(2,80)\n", 60) == ["// OK"]
+    assert type_and_listen(robot, "SI|F(2,80)\n", 60) == ["// OK"]
     assert states(robot) == FORWARD
     assert 0 < since_the_line_end_ms(robot) <= LINE_MS
-    assert typed(robot, "S\n", 60) == ["// STOPPED"]
+    assert type_and_listen(robot, "S\n", 60) == ["// STOPPED"]
     assert states(robot) == OFF
     assert 0 < since_the_line_end_ms(robot) <= STOP_MS
-    typed(robot, "SI|F(2,80)\n", 60)
+    type_and_listen(robot, "SI|F(2,80)\n", 60)
     assert states(robot) == OFF
     robot.run_ms(1100)
-    assert typed(robot, "F(2,80)\n", 80) == ["// It was stopped. Begin with SI|"]
+    assert type_and_listen(robot, "F(2,80)\n", 80) == ["// It was stopped. Begin with SI|"]
 
 
 @each_board
@@ -111,9 +114,9 @@ def test_the_obstacle_program_in_lines(robot: Uno) -> None:
     robot.sonar("trigger", "echo", 40)
     *lines, last = OBSTACLE_LINES
     for line in lines:
-        assert typed(robot, f"{line}\r\n", 40) == []
+        assert type_and_listen(robot, f"{line}\r\n", 40) == []
     assert states(robot) == OFF
-    assert typed(robot, f"{last}\r", 40) == ["// OK"]
+    assert type_and_listen(robot, f"{last}\r", 40) == ["// OK"]
     assert states(robot) == FORWARD
     assert 0 < since_the_line_end_ms(robot) <= PROGRAM_MS
     robot.sonar("trigger", "echo", 5)
@@ -124,7 +127,7 @@ def test_the_obstacle_program_in_lines(robot: Uno) -> None:
 @pytest.mark.sampled("text", keep=2)
 @pytest.mark.parametrize("text", ["", "SI|F(2, 80", "LOOP(2); F(1,", "// a comment", "9" * 90])
 def test_a_stop_is_as_quick_while_text_is_read(uno: Uno, text: str) -> None:
-    typed(uno, "SI|LOOP(FOREVER);M(80,80);END_LOOP\n", 100)
+    type_and_listen(uno, "SI|LOOP(FOREVER);M(80,80);END_LOOP\n", 100)
     assert states(uno) == FORWARD
     uno.send(text.encode() + bytes(4))
     uno.run_ms((len(text) + 4) * BYTE_MS + 20)
@@ -137,21 +140,23 @@ def test_a_stop_is_as_quick_while_text_is_read(uno: Uno, text: str) -> None:
 
 @each_board
 def test_its_words_are_those_of_its_level(board: str, robot: Uno) -> None:
-    wired = computer(robot)
-    features = wired.complete(wired.session.hello()).features
+    wired_uno = computer(robot)
+    features = wired_uno.complete(wired_uno.session.hello()).features
     assert TEXT_LEVELS[features & TEXT_LEVEL][0] == board.upper()
     robot.run_ms(4000)
-    words = " ".join(typed(robot, "HELP\n", 600)).replace("// ", "").split()
+    words = " ".join(type_and_listen(robot, "HELP\n", 600)).replace("// ", "").split()
     assert {"F", "LOOP", "END_LOOP", "ROUND", "UNTIL", "DISTANCE"} <= {*words}
     assert bool({"DEF", "END_DEF", "ENDDEF", "TASK"} & {*words}) == (board == "mega")
-    answers = typed(robot, "SI|SHOW(12.5);F(0.1,50)\n", 300)
+    answers = type_and_listen(robot, "SI|SHOW(12.5);F(0.1,50)\n", 300)
     assert answers == ["// OK", "// 12.5", "// DONE"]
 
 
 @pytest.mark.parametrize("board", ["mega"])
 def test_a_wrong_line_leaves_what_runs_where_there_is_room_for_two(robot: Uno) -> None:
-    assert typed(robot, "SI|LOOP(FOREVER)\r\nM(50,50)\r\nW(0.1)\r\nEND_LOOP\r\n", 200) == ["// OK"]
-    assert typed(robot, "SI|R(1,500)\r\n", 100) == ["// 500: 0 to 100"]
+    assert type_and_listen(
+        robot, "SI|LOOP(FOREVER)\r\nM(50,50)\r\nW(0.1)\r\nEND_LOOP\r\n", 200
+    ) == ["// OK"]
+    assert type_and_listen(robot, "SI|R(1,500)\r\n", 100) == ["// 500: 0 to 100"]
     assert states(robot) == FORWARD
 
 
@@ -164,9 +169,9 @@ def test_an_uno_has_the_texts_that_it_can_say(sketch: Path) -> None:
 
 @pytest.mark.sampled(of="long ways of a chip")
 def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Path) -> None:
-    """As `tsc firmware` makes it. The other language takes no flash."""
-    needed()
-    project = copied(tmp_path)
+    """Built by `tsc firmware`. The other language takes no flash."""
+    skip_unless_available()
+    project = copy_sketch(tmp_path)
     for language, answer, other in (("es", "500: 0 a 100", "en"), ("en", "500: 0 to 100", "es")):
         robot = robots.load("tinibot", "mega").with_language(language)
         (project / building.HEADER_FILE).write_text(building.header(robot), encoding="utf-8")
@@ -178,4 +183,4 @@ def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Pa
             )
         with Uno(elf, names=NAMES, board="mega", baud=BAUD, resets_on_open=False) as mega:
             mega.run_ms(300)
-            assert typed(mega, "SI|R(1, 500)\n", 100) == [f"// {answer}"]
+            assert type_and_listen(mega, "SI|R(1, 500)\n", 100) == [f"// {answer}"]

@@ -1,4 +1,4 @@
-"""What the sketch does with the pins of a board: seen on a simulated one, to the cycle."""
+"""The sketch's pins on a simulated board, to the cycle."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from tests.support.board_states import (
     START,
     STOPS,
     TURN,
-    driven,
     on_board,
     pulses,
     robot_with,
-    started,
+    robot_with_driver,
+    start_board,
 )
 from tiniscript import robots
 from tiniscript.robots.ports import AVRS
@@ -32,7 +32,7 @@ from tiniscript.robots.ports import AVRS
 @pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", sorted(DRIVERS))
 def test_states_of_the_motor_pins(name: str) -> None:
-    board = started(driven(name), MOVES).ran(START + OFF + 50)
+    board = start_board(robot_with_driver(name), MOVES).run_for(START + OFF + 50)
     states = tuple(board.motors(START + ms) for ms in (FORWARD, BACK, TURN, OFF))
     assert states == DRIVERS[name][1]
     assert board.motors(START - 1) == states[-1]
@@ -40,7 +40,7 @@ def test_states_of_the_motor_pins(name: str) -> None:
 
 @pytest.mark.parametrize(("powers", "pin"), [("80, 0", 0), ("0, 80", 3)])
 def test_one_motor_drives_alone(powers: str, pin: int) -> None:
-    board = started(driven("tb6612"), f"SI|M({powers});W(1)").ran(START + 60)
+    board = start_board(robot_with_driver("tb6612"), f"SI|M({powers});W(1)").run_for(START + 60)
     state = board.motors(START + 50)
     assert (state[pin], state[-1]) == ("pwm 204", "high")
 
@@ -53,7 +53,7 @@ def test_one_motor_drives_alone(powers: str, pin: int) -> None:
 ])  # fmt: skip
 def test_shipped_robots_drive(name: str, chip: str) -> None:
     robot = on_board(name, chip)
-    board = started(robot, MOVES).ran(START + OFF + 50)
+    board = start_board(robot, MOVES).run_for(START + OFF + 50)
     states = DRIVERS[robot.board.motors.driver][1]
     assert tuple(board.motors(START + ms) for ms in (FORWARD, BACK, TURN, OFF)) == states
 
@@ -62,18 +62,18 @@ def test_shipped_robots_drive(name: str, chip: str) -> None:
 @pytest.mark.parametrize("name", ["servos", *sorted(DRIVERS)])
 def test_nothing_moves_before_the_button(name: str) -> None:
     """Motor pins are low within a few cycles of the reset, and stay it; a press alone is not it."""
-    robot = robot_with(SERVOS) if name == "servos" else driven(name)
+    robot = robot_with(SERVOS) if name == "servos" else robot_with_driver(name)
     board = Board(robot, MOVES)
     board.level(PRESS, robot.board.start_button, False)
-    board.ran(400)
-    assert board.moved() == []
+    board.run_for(400)
+    assert board.list_motor_changes() == []
     assert board.motors(60 / MS) == ("low",) * len(board.motor_pins())
 
 
 def test_a_button_that_is_down_after_a_reset_starts_nothing() -> None:
     board = Board(robots.load("tinibot"), MOVES)
     board.press(0, 150)
-    assert board.ran(300).moved() == []
+    assert board.run_for(300).list_motor_changes() == []
 
 
 # -- servos that turn without end
@@ -82,7 +82,7 @@ LATE_US = 6  # a pulse ends when no other interrupt is at work
 
 
 def test_servos_turn_and_stand_for_a_second() -> None:
-    board = started(robot_with(SERVOS), "SI|F(0.2, 80);M(0, 100);W(0.2)").ran(START + 2000)
+    board = start_board(robot_with(SERVOS), "SI|F(0.2, 80);M(0, 100);W(0.2)").run_for(START + 2000)
     left, right = (pulses(board, pin) for pin in board.motor_pins())
     assert left[0][0] >= START and right[0][0] >= START
     forward = [us for ms, us in left if START + 25 < ms < START + 200]
@@ -112,18 +112,18 @@ STOP_US = 20.0
 @pytest.mark.parametrize("name", ["l298n", "two_wire"])
 def test_the_interrupt_turns_the_pins_off_and_nothing_turns_them_on(name: str) -> None:
     text = "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);END_LOOP"
-    board = started(driven(name), text, STOPS)
+    board = start_board(robot_with_driver(name), text, STOPS)
     board.level(START + 50.123, STOP_PIN, True)
     board.press(500, 600)
     board.press(700, 800)
-    board.ran(850)
+    board.run_for(850)
     off = ("low",) * len(board.motor_pins())
     assert board.motors(START + 50) != off  # the left one turns round, and may be off just then
-    stopped = [cycle for cycle in board.moved() if cycle < 790 * MS][-1] / MS
-    assert 0 < (stopped - START - 50.123) * 1000 < STOP_US or stopped < START + 50.123
+    stop_cycle = [cycle for cycle in board.list_motor_changes() if cycle < 790 * MS][-1] / MS
+    assert 0 < (stop_cycle - START - 50.123) * 1000 < STOP_US or stop_cycle < START + 50.123
     for ms in (START + 50.123 + STOP_US / 1000, START + 51, 450, 650, 799):
         assert board.motors(ms) == off
-    assert board.moved()[-1] > 800 * MS  # the button releases the latch
+    assert board.list_motor_changes()[-1] > 800 * MS  # the button releases the latch
 
 
 SWEPT_CYCLES = 3700
@@ -133,21 +133,21 @@ STOPPING = "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);LAMP(TRUE);LAMP(FALSE);END_LOO
 @pytest.mark.sampled("chip", "lamp", "stop_pin", "group")
 @pytest.mark.parametrize(("chip", "lamp", "stop_pin", "group"), [
     ("uno", "12", 19, 1),
-    ("mega", "16", 53, 0),  # on the port of three motor pins, which no single instruction changes
+    ("mega", "16", 53, 0),  # a port with three motor pins, which no single instruction can change
 ])  # fmt: skip
 def test_a_stop_at_any_cycle_stops(chip: str, lamp: str, stop_pin: int, group: int) -> None:
-    """Nothing that the interrupt has turned off is turned on by what it came in between."""
-    wired = f'[board.actuators.LAMP]\ndriver = "digital"\npin = {lamp}\n\n[body]\n'
-    changes = (("[board]\n", LAMP), ("bluetooth_state = 12", ""), ("[body]\n", wired))
+    """An interrupted instruction never turns on what the interrupt turned off."""
+    wired_text = f'[board.actuators.LAMP]\ndriver = "digital"\npin = {lamp}\n\n[body]\n'
+    changes = (("[board]\n", LAMP), ("bluetooth_state = 12", ""), ("[body]\n", wired_text))
     robot = on_board("tinibot", chip, *changes)
     bit = AVRS[chip].interrupt_by_pin[stop_pin].bit
     more = STOPS.replace("PCINT1", f"PCINT{group}").replace("1 << 1", f"1 << {group}")
     more = more.replace("PCMSK1 = 1 << 5", f"PCMSK{group} = 1 << {bit}")
-    board = started(robot, STOPPING, more)
+    board = start_board(robot, STOPPING, more)
     board.sweep(1, SWEPT_CYCLES, STOP_US, stop_pin)  # before the program drives again
-    board.ran(START + 2)
+    board.run_for(START + 2)
     edges = [cycle for cycle in board.edges(7) if cycle > (START + 1) * MS]
     assert edges[2] - edges[0] < SWEPT_CYCLES, "not a whole turn of the program"
     assert len(board.copies) == SWEPT_CYCLES
-    missed = [number for number, copy in enumerate(board.copies) if not board.is_off(copy)]
-    assert not missed
+    missed_copies = [number for number, copy in enumerate(board.copies) if not board.is_off(copy)]
+    assert not missed_copies

@@ -1,13 +1,13 @@
-"""Breakpoints on a robot: where a program halts, what stands then, and what never sees a trap."""
+"""Breakpoints on a robot: the halts of a program, their state, and code that never meets a trap."""
 
 from __future__ import annotations
 
 import pytest
 
 from tests.machines.host_firmware import drives
-from tests.support.debugging import Debugged, Halt, debugged
+from tests.support.debugging import Debugged, Halt, debug
 from tests.support.images import image_of
-from tests.support.robot_on_host import KIT, computer, held, stored, switched_on
+from tests.support.robot_on_host import KIT, computer, fetch_image, switched_on, wait_until_saved
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import Image
 from tiniscript.bytecode.opcodes import ISA_MAJOR
@@ -29,8 +29,9 @@ from tiniscript.link.payloads import FaultEvent
 from tiniscript.link.requests import OK
 from tiniscript.vm.machine import Machine
 
-DRIVE = "SI|N = 1;F(1, 80);N = 5;B(1, 60);SHOW(N)"  # at 0, 2, 5, 7, 10 and 11
-SECOND = 2  # where F is
+# The instructions start at 0, 2, 5, 7, 10 and 11.
+DRIVE = "SI|N = 1;F(1, 80);N = 5;B(1, 60);SHOW(N)"
+SECOND = 2  # offset of F
 MAIN = 4  # the last task
 BAD_VALUE = STATUSES["BAD_VALUE"]
 
@@ -46,7 +47,7 @@ def test_a_robot_says_that_it_halts() -> None:
 
 
 def test_a_program_halts_before_an_instruction_and_goes_on() -> None:
-    it = debugged(DRIVE, SECOND)
+    it = debug(DRIVE, SECOND)
     assert it.halt() == Halt(SECOND, MAIN)
     assert it.variables()[:2] == [1000, 0]
     assert drives(it.robot.did) == [], "nothing of the instruction is done"
@@ -54,17 +55,17 @@ def test_a_program_halts_before_an_instruction_and_goes_on() -> None:
     assert it.is_halted() and state(it) == STATE_RUNNING and drives(it.robot.did) == []
     assert it.go()
     assert it.halt() is None
-    moved = drives(it.robot.did)
-    assert [line.split(maxsplit=1)[1] for line in moved] == [
+    motor_lines = drives(it.robot.did)
+    assert [line.split(maxsplit=1)[1] for line in motor_lines] == [
         "MOTORS 80 80", "MOTORS 0 0", "MOTORS -60 -60", "MOTORS 0 0"
     ]  # fmt: skip
-    times = [int(line.split()[0]) for line in moved]
+    times = [int(line.split()[0]) for line in motor_lines]
     assert times[1] - times[0] == times[3] - times[2] == 1000
     assert not it.go(), "nothing is halted any more"
 
 
 def test_a_step_is_a_statement() -> None:
-    it = debugged(DRIVE, 0)
+    it = debug(DRIVE, 0)
     assert it.halt() == Halt(0, MAIN)
     lines = []
     while it.step():
@@ -105,7 +106,7 @@ def test_places_are_even_bytes_of_a_program_that_is_there() -> None:
 
 
 def answer(it: Debugged, name: str, payload: bytes) -> bytes:
-    """Return what the robot sends for a request that no session makes."""
+    """Return the robot's answer to a request that no session sends."""
     it.session._seq += 1
     frame = Frame(BY_NAME[name].number, it.session._seq & 255, it.session._epoch, payload)
     return it.robot.step(b"\0" + encode_frame(frame))
@@ -119,7 +120,7 @@ TASK_FROM_OPERAND = (
 
 
 def test_a_start_finds_the_tasks_of_the_program_and_no_others() -> None:
-    it = debugged(TASK_FROM_OPERAND, 0)
+    it = debug(TASK_FROM_OPERAND, 0)
     assert it.halt() == Halt(0, MAIN)
     assert [state for state, _, _ in it.tasks()[:MAIN]] == [0] * MAIN
     it.go()
@@ -129,12 +130,12 @@ def test_a_start_finds_the_tasks_of_the_program_and_no_others() -> None:
 
 
 def test_who_fetches_a_program_that_is_halted_gets_it_as_it_was_sent() -> None:
-    it = debugged(DRIVE, 0, SECOND, 5, 7)
+    it = debug(DRIVE, 0, SECOND, 5, 7)
     assert it.halt()
-    assert held(it.robot, it.session)[15:] == it.image.code
+    assert fetch_image(it.robot, it.session)[15:] == it.image.code
     it.step()
     assert it.halt()
-    assert held(it.robot, it.session)[15:] == it.image.code
+    assert fetch_image(it.robot, it.session)[15:] == it.image.code
 
 
 def test_a_program_that_is_halted_is_saved_as_it_was_sent() -> None:
@@ -143,15 +144,15 @@ def test_a_program_that_is_halted_is_saved_as_it_was_sent() -> None:
     assert robot.until(session, session.upload(image, runs=False)) == OK
     assert robot.until(session, session.break_at((0, SECOND, 5, 7))) == OK
     assert robot.until(session, session.start()) == OK
-    stored(robot, session)
+    wait_until_saved(robot, session)
     assert robot.complete(session, session.read_tasks()).is_halted
-    restarted = switched_on(robot.memory())
-    assert held(restarted, other := computer(7))[15:] == image.code
-    assert restarted.complete(other, other.status()).program == image.checksum
+    restarted_robot = switched_on(robot.memory())
+    assert fetch_image(restarted_robot, other := computer(7))[15:] == image.code
+    assert restarted_robot.complete(other, other.status()).program == image.checksum
 
 
 def test_a_place_is_told_with_the_programs_checksum() -> None:
-    it = debugged(DRIVE, SECOND)
+    it = debug(DRIVE, SECOND)
     assert it.halt()
     it.session.tells_places = True
     events = it.talk(1000)
@@ -159,7 +160,7 @@ def test_a_place_is_told_with_the_programs_checksum() -> None:
 
 
 def test_a_fault_is_that_of_the_programs_image() -> None:
-    it = debugged("SI|N = 0;SHOW(1 / N)", 0, SECOND)
+    it = debug("SI|N = 0;SHOW(1 / N)", 0, SECOND)
     assert it.halt() == Halt(0, MAIN)
     it.step()
     assert it.halt() == Halt(SECOND, MAIN)
@@ -170,7 +171,7 @@ def test_a_fault_is_that_of_the_programs_image() -> None:
 
 def test_the_board_finds_the_same_code_at_each_start_and_while_it_runs() -> None:
     """The robot for tests looks at the code that runs after each tick: CHANGED, UNVERIFIED."""
-    it = debugged("SI|LOOP(5);F(0.1, 50) UNTIL(DISTANCE < 5);SHOW(1);END_LOOP", 0, SECOND)
+    it = debug("SI|LOOP(5);F(0.1, 50) UNTIL(DISTANCE < 5);SHOW(1);END_LOOP", 0, SECOND)
     while it.halt():
         it.step()
     assert not [line for line in it.robot.did if "CHANGED" in line or "UNVERIFIED" in line]
@@ -183,7 +184,7 @@ ENDS = ("stop", "button", "message", "lost", "undo", "program", "live", "start",
 
 @pytest.mark.parametrize("way", ENDS)
 def test_what_ends_a_run_ends_a_halted_one(way: str) -> None:
-    it = debugged("SI|LOOP(FOREVER);F(0.2, 80);SHOW(1);END_LOOP", 1)
+    it = debug("SI|LOOP(FOREVER);F(0.2, 80);SHOW(1);END_LOOP", 1)
     robot, session = it.robot, it.session
     assert it.halt() == Halt(1, MAIN)
     expected = STATE_IDLE
@@ -224,13 +225,13 @@ def test_what_ends_a_run_ends_a_halted_one(way: str) -> None:
     assert state(it) == expected
     assert drives(robot.did) == [], "no motor has turned"
     if way not in ("program", "start", "text", "hello", "live"):
-        assert held(robot, it.session)[15:] == it.image.code
+        assert fetch_image(robot, it.session)[15:] == it.image.code
 
 
 @pytest.mark.parametrize("way", ["stop", "done", "start"])
 @pytest.mark.parametrize("halted_ms", [100, 3000])
 def test_a_run_after_a_halted_one_has_a_clock_of_its_own(way: str, halted_ms: int) -> None:
-    it = debugged("SI|W(0.5);SHOW(TIME)", 0)
+    it = debug("SI|W(0.5);SHOW(TIME)", 0)
     assert it.halt() == Halt(0, MAIN)
     it.talk(halted_ms)
     if way == "stop":
@@ -243,13 +244,13 @@ def test_a_run_after_a_halted_one_has_a_clock_of_its_own(way: str, halted_ms: in
     assert it.places() == OK
     began_ms = it.robot.now_ms
     it.start()
-    shown = it.until(lambda event: event.name == "SHOW")
-    assert isinstance(shown, ShownEvent) and shown.value == 500
+    shown_left_event = it.until(lambda event: event.name == "SHOW")
+    assert isinstance(shown_left_event, ShownEvent) and shown_left_event.value == 500
     assert it.robot.now_ms - began_ms < 600
 
 
 def test_the_button_starts_what_was_verified_and_it_halts_again() -> None:
-    it = debugged("SI|F(0.2, 80);SHOW(1)", 0)
+    it = debug("SI|F(0.2, 80);SHOW(1)", 0)
     assert it.halt() == Halt(0, MAIN)
     it.robot.push()
     it.talk(100)
@@ -262,7 +263,7 @@ def test_the_button_starts_what_was_verified_and_it_halts_again() -> None:
 
 
 def test_another_program_has_no_places_and_the_same_one_again_has_none() -> None:
-    it = debugged("SI|W(0.05);SHOW(1)", 0)
+    it = debug("SI|W(0.05);SHOW(1)", 0)
     assert it.halt()
     for text in ("SI|W(0.05);SHOW(2)", "SI|W(0.05);SHOW(1)"):
         assert it.robot.until(it.session, it.session.upload(image_of(text), saves=False)) == OK
@@ -270,7 +271,7 @@ def test_another_program_has_no_places_and_the_same_one_again_has_none() -> None
 
 
 def test_a_new_session_has_no_places() -> None:
-    it = debugged("SI|W(0.05);SHOW(1)", 0)
+    it = debug("SI|W(0.05);SHOW(1)", 0)
     assert it.halt()
     it.session = computer(99)
     assert it.robot.until(it.session, it.session.start()) == OK
@@ -316,8 +317,8 @@ def test_motors_stand_while_it_is_halted_and_a_move_has_the_rest_of_its_time() -
     show = statement_starts(it.image.code)[4]
     assert it.places(show) == OK
     it.start()
-    halted = it.halt()
-    assert halted is not None and halted.task == MAIN
+    halted_halt = it.halt()
+    assert halted_halt is not None and halted_halt.task == MAIN
     assert [line.split(maxsplit=1)[1] for line in drives(it.robot.did)] == [
         "MOTORS 80 80",
         "MOTORS 0 0",
@@ -329,8 +330,8 @@ def test_motors_stand_while_it_is_halted_and_a_move_has_the_rest_of_its_time() -
     assert it.halt() is None
     times = [int(line.split()[0]) for line in drives(it.robot.did)]
     assert times[1] - times[0] == 400 and times[3] - times[2] == 600
-    shown = [event.value for event in it.events if event.name == "SHOW"]
-    assert shown[-1] == 2400, "TIME stands while it is halted"
+    shown_values = [event.value for event in it.events if event.name == "SHOW"]
+    assert shown_values[-1] == 2400, "TIME stands while it is halted"
 
 
 def test_a_way_that_discs_measure_goes_on_with_its_rest() -> None:
@@ -386,7 +387,7 @@ def test_a_when_halts_once_until_it_has_gone_through() -> None:
 
 
 def visits(image: Image, place: int) -> int:
-    """Return how many times the machine in Python begins the instruction at a place."""
+    """Return how many times the Python machine begins the instruction at a place."""
     machine = Machine(image.code, TracedRobot(KIT, lambda sensor: 0), len(KIT.readings))
     count = now_ms = 0
     while True:
@@ -423,7 +424,7 @@ def test_a_loop_around_one_statement_halts_each_time() -> None:
 def test_a_show_without_room_halts_once() -> None:
     robot = switched_on()
     robot.pace(40)
-    it = debugged("SI|LOOP(6);SHOW(1);END_LOOP", SECOND, robot=robot)
+    it = debug("SI|LOOP(6);SHOW(1);END_LOOP", SECOND, robot=robot)
     show = statement_starts(it.image.code)[1]
     assert it.places(show) == OK
     count = 0
@@ -434,23 +435,23 @@ def test_a_show_without_room_halts_once() -> None:
 
 
 def test_a_halt_is_told_again_and_a_session_tells_it_once() -> None:
-    it = debugged(DRIVE, SECOND)
+    it = debug(DRIVE, SECOND)
     assert it.halt()
     number = bytes((BY_NAME["HALTED"].number | 0x80,))
-    sent = b""
+    sent_bytes = b""
     for _ in range(1600):
         data = it.session.poll(it.robot.now_ms)
         piece = it.robot.step(data)
-        sent += piece
+        sent_bytes += piece
         it.session.receive(piece, it.robot.now_ms)
-    assert sent.count(number) >= 3
+    assert sent_bytes.count(number) >= 3
     assert not [event for event in it.session.events() if event.name == "HALTED"]
     it.step()
     assert it.halt() == Halt(5, MAIN)
 
 
 def test_places_may_change_while_it_runs_and_while_it_is_halted() -> None:
-    it = debugged("SI|N = 0;LOOP(FOREVER);W(0.1);N = N + 1;SHOW(N);END_LOOP")
+    it = debug("SI|N = 0;LOOP(FOREVER);W(0.1);N = N + 1;SHOW(N);END_LOOP")
     assert it.halt(300) is None
     _, _, _, add, show, _ = statement_starts(it.image.code)
     assert it.places(add) == OK
@@ -499,7 +500,7 @@ def test_a_session_asks_no_robot_that_cannot_halt() -> None:
 
 
 def test_a_line_that_is_to_halt_does_so_before_its_first_statement() -> None:
-    """And has no place any more when it runs again, nor has the program that the robot holds."""
+    """It has no breakpoint when it runs again, and neither has the stored program."""
     it = Debugged(DRIVE)
     code = image_of(DRIVE).code
     assert it.robot.until(it.session, it.session.live(code, halts=True)) == OK
@@ -525,8 +526,8 @@ def test_a_line_that_has_halted_does_what_it_does_alone(text: str) -> None:
     variables = []
     for halts in (True, False):
         it = Debugged(DRIVE)
-        asked = it.session.live(image_of(f"SI|{text}").code, halts=halts)
-        assert it.robot.until(it.session, asked) == OK
+        request = it.session.live(image_of(f"SI|{text}").code, halts=halts)
+        assert it.robot.until(it.session, request) == OK
         while it.halt(200):
             assert halts
             it.go()

@@ -23,8 +23,8 @@ from tiniscript.link.messages import RESUME_GO, RESUME_STEP
 from tiniscript.link.payloads import HaltedEvent
 from tiniscript.link.requests import OK
 
-LIMIT_MS = 3000  # that are looked at
-BEGINS_MS = 1500  # each run: a seed of RANDOM comes from the time
+LIMIT_MS = 3000  # length of the observed time
+BEGINS_MS = 1500  # each run, because the seed of RANDOM depends on the time
 ENDS = ("DONE", "FAULT", "STOPPED")
 
 
@@ -37,8 +37,9 @@ def switched_on(kit: Kit, seed: int) -> HostFirmware:
 
 
 def run(image: Image, kit: Kit, seed: int, how: str) -> list[str]:
-    """Run a program alone, step by step, or from place to place; return what it did and shown,
-    without what halts did to the motors, up to the first event after LIMIT_MS of its own time."""
+    """Run a program alone, step by step, or from place to place; return its actions and values,
+    without the motor changes of halts, up to the first event after LIMIT_MS of its own time.
+    """
     rng = random.Random(seed)
     it = Debugged(image, switched_on(kit, seed), kit.fingerprint)
     statements = statement_starts(image.code)
@@ -131,14 +132,15 @@ def halts_before(it: Debugged, rng: random.Random) -> None:
             if rng.random() < 0.7:
                 it.go(how)
         if rng.random() < 0.5:
-            it.session.resume(how=rng.choice((RESUME_GO, RESUME_STEP)))  # on its way at a stop
+            # Sent while a stop is on its way.
+            it.session.resume(how=rng.choice((RESUME_GO, RESUME_STEP)))
             it.talk(rng.choice((0, 1, 2, 3)))
         STOPS[rng.choice([*STOPS])](it)
         it.talk(rng.choice((300, 700)))
 
 
 def seen_next(it: Debugged, places: list[int]) -> list[str]:
-    """Return what a run does and tells, with its halts, from when it was asked for."""
+    """Return the actions and events of a run, with its halts, from its request on."""
     assert it.places(*places) == OK
     it.events.clear()
     event_count = len(it.robot.did)
@@ -154,10 +156,10 @@ def seen_next(it: Debugged, places: list[int]) -> list[str]:
         if is_halted:
             halts += 1
             it.go(RESUME_STEP if halts % 3 == 0 else RESUME_GO)
-    did = it.robot.did[event_count:]
-    while did and not did[0].endswith("BEEP 31 1"):
-        del did[0]  # the end of the run before
-    rows = (line.split(" ", 1) for line in did)
+    actions = it.robot.did[event_count:]
+    while actions and not actions[0].endswith("BEEP 31 1"):
+        del actions[0]  # the end of the run before
+    rows = (line.split(" ", 1) for line in actions)
     return [*lines, *(f"{int(ms) - began_ms} {what}" for ms, what in rows)]
 
 
@@ -171,12 +173,14 @@ def test_a_run_after_any_halts_is_as_on_a_fresh_robot(seed: int) -> None:
     for robot in (fresh, it):
         robot.robot.talk(robot.session, -robot.robot.now_ms % 100)
         rows = seen_next(robot, places)
-        runs.append([row for row in rows if "STOPPED" not in row])  # that is the run before
+        runs.append([row for row in rows if "STOPPED" not in row])  # rows of the run before
     assert runs[0] == runs[1] and "SHOW 9000" in runs[0], places
 
 
 if __name__ == "__main__":
     total = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
-    counted = sum(compare(seed) for seed in range(first, first + total))
-    print(f"{counted} of {total} programs, stepped and from place to place: the same as alone")
+    counted_count = sum(compare(seed) for seed in range(first, first + total))
+    print(
+        f"{counted_count} of {total} programs, stepped and from place to place: the same as alone"
+    )

@@ -36,27 +36,27 @@ from tools.uno import CYCLES_PER_MS, Uno, missing
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing())
 
-BOARDS = {"uno": "uno_breakpoints", "mega": "mega"}  # with the environment of its firmware
-OWN_MS = 1500  # of a program that are looked at
+BOARDS = {"uno": "uno_breakpoints", "mega": "mega"}  # PlatformIO environment of each board
+OWN_MS = 1500  # observed time of a program
 MOST_HALTS = 60
-HALT_MS = 60  # from a halt until it is known, at most
-SEEN_MS, LASTING_MS = 0.5, 20  # a setting that nobody overlooks, and one that is surely seen
-OFF_MS = 10  # that all of a setting may be off, and so much more for each halt, and
+HALT_MS = 60  # longest time until a halt is known
+SEEN_MS, LASTING_MS = 0.5, 20  # a setting too long to miss, and one certain to be seen
+OFF_MS = 10  # tolerance for a setting, and extra tolerance for each halt
 OFF_HALT_MS = 1.5
-OFF_SHOW_MS = 25  # for each SHOW, which waits until there is room for it on the wire
+OFF_SHOW_MS = 25  # extra tolerance for each SHOW, which waits for room on the wire
 STRANGE = ("TIME", "RANDOM")  # clocks and seeds are those of the chip
 Setting = tuple[int, int]
 
 
 class Seen(NamedTuple):
     shows: list[str]
-    settings: list[tuple[float, Setting]]  # how long each lasts, but for those of halts
+    settings: list[tuple[float, Setting]]  # duration of each setting, apart from halts
     is_over: bool
     end_ms: float = 0
     halts: int = 0
 
 
-def written(rng: random.Random) -> Image | None:
+def write_program(rng: random.Random) -> Image | None:
     """Return a random program that reads nothing that is not the same on the chip."""
     text = programs.program(rng, PAPER_KIT._replace(sensors=()))
     if any(word in text.upper() for word in STRANGE):
@@ -65,8 +65,8 @@ def written(rng: random.Random) -> Image | None:
     return image if image.start == "SI" and statement_starts(image.code) else None
 
 
-def expected(image: Image) -> Seen:
-    """Return what `tsc run` says."""
+def run_in_tsc(image: Image) -> Seen:
+    """Return the trace of `tsc run`."""
     data = pack(image.start, image.devices, image.code, needs=image.needs)
     trace = MACHINES["python"](data, KIT, Senses(max_ms=OWN_MS + HALT_MS * (MOST_HALTS + 2)))
     rows = [line.split(maxsplit=2) for line in trace.splitlines()]
@@ -81,18 +81,18 @@ def expected(image: Image) -> Seen:
     return Seen(shows, settings, rows[-1][1] in ("DONE", "FAULT"), end_ms)
 
 
-def stepped(image: Image, uno: Uno) -> Seen:
+def step_on_chip(image: Image, uno: Uno) -> Seen:
     """Step through a program on a chip; return the same."""
-    wired = computer(uno)
-    session = wired.session
-    assert wired.until(session.upload(image, runs=False, saves=False)) == OK
+    wired_uno = computer(uno)
+    session = wired_uno.session
+    assert wired_uno.until(session.upload(image, runs=False, saves=False)) == OK
     starts = statement_starts(image.code)
-    assert wired.until(session.break_at(starts[:1])) == OK
-    assert wired.until(session.start()) == OK
+    assert wired_uno.until(session.break_at(starts[:1])) == OK
+    assert wired_uno.until(session.start()) == OK
     since, shows, halts = uno.cycle, list[str](), 0
     own_ms, is_over = 0, False
     while own_ms < OWN_MS + HALT_MS * (halts + 2) and halts < MOST_HALTS and not is_over:
-        wired.run(1)
+        wired_uno.run(1)
         own_ms += 1
         for event in session.events():
             if event.name == "SHOW":
@@ -100,7 +100,7 @@ def stepped(image: Image, uno: Uno) -> Seen:
             elif isinstance(event, HaltedEvent):
                 assert event.at in starts
                 halts += 1
-                wired.complete(session.resume(RESUME_STEP))
+                wired_uno.complete(session.resume(RESUME_STEP))
             is_over = is_over or event.name in ("DONE", "FAULT")
     assert halts, "it halts before its first statement"
     changes = [change.cycle for name in MOTORS for change in uno.pins.history(name)]
@@ -110,19 +110,19 @@ def stepped(image: Image, uno: Uno) -> Seen:
         ((end - at) / CYCLES_PER_MS, (power(uno, "left", at), power(uno, "right", at)))
         for at, end in zip(cycles, ends, strict=False)
     ]
-    session.stop(wired.now_ms)
-    wired.run(200)
+    session.stop(wired_uno.now_ms)
+    wired_uno.run(200)
     return Seen(shows, settings, is_over, own_ms, halts)
 
 
-def driven(steps: Seen, least_ms: float) -> list[Setting]:
+def list_long_settings(steps: Seen, least_ms: float) -> list[Setting]:
     """Return the settings that last, each once in a row, without those that stand."""
     lasting = [setting for ms, setting in steps.settings if ms >= least_ms and setting != (0, 0)]
     return [setting for setting, _ in groupby(lasting)]
 
 
-def lasted(steps: Seen) -> dict[Setting, float]:
-    """Return for how long each setting was there in all."""
+def sum_durations(steps: Seen) -> dict[Setting, float]:
+    """Return the total duration of each setting."""
     result: dict[Setting, float] = {}
     for ms, setting in steps.settings:
         if setting != (0, 0) and ms >= SEEN_MS:
@@ -131,33 +131,35 @@ def lasted(steps: Seen) -> dict[Setting, float]:
 
 
 def is_within(some: list[Setting], more: list[Setting]) -> bool:
-    """Whether `some` come in `more`, in their order."""
+    """Return whether `some` is a subsequence of `more`."""
     rest = iter(more)
     return all(setting in rest for setting in some)
 
 
 def compare(image: Image, uno: Uno) -> bool:
     """Compare a program; return whether it has come to its end."""
-    wanted, run = expected(image), stepped(image, uno)
-    shown = min(len(wanted.shows), len(run.shows))
-    assert run.shows[:shown] == wanted.shows[:shown]
-    assert is_within(driven(run, SEEN_MS), driven(wanted, 0))
-    assert run.is_over or wanted.end_ms > OWN_MS or run.halts == MOST_HALTS
+    wanted_observation, run = run_in_tsc(image), step_on_chip(image, uno)
+    shown = min(len(wanted_observation.shows), len(run.shows))
+    assert run.shows[:shown] == wanted_observation.shows[:shown]
+    assert is_within(list_long_settings(run, SEEN_MS), list_long_settings(wanted_observation, 0))
+    assert run.is_over or wanted_observation.end_ms > OWN_MS or run.halts == MOST_HALTS
     if run.is_over:
-        assert run.shows == wanted.shows and wanted.is_over
-        theirs, mine = lasted(wanted), lasted(run)
+        assert run.shows == wanted_observation.shows and wanted_observation.is_over
+        theirs, mine = sum_durations(wanted_observation), sum_durations(run)
         for setting in theirs.keys() | mine.keys():
             off_ms = abs(theirs.get(setting, 0) - mine.get(setting, 0))
             most_ms = OFF_MS + OFF_HALT_MS * run.halts + OFF_SHOW_MS * len(run.shows)
             assert off_ms <= most_ms, setting
-        assert is_within(driven(wanted, LASTING_MS), driven(run, SEEN_MS))
+        assert is_within(
+            list_long_settings(wanted_observation, LASTING_MS), list_long_settings(run, SEEN_MS)
+        )
     return run.is_over
 
 
 def images(first: int) -> Iterator[tuple[int, Image]]:
     seed = first
     while True:
-        image = written(random.Random(seed))
+        image = write_program(random.Random(seed))
         if image is not None:
             yield seed, image
         seed += 1
@@ -180,15 +182,15 @@ def test_a_program_that_is_stepped_gives_its_trace(chip: Uno, first: int) -> Non
     programs_of = images(first)
     for _ in range(2):
         seed, image = next(programs_of)
-        print(f"seed {seed}")  # what fails says which
+        print(f"seed {seed}")  # printed if the test fails
         compare(image, chip)
 
 
 def test_a_robot_that_halts_says_so_and_reads_no_text_on_an_uno(chip: Uno) -> None:
-    wired = computer(chip)
-    assert wired.until(wired.session.hello()) == OK
-    assert wired.session.robot is not None
-    features = wired.session.robot.values.features
+    wired_uno = computer(chip)
+    assert wired_uno.until(wired_uno.session.hello()) == OK
+    assert wired_uno.session.robot is not None
+    features = wired_uno.session.robot.values.features
     assert features & (BREAKPOINTS | OWNERS) == BREAKPOINTS | OWNERS
     assert bool(features & TEXT_LEVEL) is (chip.board == "mega")
 

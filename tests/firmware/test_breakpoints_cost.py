@@ -1,4 +1,4 @@
-"""Breakpoints cost nothing where none is set: cycles of the machine on a simulated Mega."""
+"""Breakpoints cost nothing if none is set: cycles of the machine on a simulated Mega."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ pytestmark = pytest.mark.skipif(bool(avr_bench.why_missing()), reason=avr_bench.
 
 
 def cycles(work: Work, *flags: str) -> tuple[list[str], int]:
-    """Return what a Mega shows, and the cycles of all ticks."""
+    """Return the values that a Mega shows, and the cycles of all ticks."""
     code = code_of(work)
     readings = work.thousandths
     request = pack(f"<BB{len(readings)}iH", JUMP_BUDGET, len(readings), *readings, len(code)) + code
     program = avr_bench.build("cycles", avr_bench.SOURCES, *flags, chip="atmega2560")
-    *shown, count, _ = avr_bench.run(program, request, "atmega2560")
-    return shown, int(count.split()[1])
+    *shown_texts, count, _ = avr_bench.run(program, request, "atmega2560")
+    return shown_texts, int(count.split()[1])
 
 
 @pytest.mark.parametrize("work", workloads.WORKS, ids=lambda work: work.name)

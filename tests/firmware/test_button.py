@@ -6,13 +6,13 @@ import random
 
 import pytest
 
-from tests.machines.uno import needed
+from tests.machines.uno import skip_unless_available
 from tests.support.button_signals import ButtonEvents, button_events
 from tests.support.robot_on_uno import AWAY, OFF, computer, send, states
 from tools.uno import CYCLES_PER_MS, Uno
 
 SPIKE_US = 150
-TURNS_US = (100, 370, 1000, 2900, 8000)  # of the main loop
+TURNS_US = (100, 370, 1000, 2900, 8000)  # durations of a turn of the main loop
 STEADY_US = 30_000
 
 
@@ -69,7 +69,7 @@ def test_a_release_that_does_not_last_is_none() -> None:
 
 
 def test_a_press_after_a_spike_is_told() -> None:
-    """Its first edge may be taken for the spike's chatter: then it is told when it has lasted."""
+    """Its first edge may count as the spike's chatter: then it is reported once it has lasted."""
     cases = [(100, 0, [0, SPIKE_US, gap_us, 500_000]) for gap_us in range(200, 60_000, 700)]
     for (_, _, edges), events in zip(cases, button_events(cases), strict=True):
         assert letters(events) in ("PHR", "PPHR")
@@ -79,10 +79,10 @@ def test_a_press_after_a_spike_is_told() -> None:
 
 def test_an_uno_is_not_started_by_spikes(uno: Uno) -> None:
     """The whole firmware holds a program; spikes come in twos and fives."""
-    needed()
-    wired = computer(uno)
-    send(wired, AWAY.replace("SI", "SB"))
-    wired.run(300)
+    skip_unless_available()
+    wired_uno = computer(uno)
+    send(wired_uno, AWAY.replace("SI", "SB"))
+    wired_uno.run(300)
     for spacing_ms in (1, 3, 10, 20, 25, *range(28, 36), 60, 100, 200):
         for count in (2, 5):
             for k in range(count):
@@ -95,9 +95,9 @@ def test_an_uno_is_not_started_by_spikes(uno: Uno) -> None:
 
 
 def test_an_uno_that_runs_is_stopped_by_the_first_edge(uno: Uno) -> None:
-    wired = computer(uno)
-    send(wired, AWAY)
-    wired.run(100)
+    wired_uno = computer(uno)
+    send(wired_uno, AWAY)
+    wired_uno.run(100)
     at = uno.cycle + CYCLES_PER_MS
     uno.drive("button", False, at=at)
     uno.run_ms(3)

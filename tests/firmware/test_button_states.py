@@ -15,7 +15,7 @@ from tests.support.button_states import LINE, OTHER, SAVED, STATES, TYPED, Table
 from tests.support.casefile import ROOT
 from tests.support.images import image_of
 from tests.support.owners import HELD, PRESSED, RELEASED
-from tests.support.text_robot import typed
+from tests.support.text_robot import type_text
 from tiniscript.link.requests import OK
 
 FLAGS = {"P": PRESSED, "H": HELD, "R": RELEASED}
@@ -26,7 +26,7 @@ def chatter(edge_ms: int) -> list[int]:
     return [edge_ms * 1000 + us for us in (0, 700, 1500, 1900, 4000)]
 
 
-# what the wire does, in us, and which columns of the table say what comes of it
+# Levels of the wire in us, and the table columns with the expected results.
 PRESSES: dict[str, tuple[list[int], tuple[int, ...]]] = {
     "a spike": ([0, 150], (EDGE,)),
     "many spikes": ([us for k in range(40) for us in (k * 17_000, k * 17_000 + 150)], (EDGE,)),
@@ -46,7 +46,7 @@ FOR_EVER = "held for ever"
 
 @lru_cache
 def letters() -> dict[str, list[tuple[int, str]]]:
-    """Return what the button says about each press: the millisecond, and P, H or R."""
+    """Return the button's events for each press: the millisecond, and P, H or R."""
     event_rows = button_events([(100, 0, edges) for edges, _ in PRESSES.values()])
     rows = {}
     for name, row in zip(PRESSES, event_rows, strict=True):
@@ -57,7 +57,7 @@ def letters() -> dict[str, list[tuple[int, str]]]:
 
 
 @lru_cache
-def promised() -> dict[str, list[str]]:
+def read_table() -> dict[str, list[str]]:
     """Return the table of the document."""
     text = (ROOT / "docs" / "develop" / "link.md").read_text(encoding="utf-8")
     rows = text.split("<!-- button -->\n")[1].split("\n\n")[0].splitlines()[2:]
@@ -66,7 +66,7 @@ def promised() -> dict[str, list[str]]:
 
 
 def test_the_document_has_every_state() -> None:
-    assert list(promised()) == list(STATES)
+    assert list(read_table()) == list(STATES)
 
 
 def test_the_presses_are_what_they_are_called() -> None:
@@ -82,12 +82,12 @@ def test_the_presses_are_what_they_are_called() -> None:
         assert letters_by_name[name]
 
 
-def played(table: Table, press: str) -> None:
-    """Let the button go down and up, and some time pass."""
+def press_button(table: Table, press: str) -> None:
+    """Press and release the button, and let some time pass."""
     now_ms = 0
     for at_ms, letter in letters()[press]:
         if table.is_reset_down and letter == "P":
-            continue  # it was down before there was a program to see it
+            continue  # the button was down before a program could see it
         table.talk(max(0, at_ms - now_ms))
         table.talk(1, FLAGS[letter])
         now_ms = max(at_ms, now_ms) + 1
@@ -102,15 +102,15 @@ def test_the_button(state: str, press: str) -> None:
     STATES[state](table)
     robot, begun_ms = table.robot, table.robot.now_ms
     was_latched, before = robot.is_latched, len(robot.did)
-    played(table, press)
+    press_button(table, press)
     rows = [row.split(" ", 1) for row in robot.did[before:]]
     moves = [(int(ms) - begun_ms, what) for ms, what in rows if what.startswith("MOTORS")]
-    wanted, columns = promised()[state], PRESSES[press][1]
+    wanted_texts, columns = read_table()[state], PRESSES[press][1]
     first_ms = letters()[press][0][0]
-    stops = wanted[EDGE] == "stops it"
+    stops = wanted_texts[EDGE] == "stops it"
     assert was_latched != stops, "a robot that runs, or one that does not"
-    starts = SHORT in columns and wanted[SHORT].startswith("starts")
-    assert not any(wanted[event] not in ("-", "stops it") for event in (EDGE, LATE))
+    starts = SHORT in columns and wanted_texts[SHORT].startswith("starts")
+    assert not any(wanted_texts[event] not in ("-", "stops it") for event in (EDGE, LATE))
     if stops:
         assert [what for _, what in moves] == ["MOTORS 0 0"]
         assert moves[0][0] <= first_ms + 2
@@ -125,7 +125,9 @@ def test_the_button(state: str, press: str) -> None:
         assert robot.is_latched
     beeps = [what for _, what in rows if what.startswith("BEEP 1568")]
     is_forgotten = table.is_reset_down and press == FOR_EVER
-    assert len(beeps) == (is_forgotten or (TWO in columns and wanted[TWO].startswith("beeps")))
+    assert len(beeps) == (
+        is_forgotten or (TWO in columns and wanted_texts[TWO].startswith("beeps"))
+    )
 
 
 @pytest.mark.parametrize("has_draft", [True, False])
@@ -134,8 +136,8 @@ def test_text_is_lost_by_a_start_alone(press: str, has_draft: bool) -> None:
     """A block that is open goes on after presses that start nothing."""
     table = Table(has_draft)
     STATES["has an open block of text"](table)
-    played(table, press)
-    answers = " ".join(typed(table.robot, "END_LOOP\n", 100))
+    press_button(table, press)
+    answers = " ".join(type_text(table.robot, "END_LOOP\n", 100))
     if SHORT in PRESSES[press][1]:
         assert "MOTORS 80 80" in " ".join(table.robot.did)
         assert "MOTORS 40 40" not in " ".join(table.robot.did), answers
@@ -168,10 +170,10 @@ MEANWHILE: dict[str, Callable[[Table], object]] = {
     "a line": lambda table: table.session.live(image_of(f"SI|F(600, {LINE})").code),
     "a short line": lambda table: table.session.live(image_of(f"SI|F(0.05, {LINE})").code),
     "an upload": lambda table: table.session.upload(image_of(f"SI|F(600, {OTHER})"), saves=False),
-    "text": lambda table: typed(table.robot, f"SI|F(0.05, {TYPED})\n"),
+    "text": lambda table: type_text(table.robot, f"SI|F(0.05, {TYPED})\n"),
     "a stop": lambda table: table.session.stop(table.robot.now_ms),
     "zeros": lambda table: table.robot.step(bytes(4)),
-    "a stop by text": lambda table: typed(table.robot, "S\n"),
+    "a stop by text": lambda table: type_text(table.robot, "S\n"),
 }
 
 

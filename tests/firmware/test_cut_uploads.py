@@ -13,7 +13,15 @@ import pytest
 
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
-from tests.support.robot_on_host import KIT, actions_of, computer, held, holding, send, stored
+from tests.support.robot_on_host import (
+    KIT,
+    actions_of,
+    computer,
+    fetch_image,
+    holding,
+    send,
+    wait_until_saved,
+)
 from tests.support.small_robot import SmallRobot
 from tiniscript.bytecode.image import Image, pack, unpack
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
@@ -23,8 +31,8 @@ from tiniscript.link.session import Session
 
 OLD = "SB|F(0.1, 50)"
 ROOM = 389
-CHECKSUM_AT = 10  # in an image
-STRIDE = 29  # of the bytes in the tests
+CHECKSUM_AT = 10  # offset of the checksum in an image
+STRIDE = 29  # step between the bytes that the tests choose
 STOP = bytes(8)
 SAVED_MEMORY = [name for name, _ in SAVED].index("MEMORY")
 CUT, STOPPED, STOPPED_TWICE = KINDS = ("cut", "stopped", "stopped twice")
@@ -46,8 +54,9 @@ def bytes_of(image: Image) -> bytes:
 
 
 def sent_until(robot: HostFirmware, session: Session, count: int) -> bytes:
-    """Let an upload begin, until so many of its bytes have reached the robot; return what the
-    computer has sent after them. Nothing: the upload is over."""
+    """Begin an upload, until so many of its bytes have reached the robot; return the bytes that the
+    computer sent afterwards, or nothing if the upload is over.
+    """
     request = session.upload(NEW, saves=True)
     while request.outcome is None:
         data = session.poll(robot.now_ms)
@@ -70,7 +79,7 @@ def cut_at(memory: bytes, kind: str, count: int) -> bool:
     if kind != CUT:
         robot.step(STOP)
         robot.did.clear()
-        robot.step(late)  # what was under way
+        robot.step(late)  # bytes under way
         if kind == STOPPED_TWICE:
             robot.step(STOP)
         robot.wait(300)
@@ -79,14 +88,14 @@ def cut_at(memory: bytes, kind: str, count: int) -> bool:
     robot.wait(1100)
     next_session = computer(2)
     assert robot.until(next_session, next_session.hello()) == OK
-    assert held(robot, next_session) in (bytes_of(image_of(OLD)), bytes_of(NEW)), count
+    assert fetch_image(robot, next_session) in (bytes_of(image_of(OLD)), bytes_of(NEW)), count
     if kind == CUT:
         robot.did.clear()
         robot.push()
         robot.talk(next_session, 300)
         assert "MOTORS 50 50" in actions_of(robot) or "MOTORS 80 80" in actions_of(robot), count
     assert robot.until(next_session, next_session.upload(NEW, runs=False)) == OK
-    assert held(robot, next_session) == bytes_of(NEW), count
+    assert fetch_image(robot, next_session) == bytes_of(NEW), count
     return False
 
 
@@ -109,9 +118,12 @@ def test_a_program_that_an_upload_has_cost_is_told_no_more() -> None:
     robot, session = HostFirmware(KIT), computer()
     robot.wait(200)
     assert robot.until(session, session.upload(image_of(OLD), saves=False)) == OK
-    before = robot.complete(session, session.status())
-    assert (before.program, before.saved) == (image_of(OLD).checksum, SAVED_MEMORY)
-    assert before.length == len(image_of(OLD).code)
+    complete_before = robot.complete(session, session.status())
+    assert (complete_before.program, complete_before.saved) == (
+        image_of(OLD).checksum,
+        SAVED_MEMORY,
+    )
+    assert complete_before.length == len(image_of(OLD).code)
     assert sent_until(robot, session, 300)
     next_session = computer(2)
     hello = robot.complete(next_session, next_session.hello())
@@ -151,8 +163,8 @@ class Line:
         return answers[0].payload[0]
 
     def hears(self, data: bytes, milliseconds: int) -> list[Frame]:
-        sent = self.heard + self.robot.wait(milliseconds, data)
-        *packets, self.heard = sent.split(b"\0")
+        sent_bytes = self.heard + self.robot.wait(milliseconds, data)
+        *packets, self.heard = sent_bytes.split(b"\0")
         frames = [frame for frame in map(decode_frame, packets) if frame is not None]
         if frames:
             self.epoch = frames[-1].epoch
@@ -168,7 +180,7 @@ def pushes(line: Line) -> None:
     line.hears(b"", 30)
 
 
-# What needs the memory of a program, or ends what was asked for before it.
+# Requests that need the memory of a program, or end earlier requests.
 BETWEEN: dict[str, Callable[[Line], object]] = {
     "a line": lambda line: line.hears(TYPED, 150),
     "a line for the button": lambda line: line.hears(TYPED.replace(b"SI", b"SB"), 150),
@@ -187,7 +199,7 @@ BETWEEN: dict[str, Callable[[Line], object]] = {
     ),
     "a typed stop": lambda line: line.hears(b"S\n", 200),
 }
-# Beside these an upload goes on.
+# Requests during which an upload continues.
 BESIDE: dict[str, Callable[[Line], object]] = {
     "a ping": lambda line: line.asks("PING"),
     "a status": lambda line: line.asks("STATUS"),
@@ -201,7 +213,7 @@ KINDS_OF_ROBOTS = {"a mega": HostFirmware, "an uno": SmallRobot}
 def two_programs() -> bytes:
     robot, session = holding(OLD)
     send(robot, session, "SB|B(0.1, 40)")
-    stored(robot, session)
+    wait_until_saved(robot, session)
     return robot.memory()
 
 
@@ -219,7 +231,7 @@ def frames_of(image: Image) -> list[tuple[str, bytes]]:
 def cut_by(
     kind: str, memory: bytes, cut: str, between: Callable[[Line], object]
 ) -> tuple[Line, list[tuple[str, bytes]]]:
-    """Send a part of an upload and then something else; return what is still to be sent."""
+    """Send a part of an upload and then something else; return the rest."""
     line, frames = Line(KINDS_OF_ROBOTS[kind], memory), frames_of(SECOND)
     count = {BEGUN: 1, ALL_BUT_ONE: len(frames) - 2, ALL: len(frames) - 1}[cut]
     assert {line.asks(*frame) for frame in frames[:count]} == {OK}
@@ -238,12 +250,13 @@ def memory() -> bytes:
 def test_an_upload_that_something_has_come_between_is_over(
     memory: bytes, what: str, cut: str, kind: str
 ) -> None:
-    """No more of it is taken, and the robot does what it does where nothing more of it comes. What
-    runs is watched by the stand-in: no byte of it changes."""
+    """The rest is refused, and the robot acts as without it. The stand-in checks that no byte of
+    the running program changes.
+    """
     line, rest = cut_by(kind, memory, cut, BETWEEN[what])
     twin, _ = cut_by(kind, memory, cut, BETWEEN[what])
     if what == "an upload":
-        rest = rest[1:] if cut == ALL_BUT_ONE else [("COMMIT", bytes(4))]  # of which it has less
+        rest = rest[1:] if cut == ALL_BUT_ONE else [("COMMIT", bytes(4))]  # a shorter payload
     refused = [line.asks(*frame) for frame in rest]
     assert OK not in refused, (refused, rest)
     assert {twin.asks("PING") for _ in rest} == {OK}

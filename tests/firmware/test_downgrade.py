@@ -1,4 +1,4 @@
-"""Who stands between a computer and a robot that seals, and clears bits of HELLO: is not believed.
+"""An attacker between a computer and a sealing robot who clears bits of HELLO is not believed.
 
 They have the line: what they do not pass on is not heard, and they answer in its place, whatever
 they like. They may change the robot's id in HELLO, or lead the computer to a robot of their own
@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.images import image_of
 from tests.support.owners import FOREVER, Keys, Owned
 from tiniscript.link.authority import RobotKey
@@ -54,7 +54,7 @@ class End:
     def __init__(self, which: int = KEY_OWNER) -> None:
         self.keys = Keys()
         self.table = Owned()
-        session = self.table.claimed(self.keys, which)
+        session = self.table.claim_session(self.keys, which)
         assert self.table.outcome(session, session.name(NAME)) == "OK"
         self.keys.stored_keys = [key._replace(name=NAME.decode()) for key in self.keys.stored_keys]
 
@@ -76,8 +76,8 @@ class Stranger(End):
 
 
 class Between:
-    """Whoever has the line. `cleared` are bits of HELLO; `passes_on` says which frames the robot
-    gets; the others are answered as done, after zeros STOPPED comes at once or later.
+    """The attacker on the line. `cleared` are bits of HELLO; `passes_on` selects the frames for the
+    robot; others are answered as done, and after zeros STOPPED comes at once or later.
     """
 
     def __init__(
@@ -103,7 +103,7 @@ class Between:
             frame = decode_frame(packet)
             assert frame
             if self.passes_on(frame):
-                replies += self.changed(self.end.passes(20, b"\0" + packet + b"\0"))
+                replies += self.change_answers(self.end.passes(20, b"\0" + packet + b"\0"))
             else:
                 self.epoch = frame.epoch
                 replies += self.pretended_answer(frame)
@@ -112,7 +112,7 @@ class Between:
             replies += encode_frame(Frame(STOPPED, self.draw.randrange(256), epoch, b"\1", True))
         return b"\0" * bool(replies) + replies
 
-    def changed(self, data: bytes) -> bytes:
+    def change_answers(self, data: bytes) -> bytes:
         """Return the answers of the robot with bits of HELLO cleared, or another id."""
         stream = b""
         for packet in filter(None, data.split(b"\0")):
@@ -128,7 +128,7 @@ class Between:
         return stream
 
     def pretended_answer(self, frame: Frame) -> bytes:
-        """Return an answer that says done, where nothing was: of the right length."""
+        """Return an answer that says done, if nothing was: of the right length."""
         message = next(message for message in BY_NAME.values() if message.number == frame.number)
         least = sum(field.least_bytes for field in message.reply)
         payload = bytearray(self.draw.randbytes(least))
@@ -144,7 +144,9 @@ class Between:
 
 
 def talk(between: Between, session: Session, request: PendingRequest[Any] | None) -> list[str]:
-    """Let a computer talk through them until its request, or its stop, is over; return events."""
+    """Let a computer talk through the attacker until its request or stop is over; return the
+    events.
+    """
     names: list[str] = []
     now_ms, end_ms = 0, LIMIT_MS
     while now_ms < end_ms:
@@ -160,7 +162,7 @@ def talk(between: Between, session: Session, request: PendingRequest[Any] | None
 
 
 def state_of(end: End) -> int:
-    """Return what the robot does; anybody may ask."""
+    """Return the state of the robot, which anybody may request."""
     end.passes(20, b"\0" + encode_frame(Frame(HELLO, 1, 0, bytes([MAJOR, *bytes(5), 1, 2, 3, 4]))))
     replies = end.passes(20, b"\0" + encode_frame(Frame(STATUS, 2, 0)))
     frames = [decode_frame(packet) for packet in replies.split(b"\0") if packet]
@@ -176,8 +178,8 @@ def honest(end: End, session: Session, request: PendingRequest[Any] | None) -> l
     return talk(between, session, request)
 
 
-def begun(end: End, draw: random.Random) -> None:
-    """Have the robot drive for a long time, whatever it did before."""
+def start_long_drive(end: End, draw: random.Random) -> None:
+    """Start a long drive, whatever the robot did before."""
     session = end.session(draw.getrandbits(32), end.keys)
     request = session.upload(image_of(FOREVER), saves=False, is_detached=True)
     honest(end, session, request)
@@ -186,7 +188,7 @@ def begun(end: End, draw: random.Random) -> None:
 
 
 def one_trial(end: End, seed: int) -> str:
-    """Ask a robot for something beside whoever stands between; return what it was."""
+    """Send a robot a request through the attacker; return its kind."""
     draw = random.Random(seed)
     keys = Keys()
     keys.stored_keys = list(end.keys.stored_keys)
@@ -200,9 +202,9 @@ def one_trial(end: End, seed: int) -> str:
     kind = draw.choice(("hello", "stop", "upload", "live", "name"))
     if kind == "stop":
         if state_of(end) != STATE_RUNNING:
-            begun(end, draw)
+            start_long_drive(end, draw)
         is_greeted = draw.random() < 0.5
-        if is_greeted:  # by the robot itself
+        if is_greeted:  # greeted by the robot itself
             honest(end, session, session.hello())
         session.stop(0)
         names = talk(between, session, None)
@@ -235,14 +237,14 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
     keys.stored_keys = list(end.keys.stored_keys)
     how = draw.choice(("id", "robot", "id, greeted", "robot, greeted"))
     is_place = draw.random() < 0.5
-    if is_place:  # nobody knows its name, but the robot has answered here
+    if is_place:  # the name is unknown, but the robot has answered here before
         keys.stored_keys = [key._replace(name="") for key in keys.stored_keys]
     place = PLACE if is_place else draw.choice(("", "tcp://bob"))
     session = end.session(draw.getrandbits(32), keys, place)
     honest(end, session, session.hello())
     assert keys.id_by_place.get(PLACE) == (end.keys.stored_keys[0].id if is_place else None)
     if state_of(end) != STATE_RUNNING:
-        begun(end, draw)
+        start_long_drive(end, draw)
     if "greeted" not in how:
         session = end.session(draw.getrandbits(32), keys, place)
     cleared = draw.choice((0, *CLEARED, OWNED | OWNERS))
@@ -269,12 +271,12 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
         expected = [OTHER_ROBOT]
         if "greeted" in how:
             expected += [UNPROVEN, LOST]
-        if how == "robot, greeted":  # one of the same epoch by chance: it has not the key
+        if how == "robot, greeted":  # a frame with the right epoch by chance, but without the key
             expected.append(STATUSES["WRONG_KEY"])
         status = request.outcome.status if request.outcome else LOST
         assert status in expected, f"seed {seed}: {how}: {kind}: {status}"
-    shown = {key.key for key in end.keys.stored_keys}
-    assert {key.key for key in keys.stored_keys} == shown, f"seed {seed}: a key is lost"
+    shown_bytes = {key.key for key in end.keys.stored_keys}
+    assert {key.key for key in keys.stored_keys} == shown_bytes, f"seed {seed}: a key is lost"
     assert state_of(end) == STATE_RUNNING, "nobody has reached it"
     return f"{kind}, {how}"
 
@@ -300,7 +302,7 @@ def test_who_is_accepted_or_has_a_key_here_is_believed() -> None:
         honest(strange, session, request := session.hello())
         assert request.outcome and request.outcome.status == 0
         assert session.robot and session.robot.id == other
-    strange.table.claimed(keys)  # at another place
+    strange.table.claim_session(keys)  # in another slot
     keys.accepted_ids.clear()
     session = strange.session(3, keys, PLACE)
     honest(strange, session, request := session.hello())
@@ -309,7 +311,7 @@ def test_who_is_accepted_or_has_a_key_here_is_believed() -> None:
 
 
 def test_a_robot_of_which_nothing_is_known_is_believed() -> None:
-    """And so is one where the robot of the key does not seal."""
+    """The same holds if the robot of the key does not seal."""
     strange = Stranger()
     for key in ([], [RobotKey(7, KEY_OWNER, bytes(15) + b"\7", NAME.decode())]):
         keys = Keys()
@@ -330,11 +332,11 @@ def test_nobody_between_takes_the_seals_away() -> None:
 def test_a_stop_that_the_robot_has_heard_is_confirmed(which: int, is_greeted: bool) -> None:
     """A robot that seals says so under the seal, with a teacher's key alone, too."""
     end = End(which)
-    begun(end, random.Random(3))
+    start_long_drive(end, random.Random(3))
     session = end.session(99, end.keys)
     if is_greeted:
         honest(end, session, session.hello())
-        end.passes(2500)  # until the robot has forgotten the seal
+        end.passes(2500)  # time for the robot to forget the seal
     session.stop(0)
     assert honest(end, session, None)[-1] == "STOPPED"
     assert state_of(end) == STATE_STOPPED
@@ -342,7 +344,7 @@ def test_a_stop_that_the_robot_has_heard_is_confirmed(which: int, is_greeted: bo
 
 def test_a_robot_that_was_claimed_by_another_is_stopped_and_does_not_prove_it() -> None:
     end = End()
-    begun(end, random.Random(3))
+    start_long_drive(end, random.Random(3))
     keys = Keys()
     keys.stored_keys = [key._replace(key=bytes(15) + b"\7") for key in end.keys.stored_keys]
     session = end.session(99, keys)
@@ -351,7 +353,7 @@ def test_a_robot_that_was_claimed_by_another_is_stopped_and_does_not_prove_it() 
     assert state_of(end) == STATE_STOPPED
     request = session.hello()
     honest(end, session, request)
-    assert request.outcome and request.outcome.status == 0  # what is for all is told
+    assert request.outcome and request.outcome.status == 0  # public values are reported
     stranger = end.session(100, Keys())
     stranger.stop(0)
     assert honest(end, stranger, None)[-1] == "STOPPED"
@@ -361,7 +363,7 @@ def test_a_key_learns_that_its_robot_seals_from_the_robot_alone() -> None:
     end = End()
     assert [key.uses_seals for key in end.keys.stored_keys] == [True]  # from its claim
     keys = Keys()
-    # as older files have it
+    # The form of older files.
     keys.stored_keys = [key._replace(uses_seals=False) for key in end.keys.stored_keys]
     cut = Between(end, random.Random(1), OWNED, everything)
     session = end.session(50, keys)
@@ -379,4 +381,4 @@ def either(ends: tuple[End, End, Stranger], seed: int) -> str:
 
 
 if __name__ == "__main__":
-    each_seed(partial(either, (End(), End(), Stranger())), wanted(10_000, 1))
+    each_seed(partial(either, (End(), End(), Stranger())), make_options(10_000, 1))

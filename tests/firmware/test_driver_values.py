@@ -1,4 +1,4 @@
-"""Every driver has values: what is at its pins changes a reading, and what is set changes its pins.
+"""Every driver has values: inputs at its pins change a reading, and settings change its pins.
 
 Seen on a simulated board, for each file of `robots/drivers/` that a device may have; what the
 values are, `test_board_devices.py` says. A driver whose pins are of a new kind has a row in FELT.
@@ -12,7 +12,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.machines.board import Board, simulates
-from tests.support.board_states import START, pulses, started
+from tests.support.board_states import START, pulses, start_board
 from tests.support.wired_robots import DEVICES, MOTORS, robot_with
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.driver import Driver, SensorDriver
@@ -25,7 +25,7 @@ SHOWN = {
     "number": "SI|M({0} * 10, 0);W(5)",
     "yes/no": "SI|IF({0});M(50, 0);ELSE;M(0, 0);ENDIF;W(5)",
 }
-SET = {"number": ("0", "4"), "yes/no": ("FALSE", "TRUE")}  # of a range to 5
+SET = {"number": ("0", "4"), "yes/no": ("FALSE", "TRUE")}  # values in a range up to 5
 SET_MS = 500
 
 
@@ -34,7 +34,7 @@ def _analog(board: Board, wiring: Wiring, is_much: bool) -> None:
     board.analog(channel, 5000 if is_much else 0)
 
 
-# What a sensor feels, little of it or much, by what its pin is for.
+# The inputs of a sensor, small or large, by the use of its pin.
 FELT: dict[str, Callable[[Board, Wiring, bool], None]] = {
     "analog": _analog,
     "input": lambda board, wiring, is_much: board.level(0, wiring.pins["pin"], is_much),
@@ -45,7 +45,7 @@ FELT: dict[str, Callable[[Board, Wiring, bool], None]] = {
 
 
 def wired_as(driver: Driver) -> tuple[str, Wiring]:
-    """Return how the device of a driver is called, and where it is."""
+    """Return the name and the wiring of a driver's device."""
     board = MANY.board
     wirings = board.sensors if isinstance(driver, SensorDriver) else board.actuators
     devices = MANY.kit.sensors if isinstance(driver, SensorDriver) else MANY.kit.actuators
@@ -59,7 +59,9 @@ def names(drivers: list[Driver]) -> list[str]:
 
 @pytest.mark.parametrize("motors", MOTORS)
 def test_whatever_drivers_there_are_each_is_wired_to_pins_that_are_simulated(motors: str) -> None:
-    """So a new driver, wherever its name stands among the others, leaves them what they need."""
+    """Therefore a new driver leaves the others the pins they need, wherever its name is in the
+    list.
+    """
     draw = random.Random(motors)
     for _ in range(20):
         devices = draw.sample(DEVICES * 2, len(DEVICES) * 2)
@@ -77,9 +79,9 @@ def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
     name, wiring = wired_as(driver)
     readings = set()
     for is_much in (False, True):
-        board = started(MANY, SHOWN[driver.used_by.split()[1]].format(name))
+        board = start_board(MANY, SHOWN[driver.used_by.split()[1]].format(name))
         FELT[driver.pins[-1].ability](board, wiring, is_much)
-        readings.add(board.ran(START + 100).motors(START + 95))
+        readings.add(board.run_for(START + 100).motors(START + 95))
     assert len(readings) == 2, "its reading is the same whatever it feels"
 
 
@@ -88,11 +90,11 @@ def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
 def test_what_an_actuator_is_set_to_is_at_its_pins(driver: Driver) -> None:
     name, wiring = wired_as(driver)
     less, more = SET[driver.used_by.split()[1]]
-    board = started(MANY, f"SI|{name}({less});W({SET_MS / 1000});{name}({more});W(1)")
+    board = start_board(MANY, f"SI|{name}({less});W({SET_MS / 1000});{name}({more});W(1)")
     pins = wiring.pins.values()
     for pin in pins:
         board.watch(pin)
-    board.ran(START + 2 * SET_MS)
+    board.run_for(START + 2 * SET_MS)
 
     def pin_states(after_ms: float) -> list[tuple[str, list[int]]]:
         begins = START + after_ms

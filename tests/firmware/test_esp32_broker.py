@@ -19,11 +19,11 @@ from tests.support.esp32_broker import (
     until,
 )
 from tests.support.esp32_radio import Bytes, in_reach, talk
-from tests.support.esp32_wifi import joined, remote, school_in_reach
+from tests.support.esp32_wifi import join_network, remote, school_in_reach
 from tests.support.images import image_of
 from tests.support.mosquitto import AtBroker, Mosquitto
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import AWAY, Ends, ended, uploaded
+from tests.support.robot_on_esp32 import AWAY, Ends, upload_text, wait_for_outcome
 from tests.support.waiting import HANGS_S
 from tests.support.waiting import until as in_time
 from tiniscript.link import errors, wifi
@@ -33,7 +33,7 @@ from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.session import Session
 from tiniscript.link.transports.broker import ROOT, Access, Broker, RobotPresence
 
-AT_ONCE_MS = 300  # of a connection that has ended
+AT_ONCE_MS = 300  # longest delay after a connection has ended
 BROKER_KEY = b"broker"
 
 
@@ -62,16 +62,16 @@ class Drive(NamedTuple):
 def driving(broker: Mosquitto, text: str = AWAY, keys: Keys | None = None) -> Drive:
     keys = keys or Keys()
     robot, _ = at(broker, keys)
-    teacher, owner = broker.connected(), remote(robot, keys)
+    teacher, owner = broker.connect_client(), remote(robot, keys)
     ends: Ends = [(AtBroker(robot, teacher), owner)]
-    assert uploaded(robot, ends, owner, text) == "OK"
+    assert upload_text(robot, ends, owner, text) == "OK"
     return Drive(robot, teacher, owner, ends)
 
 
 def test_a_broker_for_which_there_is_no_memory_is_told_and_tried_again(broker: Mosquitto) -> None:
-    robot, owner = joined(Keys())
+    robot, owner = join_network(Keys())
     robot.radio("H", b"\1")
-    assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
     talk(robot, [(None, owner)], 1500)
     assert broker_settings_of(robot, owner)[1] == "NO_TLS"
     robot.radio("H", b"\0")
@@ -86,7 +86,7 @@ def test_the_owner_drives_over_a_broker_and_one_message_stops_the_class(
 ) -> None:
     robot, teacher, owner, ends = driving(broker)
     assert present(robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
-    other = broker.connected()
+    other = broker.connect_client()
     other.stop("another")
     talk(robot, ends, 1500)
     assert motors(robot) == "MOTORS 80 80"
@@ -94,7 +94,7 @@ def test_the_owner_drives_over_a_broker_and_one_message_stops_the_class(
     talk(robot, ends, 100)
     assert motors(robot) == "MOTORS 0 0"
     owner.events()
-    assert uploaded(robot, ends, owner) == "OK"
+    assert upload_text(robot, ends, owner) == "OK"
     assert motors(robot) == "MOTORS 80 80"
     owner.stop(robot.now_ms)
     talk(robot, ends, 60)
@@ -113,17 +113,20 @@ def test_a_long_program_and_what_it_shows(broker: Mosquitto) -> None:
 def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
     robot, owner = at(broker, Keys())
     assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
-    restarted = Esp32Robot(kept=robot.kept())
-    school_in_reach(restarted)
-    restarted.wait(400)
-    teacher = broker.connected()
-    until(restarted, lambda: present(restarted, teacher) == [RobotPresence(ID, "tini-5678", True)])
-    assert ended(robot, [(None, owner)], owner.use_broker(None)) == "OK"
+    restarted_robot = Esp32Robot(kept_memory=robot.read_kept())
+    school_in_reach(restarted_robot)
+    restarted_robot.wait(400)
+    teacher = broker.connect_client()
+    until(
+        restarted_robot,
+        lambda: present(restarted_robot, teacher) == [RobotPresence(ID, "tini-5678", True)],
+    )
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(None)) == "OK"
     assert broker_settings_of(robot, owner) == ("OFF", "OFF", "")
-    assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
-    assert ended(robot, [(None, owner)], owner.forget_wifi()) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.forget_wifi()) == "OK"
     assert broker_settings_of(robot, owner)[0] == "OFF", "who gives a robot away forgets both"
-    assert b"hunter" not in b"".join(robot.kept().entries.values())
+    assert b"hunter" not in b"".join(robot.read_kept().entries.values())
 
 
 def test_what_is_no_broker_is_refused(broker: Mosquitto) -> None:
@@ -136,7 +139,9 @@ def test_what_is_no_broker_is_refused(broker: Mosquitto) -> None:
         wifi.BrokerSettings(bytes(4), 1883, "aula", b"a", b"a\0b"),
     ):
         assert not settings.is_sound
-        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE", settings
+        assert (
+            wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE"
+        ), settings
         assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
 
 
@@ -146,21 +151,21 @@ def test_a_name_and_a_password_where_the_broker_asks_for_them(
     user, password = "robots", "a long password: 40 letters and some more"
     own = brokers(user, password)
     robot, owner = at(own, Keys(), own.settings("aula", user, password))
-    assert b"40 letters" in robot.kept().entries[BROKER_KEY], "it has come whole"
+    assert b"40 letters" in robot.read_kept().entries[BROKER_KEY], "it has come whole"
     wrong = own.settings("aula", user, "another one")
-    assert ended(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
     until(robot, lambda: broker_settings_of(robot, owner)[1] == "REFUSED")
     for access in (Access(), Access(user, "another one"), Access("who", "x")):
         with pytest.raises(PortError) as failure:
-            own.connected(access)
+            own.connect_client(access)
         assert failure.value.reason == errors.REFUSED
-    own.connected(Access(user, password)).close()
+    own.connect_client(Access(user, password)).close()
 
 
 def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
     """Its silence counts from its last message, not from its first."""
     robot, _ = at(broker, Keys())
-    teacher, stranger = broker.connected(), broker.connected()
+    teacher, stranger = broker.connect_client(), broker.connect_client()
     topic = f"{ROOT}/aula/{ID}/in/"
     for k in range(4000):  # milliseconds: longer than a client may be silent
         if k % 250 == 0:
@@ -174,20 +179,20 @@ def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
     other.ping()
     talk(robot, [(end, other)], 300)
     assert end.has_ended, "it is told that another one has the robot"
-    teacher.publish(topic + teacher.peer, b"")  # that one leaves
+    teacher.publish(topic + teacher.peer, b"")  # this client leaves
     talk(robot, [(end, Bytes())], 100)
     end, other = AtBroker(robot, stranger), remote(robot, None, 13)
     end.port._patient_until_s = 0.0
-    assert ended(robot, [(end, other)], other.ping()) == "OK"
+    assert wait_for_outcome(robot, [(end, other)], other.ping()) == "OK"
     talk(robot, [(end, other)], 500)
     assert not end.has_ended, "it has the robot now, and is not told that again"
 
 
 def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosquitto) -> None:
-    """As many sockets as an ESP32 has it would have used up otherwise."""
+    """Otherwise it would use up all sockets of an ESP32."""
     robot, owner = at(broker, Keys())
     for _ in range(20):
-        assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
+        assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
     until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY", 10_000)
 
 
@@ -196,7 +201,7 @@ def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosqui
 
 def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
     robot, teacher, owner, ends = driving(broker)
-    stranger, other = broker.connected(), remote(robot, Keys(50), 11)
+    stranger, other = broker.connect_client(), remote(robot, Keys(50), 11)
     end = AtBroker(robot, stranger)
     end.port._patient_until_s = 0.0
     request = other.live(image_of("F(1, 9)").code)
@@ -207,7 +212,7 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
         stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", b"\3\2\1")
         talk(robot, ends, 10)
     pending_request = owner.status()
-    assert ended(robot, ends, pending_request) == "OK" and pending_request.outcome
+    assert wait_for_outcome(robot, ends, pending_request) == "OK" and pending_request.outcome
     assert pending_request.outcome.values.damaged == 0
     topic = f"{ROOT}/aula/{ID}/in/{teacher.peer}"
     for junk in (b"SI|B(9, 90)\n", b"\3\2\1\0" * 50, bytes(range(1, 255)), b"GET / HTTP/1.1\r\n"):
@@ -224,16 +229,16 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
         stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(length))
     talk(robot, ends, 500)
     assert motors(robot) == "MOTORS 80 80", "nor is what is too long, which is skipped"
-    assert ended(robot, ends, owner.ping()) == "OK"
+    assert wait_for_outcome(robot, ends, owner.ping()) == "OK"
     stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(STOP_BYTES))
     talk(robot, ends, 100)
     assert motors(robot) == "MOTORS 0 0"
 
 
 def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto) -> None:
-    """In one message, which ends a line; not in a frame, whose code may hold one."""
+    """It is a whole line in one message; a frame's code may contain such bytes."""
     robot, _, owner, ends = driving(broker)
-    stranger = broker.connected()
+    stranger = broker.connect_client()
     topic = f"{ROOT}/aula/{ID}/in/{stranger.peer}"
     for none in (
         b"ST\n",
@@ -250,13 +255,13 @@ def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto) -> None:
         stranger.publish(topic, stop)
         talk(robot, ends, 100)
         assert motors(robot) == "MOTORS 0 0", stop
-        assert uploaded(robot, ends, owner) == "OK"
+        assert upload_text(robot, ends, owner) == "OK"
 
 
 def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
     """A retained stop keeps no robot from driving, a retained request has nothing done."""
     keys = Keys()
-    stranger = broker.connected()
+    stranger = broker.connect_client()
     topics = [f"{ROOT}/aula/stop", f"{ROOT}/aula/{ID}/in/{stranger.peer}"]
     for topic in topics:
         stranger._client.publish(topic, bytes(STOP_BYTES), retain=True)
@@ -265,9 +270,9 @@ def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
         cable: Ends = [(None, owner)]
         in_reach(robot, "", "")
         talk(robot, cable, 50)
-        assert uploaded(robot, cable, owner) == "OK"
+        assert upload_text(robot, cable, owner) == "OK"
         school_in_reach(robot)
-        for _ in range(600):  # a broker says what it retains when the robot comes back
+        for _ in range(600):  # a broker repeats retained messages when the robot returns
             talk(robot, cable, 10)
             time.sleep(0.005)
             if broker_settings_of(robot, owner)[1] == "READY":
@@ -284,44 +289,44 @@ def test_what_is_said_again_has_nothing_done(
     broker: Mosquitto, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """All that the owner has said, later, in its order: a whole drive and more."""
-    heard: list[bytes] = []
+    heard_bytes: list[bytes] = []
     send = AtBroker.send
 
     def sends(end: AtBroker, data: bytes) -> None:
-        heard.append(data)
+        heard_bytes.append(data)
         send(end, data)
 
     monkeypatch.setattr(AtBroker, "send", sends)
     robot, _, _, ends = driving(broker, "SI|F(0.2, 80)")
-    thief = broker.connected()
+    thief = broker.connect_client()
     talk(robot, ends, 400)
     end = ends[0][0]
     assert isinstance(end, AtBroker)
     end.leave()
     talk(robot, [], AUTHORITY_MS + 3500)
-    before = len(robot.did)
-    for data in heard * 2:
+    count_before = len(robot.did)
+    for data in heard_bytes * 2:
         thief.publish(f"{ROOT}/aula/{ID}/in/{thief.peer}", data)
         thief.publish(end.port.topic, data)
         for _ in range(10):
             robot.step()
             time.sleep(0.0005)
-    assert heard and not [line for line in robot.did[before:] if "MOTORS" in line]
+    assert heard_bytes and not [line for line in robot.did[count_before:] if "MOTORS" in line]
 
 
 def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) -> None:
     robot, cable = at(broker, Keys())
-    assert ended(robot, [(None, cable)], cable.disown(0)) == "OK"
+    assert wait_for_outcome(robot, [(None, cable)], cable.disown(0)) == "OK"
     talk(robot, [], AUTHORITY_MS + 100)
-    before = len(robot.did)
-    teacher = broker.connected()
+    count_before = len(robot.did)
+    teacher = broker.connect_client()
     client = remote(robot, None)
     ends: Ends = [(AtBroker(robot, teacher), client)]
-    assert ended(robot, ends, client.ping()) == "OK"
+    assert wait_for_outcome(robot, ends, client.ping()) == "OK"
     for acting in (client.live(image_of("F(1, 9)").code), client.upload(image_of(AWAY)),
                    client.name(b"x")):  # fmt: skip
-        assert ended(robot, ends, acting) == "UNOWNED"
-    assert not [line for line in robot.did[before:] if "MOTORS" in line]
+        assert wait_for_outcome(robot, ends, acting) == "UNOWNED"
+    assert not [line for line in robot.did[count_before:] if "MOTORS" in line]
 
 
 # -- ends ---------------------------------------------------------------------------------------
@@ -350,11 +355,11 @@ def test_a_broker_that_is_gone_ends_the_run(brokers: Callable[..., Mosquitto], h
         own.start()
     school_in_reach(robot)
     cable = remote(robot, keys, 20)
-    assert ended(robot, [(None, cable)], cable.ping()) == "OK"
+    assert wait_for_outcome(robot, [(None, cable)], cable.ping()) == "OK"
     until(robot, lambda: broker_settings_of(robot, cable)[1] == "READY", 15_000)
-    next_client, end = remote(robot, keys, 13), own.connected()
+    next_client, end = remote(robot, keys, 13), own.connect_client()
     talk(robot, [], AUTHORITY_MS + 3000)
-    assert uploaded(robot, [(AtBroker(robot, end), next_client)], next_client) == "OK"
+    assert upload_text(robot, [(AtBroker(robot, end), next_client)], next_client) == "OK"
     end.close()
 
 
@@ -364,10 +369,10 @@ def test_a_client_that_leaves_or_hangs_ends_its_run_and_makes_room(broker: Mosqu
     assert end
     end.leave()
     until(robot, lambda: motors(robot) == "MOTORS 0 0", 200)
-    second, next_client = broker.connected(), remote(robot, keys, 13)
+    second, next_client = broker.connect_client(), remote(robot, keys, 13)
     ends: Ends = [(AtBroker(robot, second), next_client)]
     second.attend()
-    assert uploaded(robot, ends, next_client) == "OK"
+    assert upload_text(robot, ends, next_client) == "OK"
     assert motors(robot) == "MOTORS 80 80"
     time.sleep(0.6)
     talk(robot, ends, 400)
@@ -376,17 +381,17 @@ def test_a_client_that_leaves_or_hangs_ends_its_run_and_makes_room(broker: Mosqu
 
 @pytest.mark.parametrize("is_silent", [False, True])
 def test_the_last_will_says_who_is_not_there(broker: Mosquitto, is_silent: bool) -> None:
-    """A connection that ends, and one of which nothing is heard any more."""
+    """A connection that ends, and one that falls silent."""
     robot, _ = at(broker, Keys())
-    teacher = broker.connected()
+    teacher = broker.connect_client()
     if not is_silent:
         robot.close()
-    gone = [RobotPresence(ID, "tini-5678", False)]
-    in_time(lambda: teacher.list_robots("aula") == gone, "its last will")
+    gone_robot_presences = [RobotPresence(ID, "tini-5678", False)]
+    in_time(lambda: teacher.list_robots("aula") == gone_robot_presences, "its last will")
 
 
 def test_what_strangers_say_of_robots_is_bounded(broker: Mosquitto) -> None:
-    stranger, teacher = broker.connected(), broker.connected()
+    stranger, teacher = broker.connect_client(), broker.connect_client()
     announcements = {
         "12345678": b"+a/b+#\x1b[2J", "xyz": b"+no id", "1234567": b"+short", "1234567g": b"+no",
         "aaaaaaaa": b"?", "bbbbbbbb": b"", "cccccccc": b"+" + b"x" * 17, "dddddddd": b"+\xff\xfe",

@@ -25,12 +25,12 @@ from tests.support.esp32_broker import (
     present,
     until,
 )
-from tests.support.esp32_radio import known, talk
-from tests.support.esp32_wifi import joined, remote, school_in_reach
+from tests.support.esp32_radio import announce_computer, talk
+from tests.support.esp32_wifi import join_network, remote, school_in_reach
 from tests.support.mosquitto import LOCAL, AtBroker, Mosquitto
 from tests.support.network import CuttingNetwork
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import Ends, ended, uploaded
+from tests.support.robot_on_esp32 import Ends, upload_text, wait_for_outcome
 from tiniscript.link import wifi
 from tiniscript.link.messages import BROKER_NAME_BYTES, TRUST_BYTES
 from tiniscript.link.transports.broker import Access, Broker, RobotPresence
@@ -55,8 +55,10 @@ class Room(NamedTuple):
         tls = wifi.Tls(self.authority.der if trust is None else trust, today)
         return self.broker.settings()._replace(name=name.encode(), tls=tls)
 
-    def connected(self) -> Broker:
-        return self.broker.connected(Access(is_tls=True, trusted_file=str(self.authority.file)))
+    def connect(self) -> Broker:
+        return self.broker.connect_client(
+            Access(is_tls=True, trusted_file=str(self.authority.file))
+        )
 
 
 @pytest.fixture(scope="module")
@@ -77,12 +79,12 @@ def room(school: Room) -> Iterator[Room]:
 def test_the_owner_drives_over_tls(room: Room) -> None:
     keys = Keys()
     robot, _ = at(room.broker, keys, room.settings())
-    teacher = room.connected()
+    teacher = room.connect()
     assert present(robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
     owner = remote(robot, keys)
     ends: Ends = [(AtBroker(robot, teacher), owner)]
     lines = "".join(f"X = {k}; " for k in range(200))
-    assert uploaded(robot, ends, owner, f"SI|{lines}F(9, 80)") == "OK"
+    assert upload_text(robot, ends, owner, f"SI|{lines}F(9, 80)") == "OK"
     talk(robot, ends, 300)
     assert motors(robot) == "MOTORS 80 80"
     teacher.stop("aula")
@@ -112,15 +114,15 @@ def test_who_is_not_trusted_gets_nothing(
         settings = room.settings(today=LATER)
     else:
         settings = settings._replace(port=brokers().port)
-    robot, owner = joined(Keys())
-    assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+    robot, owner = join_network(Keys())
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
     until(robot, lambda: broker_settings_of(robot, owner)[1] == state)
     talk(robot, [(None, owner)], 1000)
     assert broker_settings_of(robot, owner)[1] == state, "it stays while the robot tries again"
     if state != "NO_TLS":
-        teacher = room.connected()
+        teacher = room.connect()
         assert not [presence for presence in present(robot, teacher) if presence.is_here]
-        assert ended(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
+        assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
         until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
 
 
@@ -129,14 +131,14 @@ def test_a_broker_that_is_set_anew_is_not_answered_with_what_was_wrong_before(
     room: Room, tmp_path: Path
 ) -> None:
     """Its task is looking a name up, for seconds, when the new one comes."""
-    robot, owner = joined(Keys())
-    known(robot, NAME, "127.0.0.1", wait_ms=3000)
+    robot, owner = join_network(Keys())
+    announce_computer(robot, NAME, "127.0.0.1", wait_ms=3000)
     wrong = room.settings(trust=Authority(tmp_path).der)
-    assert ended(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
     until(robot, lambda: broker_settings_of(robot, owner)[1] == "UNTRUSTED")
     talk(robot, [(None, owner)], 4500)
     assert broker_settings_of(robot, owner)[1] == "UNTRUSTED"
-    assert ended(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
     while (state := broker_settings_of(robot, owner)[1]) != "READY":
         assert state == "SEARCHING"
         talk(robot, [(None, owner)], 20)
@@ -147,52 +149,52 @@ def test_a_broker_that_is_set_anew_is_not_answered_with_what_was_wrong_before(
     (ssl.TLSVersion.TLSv1_1, "NO_TLS"), (ssl.TLSVersion.TLSv1_2, "SEARCHING"),
 ])  # fmt: skip
 def test_an_old_tls_is_none(tmp_path: Path, version: ssl.TLSVersion, state: str) -> None:
-    """A computer with the right certificate which is no broker."""
+    """The other end has the right certificate but is no broker."""
     authority = Authority(tmp_path)
     authority.rules(NAME)
     rules = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-    rules.set_ciphers("ALL:@SECLEVEL=0")  # else this computer offers no old version itself
+    rules.set_ciphers("ALL:@SECLEVEL=0")  # otherwise this computer offers no old version
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)
         rules.minimum_version = rules.maximum_version = version
-    rules.load_cert_chain(authority.signed(NAME), tmp_path / f"{NAME}.key")
-    robot, owner = joined(Keys())
-    spoken: list[str | None] = []
+    rules.load_cert_chain(authority.sign(NAME), tmp_path / f"{NAME}.key")
+    robot, owner = join_network(Keys())
+    spoken_texts: list[str | None] = []
     with socket.create_server(("127.0.0.1", 0)) as server:
         server.settimeout(120)
 
         def serve() -> None:
-            taken, _ = server.accept()
-            with taken, suppress(OSError):
-                spoken.append(rules.wrap_socket(taken, server_side=True).version())
+            client_socket, _ = server.accept()
+            with client_socket, suppress(OSError):
+                spoken_texts.append(rules.wrap_socket(client_socket, server_side=True).version())
 
         thread = Thread(target=serve)
         thread.start()
         tls = wifi.Tls(authority.der, TODAY)
         settings = PLAIN._replace(port=server.getsockname()[1], name=NAME.encode(), tls=tls)
-        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+        assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
         until(robot, lambda: not thread.is_alive())
         until(robot, lambda: broker_settings_of(robot, owner)[1] == state)
         thread.join()
-    assert spoken == ([] if state == "NO_TLS" else ["TLSv1.2"])
+    assert spoken_texts == ([] if state == "NO_TLS" else ["TLSv1.2"])
 
 
 @pytest.mark.parametrize("is_chain", [False, True])
 def test_the_brokers_own_certificate_is_enough_and_no_other_of_its_authority(
     tmp_path: Path, brokers: Callable[..., Mosquitto], is_chain: bool
 ) -> None:
-    """One that an authority has signed, which nobody knows. Its name and its date still count."""
+    """The certificate is signed by an unknown authority. Its name and date still count."""
     authority = Authority(tmp_path)
     own = Room(brokers(more=authority.rules(NAME, is_chain)), authority)
     authority.rules("other.aula")
-    trust, other = (der(authority.signed(name)) for name in (NAME, "other.aula"))
-    robot, owner = joined(Keys())
+    trust, other = (der(authority.sign(name)) for name in (NAME, "other.aula"))
+    robot, owner = join_network(Keys())
     for settings, state in (
         (own.settings(trust=other), "UNTRUSTED"), (own.settings(trust=trust), "READY"),
         (own.settings("localhost", trust=trust), "OTHER_NAME"),
         (own.settings(today=LATER, trust=trust), "EXPIRED"),
     ):  # fmt: skip
-        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+        assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
         talk(robot, [(None, owner)], 50)
         until(robot, lambda state=state: broker_settings_of(robot, owner)[1] == state)  # type: ignore[misc]
 
@@ -204,8 +206,8 @@ def test_a_broker_that_dies_ends_the_run_over_tls(
     own = Room(brokers(more=authority.rules(NAME)), authority)
     robot, _ = at(own.broker, keys, own.settings())
     owner = remote(robot, keys)
-    ends: Ends = [(AtBroker(robot, own.connected()), owner)]
-    assert uploaded(robot, ends, owner) == "OK"
+    ends: Ends = [(AtBroker(robot, own.connect()), owner)]
+    assert upload_text(robot, ends, owner) == "OK"
     talk(robot, ends, 500)
     assert motors(robot) == "MOTORS 80 80"
     own.broker.kill()
@@ -219,16 +221,16 @@ def test_a_broker_that_dies_ends_the_run_over_tls(
 def test_who_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: Room) -> None:
     """A computer that takes the connection and says nothing; then the broker."""
     keys = Keys()
-    robot, owner = joined(keys)
+    robot, owner = join_network(keys)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         settings = room.settings()._replace(port=silent.getsockname()[1])
-        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
-        assert uploaded(robot, [(None, owner)], owner) == "OK"
+        assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+        assert upload_text(robot, [(None, owner)], owner) == "OK"
         talk(robot, [(None, owner)], 300)
         assert motors(robot) == "MOTORS 80 80"
         talk(robot, [(None, owner)], 16_500)
         silent.settimeout(120)
-        for _ in range(2):  # it has tried again
+        for _ in range(2):  # until the second attempt
             silent.accept()[0].close()
         assert broker_settings_of(robot, owner)[1] == "SEARCHING"
 
@@ -238,15 +240,15 @@ def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Roo
     """In the first hello, in the certificate, after the handshake; and in pieces of 7 bytes."""
     cuts = CuttingNetwork(room.broker.port, (3, 200, 1500))
     keys = Keys()
-    robot, owner = joined(keys)
+    robot, owner = join_network(keys)
     try:
         settings = room.settings()._replace(port=cuts.port)
-        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+        assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
         until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
         assert cuts.bytes_left[:2] == [0, 0] and cuts.bytes_left[2] < 1500
-        teacher = room.connected()
+        teacher = room.connect()
         far = remote(robot, keys)
-        assert uploaded(robot, [(AtBroker(robot, teacher), far)], far) == "OK"
+        assert upload_text(robot, [(AtBroker(robot, teacher), far)], far) == "OK"
     finally:
         cuts.close()
 
@@ -257,10 +259,10 @@ def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Roo
 def test_a_broker_is_found_by_its_name_or_where_it_was(
     brokers: Callable[..., Mosquitto], name: str, address: bytes, is_found: bool
 ) -> None:
-    robot, owner = joined(Keys())
-    known(robot, NAME, "127.0.0.1")
+    robot, owner = join_network(Keys())
+    announce_computer(robot, NAME, "127.0.0.1")
     settings = brokers().settings()._replace(name=name.encode(), address=address)
-    assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
     if is_found:
         until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     talk(robot, [(None, owner)], 500)
@@ -272,7 +274,7 @@ PLAIN = wifi.BrokerSettings(LOCAL, 8883, "aula", name=b"x")
 
 
 def test_what_is_no_tls_is_refused() -> None:
-    robot, owner = joined(Keys())
+    robot, owner = join_network(Keys())
     for settings in (
         PLAIN._replace(name=b"", tls=wifi.Tls(TRUST, TODAY)),
         PLAIN._replace(tls=wifi.Tls(b"", TODAY)), PLAIN._replace(tls=wifi.Tls(TRUST, 0)),
@@ -280,21 +282,26 @@ def test_what_is_no_tls_is_refused() -> None:
         PLAIN._replace(name=b"x" * (BROKER_NAME_BYTES + 1)), PLAIN._replace(name=b"a\0b"),
     ):  # fmt: skip
         assert not settings.is_sound
-        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE", settings
+        assert (
+            wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE"
+        ), settings
         assert broker_settings_of(robot, owner) == ("OFF", "OFF", "")
     most = PLAIN._replace(name=b"x" * BROKER_NAME_BYTES, tls=wifi.Tls(bytes(TRUST_BYTES), TODAY))
     assert most.is_sound
-    assert ended(robot, [(None, owner)], owner.use_broker(most)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(most)) == "OK"
 
 
 def test_it_is_kept_and_used_after_a_reset_also_where_another_finds_no_room(room: Room) -> None:
     robot, owner = at(room.broker, Keys(), room.settings())
     robot.fill_nvs()
-    assert ended(robot, [(None, owner)], owner.use_broker(PLAIN)) == "NOT_KEPT"
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(PLAIN)) == "NOT_KEPT"
     talk(robot, [(None, owner)], 100)
     assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
-    restarted = Esp32Robot(kept=robot.kept())
-    school_in_reach(restarted)
-    restarted.wait(400)
-    teacher = room.connected()
-    until(restarted, lambda: present(restarted, teacher) == [RobotPresence(ID, "tini-5678", True)])
+    restarted_robot = Esp32Robot(kept_memory=robot.read_kept())
+    school_in_reach(restarted_robot)
+    restarted_robot.wait(400)
+    teacher = room.connect()
+    until(
+        restarted_robot,
+        lambda: present(restarted_robot, teacher) == [RobotPresence(ID, "tini-5678", True)],
+    )

@@ -1,4 +1,4 @@
-"""What an ESP32 gets compiles for cores 2 and 3, and for the instruction sets of its chips.
+"""The ESP32 sources compile with cores 2 and 3, and for the chips' instruction sets.
 
 Nothing here is Espressif's: headers of our own stand for theirs, `signatures.cpp` pins these.
 """
@@ -65,7 +65,7 @@ def test_a_chip_whose_own_usb_is_the_port(major: int) -> None:
 @pytest.mark.parametrize("pin", [18, 19])
 @pytest.mark.parametrize("part", ["Pwm kBuzzer = {{7", "Pin kStartButton = {8"])
 def test_a_header_that_takes_the_port_away_is_refused(part: str, pin: int, tmp_path: Path) -> None:
-    """One that was made before `tsc firmware --board` refused these pins."""
+    """A header from before `tsc firmware --board` refused these pins."""
     header = firmware.header([robots.load("tinibotc3")], "a test.")
     assert part in header
     own = tmp_path / "own.h"
@@ -97,7 +97,7 @@ def ram_of(isa: Chip, file: str) -> int:
     return data + bss
 
 
-# What the whole sketch asks of the core and of the compiler's library.
+# The parts of the core and of the compiler's library that the sketch uses.
 CORE = {
     "analogRead", "analogReadResolution", "attachInterrupt", "esp_reset_reason",
     "esp_rom_gpio_connect_out_signal", "esp_task_wdt_add", "esp_task_wdt_init",
@@ -118,7 +118,7 @@ CORE = {
     "mbedtls_ssl_set_hostname", "mbedtls_ssl_setup", "mbedtls_ssl_write",
     "mbedtls_x509_crt_free", "mbedtls_x509_crt_init", "mbedtls_x509_crt_parse_der",
 }  # fmt: skip
-# Classes of the radios' libraries, and what the compiler's own library has for them.
+# Classes of the radios' libraries, and their counterparts in the compiler's library.
 RADIO = re.compile(
     r"_Z(TV|TI|TS)?(NK?)?\d+(BLE\w+|BluetoothSerial|WiFiClass|MDNSResponder|String|IPAddress|EspClass)\w*"
 )
@@ -139,7 +139,7 @@ LIBRARY = re.compile(r"__\w+(si|di|sf|df)[234]?\d*|mem(cpy|set|cmp|move)|__\w*di
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("chip", sorted(ESP32S))
 def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_path: Path) -> None:
-    """By the compilers of the instruction sets: what stays open is what the core has."""
+    """With compilers for both instruction sets, only names of the core stay unresolved."""
     isa = CHIPS[ISA[chip]]
     if no_compiler(isa):
         pytest.skip(no_compiler(isa))
@@ -173,12 +173,12 @@ def test_every_file_says_for_which_chip_it_is() -> None:
 
 
 def test_our_macros_come_after_the_headers_of_the_core() -> None:
-    """And each has a name of ours: none may meet one of theirs."""
+    """Each has a prefix of ours, so none collides with the core's."""
     for path in sorted((BOARD / "esp32").glob("*.*")):
         text = path.read_text(encoding="utf-8")
-        defined = re.findall(r"^ *#define ([a-z]\w*)", text, flags=re.M)
-        assert all(name.startswith("tini") for name in defined), path.name
-        for name in defined:
+        defined_names = re.findall(r"^ *#define ([a-z]\w*)", text, flags=re.M)
+        assert all(name.startswith("tini") for name in defined_names), path.name
+        for name in defined_names:
             assert text.index(f"#define {name}") > text.rindex("#include <"), path.name
 
 

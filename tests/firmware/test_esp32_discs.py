@@ -28,13 +28,13 @@ from tiniscript.virtual.driving import Driving
 from tiniscript.virtual.wheels import Roughness, Wheels
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
-# Its wheels turn it as their places say, as those of a tinibot2 do.
+# Its wheels turn it according to their places, like those of a tinibot2.
 BODY = robots.load("tinibot2").body
 SLOTTED = with_discs("esp32dev", "slotted")._replace(body=BODY)
 TWO_CHANNELS = with_discs("esp32dev", "two_channel")._replace(body=BODY)
 KINDS = pytest.mark.parametrize("profile", [SLOTTED, TWO_CHANNELS], ids=["slotted", "two_channel"])
 SETTLES_US = 100  # a line, before the other channel changes
-LONGEST_US = 12  # that the filter takes for a glitch: 1023 / 80 MHz is 12.8
+LONGEST_US = 12  # longest pulse that the filter removes: 1023 / 80 MHz is 12.8
 
 
 class Driven:
@@ -64,8 +64,10 @@ class Driven:
     def run(self, milliseconds: int) -> None:
         for _ in range(milliseconds):
             self.robot.talk(self.session, 1)
-            driven = next((d for d in reversed(self.robot.did) if " MOTORS " in d), "0 MOTORS 0 0")
-            powers = zip(map(int, driven.split()[2:]), self._motors, strict=True)
+            driven_text = next(
+                (d for d in reversed(self.robot.did) if " MOTORS " in d), "0 MOTORS 0 0"
+            )
+            powers = zip(map(int, driven_text.split()[2:]), self._motors, strict=True)
             self.wheels.set(self.robot.now_ms, *(power * part / 100 for power, part in powers))
             for number, side in enumerate(("left", "right")):
                 wheel = self.wheels.wheels[number]
@@ -110,70 +112,70 @@ def counting(profile: Robot) -> tuple[Esp32Robot, dict[str, int]]:
 @KINDS
 @pytest.mark.parametrize("major", [2, 3])
 def test_it_goes_and_turns_as_far_as_was_said(profile: Robot, major: int) -> None:
-    driven = Driven(profile, (107.5, 92.5), major)
-    assert driven.drive("F(20 CM, 60); R(90 DEG, 60)").name == "DONE"
-    pose = driven.pose
+    driven_robot = Driven(profile, (107.5, 92.5), major)
+    assert driven_robot.drive("F(20 CM, 60); R(90 DEG, 60)").name == "DONE"
+    pose = driven_robot.pose
     assert abs(pose.x_cm - 20) <= 1.5 and abs(pose.y_cm) <= 2 and abs(pose.heading + 90) <= 6
 
 
 @pytest.mark.sampled("number")
 @pytest.mark.parametrize("number", [0, 1])
 def test_a_disc_that_is_unplugged_is_the_fault_of_its_wheel(number: int) -> None:
-    driven = Driven(SLOTTED, (100, 100))
-    driven.wheels.wheels[number].has_working_sensor = False
-    event = driven.drive("F(20 CM, 60)")
+    driven_robot = Driven(SLOTTED, (100, 100))
+    driven_robot.wheels.wheels[number].has_working_sensor = False
+    event = driven_robot.drive("F(20 CM, 60)")
     assert event.name == "FAULT" and event.fault == (5, 6)[number]
-    assert not any(wheel.wanted_speed for wheel in driven.wheels.wheels)
+    assert not any(wheel.wanted_speed for wheel in driven_robot.wheels.wheels)
 
 
 def test_a_counter_that_is_full_begins_again() -> None:
     """While nobody looks, at its limit; and in the middle of a way, where the driver clears it."""
-    driven = Driven(SLOTTED, (100, 100))
+    driven_robot = Driven(SLOTTED, (100, 100))
     assert SLOTTED.board.discs
     pins = [SLOTTED.board.discs.pins[side] for side in ("left", "right")]
-    robot = driven.robot
+    robot = driven_robot.robot
     robot.edges(*pulses(pins[0], 17_000, 20, 20))
-    before = robot.edges()
+    edges_before = robot.edges()
     robot.edges(*pulses(pins[0], 7_370, 20, 20), *pulses(pins[1], 16_380, 20, 20))
-    after = robot.edges()
-    counted = [(b - a) % 2**16 for a, b in zip(before, after, strict=True)]
+    edges_after = robot.edges()
+    counted = [(b - a) % 2**16 for a, b in zip(edges_before, edges_after, strict=True)]
     assert counted == [14_740, 32_760]
-    assert driven.drive("F(20 CM, 60)").name == "DONE"
-    assert abs(driven.pose.x_cm - 20) <= 1.5
+    assert driven_robot.drive("F(20 CM, 60)").name == "DONE"
+    assert abs(driven_robot.pose.x_cm - 20) <= 1.5
 
 
 def test_each_edge_counts_and_a_glitch_does_not() -> None:
     robot, pins = counting(SLOTTED)
-    begun = robot.edges()
+    start_edges = robot.edges()
     robot.edges(*pulses(pins["left"], 10, LONGEST_US), *pulses(pins["right"], 10, 1))
-    assert robot.edges() == begun
+    assert robot.edges() == start_edges
     counts = robot.edges(*pulses(pins["left"], 10, LONGEST_US + 1), *pulses(pins["right"], 3, 50))
-    assert [(b - a) % 2**16 for a, b in zip(begun, counts, strict=True)] == [20, 6]
+    assert [(b - a) % 2**16 for a, b in zip(start_edges, counts, strict=True)] == [20, 6]
 
 
 def test_two_channels_count_back() -> None:
-    """As on an Uno: `test_board_discs.py` has the same lines."""
+    """The cases are those of an Uno in `test_board_discs.py`."""
     robot, pins = counting(TWO_CHANNELS)
     a, b = pins["left"], pins["left_b"]
     states = [(True, False), (True, True), (False, True), (False, False)]
-    begun = robot.edges()[0]
+    start_edges = robot.edges()[0]
 
-    def moved(steps: list[int]) -> int:
+    def count_steps(steps: list[int]) -> int:
         changes = (
             (SETTLES_US, pin, level)
             for k in steps
             for pin, level in zip((a, b), states[k % 4], strict=True)
         )
-        return (robot.edges(*changes)[0] - begun) % 2**16
+        return (robot.edges(*changes)[0] - start_edges) % 2**16
 
-    assert moved([k % 4 for k in range(16)]) == 8
-    assert moved([(2 - k) % 4 for k in range(10)]) == 3
+    assert count_steps([k % 4 for k in range(16)]) == 8
+    assert count_steps([(2 - k) % 4 for k in range(10)]) == 3
 
 
 @pytest.mark.sampled("pins")
 @pytest.mark.parametrize("pins", [{"left": 34, "right": 35}, {"left": 36, "right": 39}])
 def test_pins_that_only_read_count(pins: dict[str, int]) -> None:
-    """They have no pull-up: the sensor's own one is there."""
+    """Such pins have no pull-up, but the sensor has its own."""
     discs = SLOTTED.board.discs
     assert discs
     profile = SLOTTED._replace(
@@ -181,9 +183,9 @@ def test_pins_that_only_read_count(pins: dict[str, int]) -> None:
         kit=SLOTTED.kit._replace(sensors=()),
     )
     robot, _ = counting(profile)
-    begun = robot.edges()
+    start_edges = robot.edges()
     counts = robot.edges(*pulses(pins["left"], 4, 50), *pulses(pins["right"], 2, 50))
-    assert [(b - a) % 2**16 for a, b in zip(begun, counts, strict=True)] == [8, 4]
+    assert [(b - a) % 2**16 for a, b in zip(start_edges, counts, strict=True)] == [8, 4]
 
 
 @KINDS

@@ -1,4 +1,4 @@
-"""Who drives a robot that is reached over several transports, and when another one does."""
+"""The driver of a robot that is reachable over several transports, and changes of the driver."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import pytest
 
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
-from tests.support.esp32_wifi import owned, remote
+from tests.support.esp32_wifi import make_owned_robot, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import AWAY, Ends, booted, ended, uploaded
+from tests.support.robot_on_esp32 import AWAY, Ends, boot, upload_text, wait_for_outcome
 from tests.support.robot_on_host import actions_of
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import AUTHORITY_MS, LISTEN_MS
@@ -26,9 +26,9 @@ PAUSE_MS = AUTHORITY_MS // 2
 def pair(is_owned: bool) -> tuple[Esp32Robot, Session, Session]:
     """Return a robot and two who may drive it."""
     if not is_owned:
-        robot = booted()
+        robot = boot()
         return robot, session(1, robot), session(2, robot)
-    robot, first = owned(keys := Keys())
+    robot, first = make_owned_robot(keys := Keys())
     return robot, first, remote(robot, keys, 2)
 
 
@@ -37,16 +37,16 @@ def pair(is_owned: bool) -> tuple[Esp32Robot, Session, Session]:
 def test_an_open_page_that_does_nothing_gives_way(is_owned: bool) -> None:
     robot, page, other = pair(is_owned)
     ends: Ends = [(None, page), (LowEnergy(robot), other)]
-    assert uploaded(robot, ends, page, SHORT) == "OK"
+    assert upload_text(robot, ends, page, SHORT) == "OK"
     talk(robot, ends, AUTHORITY_MS - 300)
-    assert uploaded(robot, ends, other) == "OTHER_DRIVER", "it may be about to send the next one"
+    assert upload_text(robot, ends, other) == "OTHER_DRIVER", "it may be about to send the next one"
     talk(robot, ends, 60_000)
-    assert uploaded(robot, ends, other) == "OK"
+    assert upload_text(robot, ends, other) == "OK"
     assert actions_of(robot)[-1] == "MOTORS 80 80"
-    assert uploaded(robot, ends, page, SHORT) == "OTHER_DRIVER"
+    assert upload_text(robot, ends, page, SHORT) == "OTHER_DRIVER"
     other.stop(robot.now_ms)
     talk(robot, ends, AUTHORITY_MS + 300)
-    assert uploaded(robot, ends, page, SHORT) == "OK", "and so does the other one"
+    assert upload_text(robot, ends, page, SHORT) == "OK", "and so does the other one"
 
 
 @pytest.mark.sampled("is_owned")
@@ -58,14 +58,14 @@ def test_whose_program_runs_keeps_the_wheel_while_he_is_heard(
     robot, page, other = pair(is_owned)
     ends: Ends = [(None, page), (LowEnergy(robot), other)]
     upload = page.upload(image_of(AWAY), saves=False, is_detached=is_detached)
-    assert ended(robot, ends, upload) == "OK"
+    assert wait_for_outcome(robot, ends, upload) == "OK"
     for _ in range(5):
         talk(robot, ends, 5000)
-        assert uploaded(robot, ends, other) == "OTHER_DRIVER"
+        assert upload_text(robot, ends, other) == "OTHER_DRIVER"
     assert actions_of(robot)[-1] == "MOTORS 80 80"
     page.stop(robot.now_ms)
     talk(robot, ends, AUTHORITY_MS + 300)
-    assert uploaded(robot, ends, other) == "OK"
+    assert upload_text(robot, ends, other) == "OK"
 
 
 SHOWS = "SI|F(0.1, 80);LOOP(FOREVER);SHOW(7);W(0.5);END_LOOP"
@@ -80,35 +80,35 @@ def test_what_runs_alone_is_anybodys_when_its_client_is_not_heard(
     robot, page, other = pair(is_owned)
     ends: Ends = [(None, page), (LowEnergy(robot), other)]
     upload = page.upload(image_of(SHOWS), saves=False, is_detached=True)
-    assert ended(robot, ends, upload) == "OK"
+    assert wait_for_outcome(robot, ends, upload) == "OK"
     if "button" in starts:  # a stop, and a start
         for _ in range(2):
             talk(robot, ends, 100, flags=1)
             talk(robot, ends, 300, flags=2)
     only = ends[1:]
-    assert ended(robot, only, other.hello()) == "OK"
+    assert wait_for_outcome(robot, only, other.hello()) == "OK"
     talk(robot, only, LISTEN_MS + 600)
     other.events()
     talk(robot, only, 2000)
     assert {event.name for event in other.events()} == {"SHOW"}
-    assert uploaded(robot, only, other) == "OK"
+    assert upload_text(robot, only, other) == "OK"
     assert actions_of(robot)[-1] == "MOTORS 80 80"
 
 
 def test_a_page_gives_way_to_nobody_without_a_key() -> None:
     robot, page, _ = pair(is_owned=True)
-    stranger, typed = session(5, robot), Bytes()
+    stranger, typed_bytes = session(5, robot), Bytes()
     end = LowEnergy(robot)
-    assert uploaded(robot, [(None, page)], page, SHORT) == "OK"
+    assert upload_text(robot, [(None, page)], page, SHORT) == "OK"
     talk(robot, [(None, page)], 5000)
-    assert uploaded(robot, [(None, page), (end, stranger)], stranger) == "NOT_OWNER"
+    assert upload_text(robot, [(None, page), (end, stranger)], stranger) == "NOT_OWNER"
     end.leave()
-    typed.to_send = b"SI|F(60, 80)\n"
-    talk(robot, [(None, page), (LowEnergy(robot), typed)], 1500)
+    typed_bytes.to_send = b"SI|F(60, 80)\n"
+    talk(robot, [(None, page), (LowEnergy(robot), typed_bytes)], 1500)
     assert "MOTORS 80 80" not in actions_of(robot)
 
 
-UPLOAD = "an upload"  # one, of which little arrives in each turn
+UPLOAD = "an upload"  # an upload with few bytes in each turn
 CHANGES: dict[str, Callable[[Session, int], PendingRequest[Any]]] = {
     UPLOAD: lambda who, turn: who.upload(
         image_of("SB|" + ";".join(["F(1, 80)"] * 1500)), saves=False
@@ -129,8 +129,8 @@ def test_who_goes_on_is_not_overtaken(what: str, is_owned: bool) -> None:
     robot, page, other = pair(is_owned)
     far = LowEnergy(robot)
     ends: Ends = [(None, page), (far, other)]
-    page._baud = 9600  # so it sends little at once
-    assert uploaded(robot, ends, page, SHORT) == "OK"
+    page._baud = 9600  # a low speed, so that few bytes are sent at once
+    assert upload_text(robot, ends, page, SHORT) == "OK"
     talk(robot, ends, 300)
     for turn in range(3 * AUTHORITY_MS // PAUSE_MS + 1):
         if what != UPLOAD or turn == 0:
@@ -139,20 +139,20 @@ def test_who_goes_on_is_not_overtaken(what: str, is_owned: bool) -> None:
         status = None if request.outcome is None else request.outcome.status
         assert status == (None if what == UPLOAD else OK), turn
         talk(robot, [(far, other)], PAUSE_MS)
-        assert uploaded(robot, [(far, other)], other, SHORT) == "OTHER_DRIVER", turn
+        assert upload_text(robot, [(far, other)], other, SHORT) == "OTHER_DRIVER", turn
     talk(robot, [(far, other)], AUTHORITY_MS)
-    assert uploaded(robot, [(far, other)], other) == "OK"
+    assert upload_text(robot, [(far, other)], other) == "OK"
 
 
 # -- the button -------------------------------------------------------------------------------
 
 
 def runs(robot: Esp32Robot, ends: Ends, page: Session) -> None:
-    assert uploaded(robot, ends, page) == "OK"
+    assert upload_text(robot, ends, page) == "OK"
 
 
 def waits(robot: Esp32Robot, ends: Ends, page: Session) -> None:
-    assert uploaded(robot, ends, page, "SB|F(60, 80)") == "OK"
+    assert upload_text(robot, ends, page, "SB|F(60, 80)") == "OK"
 
 
 def stands(robot: Esp32Robot, ends: Ends, page: Session) -> None:
@@ -167,7 +167,7 @@ def stands(robot: Esp32Robot, ends: Ends, page: Session) -> None:
 def test_behind_the_button_anybody_drives(
     before: Callable[[Esp32Robot, Ends, Session], None], is_owned: bool, has_passed: bool
 ) -> None:
-    """Who has driven before, and is heard, has nothing to do with what it has started."""
+    """The previous driver, though still heard, has no part in the new run."""
     robot, page, other = pair(is_owned)
     ends: Ends = [(None, page), (LowEnergy(robot), other)]
     before(robot, ends, page)
@@ -176,4 +176,4 @@ def test_behind_the_button_anybody_drives(
         talk(robot, ends, 300, flags=2)
     assert actions_of(robot)[-1] == "MOTORS 80 80", "the button has started it"
     talk(robot, ends, AUTHORITY_MS + 300 if has_passed else 1)
-    assert uploaded(robot, ends, other) == "OK"
+    assert upload_text(robot, ends, other) == "OK"

@@ -19,10 +19,10 @@ import pytest
 
 from tests.machines.esp32 import Esp32Robot, Kept
 from tests.support.bytes_around import PIECES
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.compared_answers import answer_without_counts, first_difference, without_counts
 from tests.support.esp32_radio import Bytes, Client, End, talk
-from tests.support.esp32_wifi import joined, remote, remote_with_wrong_key, school_in_reach
+from tests.support.esp32_wifi import join_network, remote, remote_with_wrong_key, school_in_reach
 from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import TRANSPORTS, Make
@@ -50,20 +50,20 @@ ASKS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
 }
 LINES = (b"SI|F(0.1, 80);SHOW(3)\n", b"F(0.1, 30)\n", b"FOO(1)\n", b"HELP\n", b"SI|LOOP(2)\n",
          b"SI|F(1", b"S\n", b"PING|CHECK_CONNECTION\n", b"SB|B(0.2, 40)\n")  # fmt: skip
-# What is said about the program in memory, which none has saved.
+# The state of the program in memory, which is not saved.
 OF_MEMORY = ("program", "length", "slot", "saved")
 MAKES: list[Make | None] = [None, *TRANSPORTS]  # None: the cable
-NETWORK = 3  # which has several places
+NETWORK = 3  # a transport with several slots
 OVER_MS = max(LISTEN_MS, AUTHORITY_MS) + 1200
 
 
 @lru_cache(maxsize=1)
 def at_school() -> tuple[Kept, RobotKey]:
-    """Return what a robot with an owner and a network keeps, and the owner's key."""
+    """Return the memory of a robot with an owner and a network, and the owner's key."""
     keys = Keys()
-    robot, _ = joined(keys)
+    robot, _ = join_network(keys)
     robot.wait(2000)
-    return robot.kept(), keys.stored_keys[0]
+    return robot.read_kept(), keys.stored_keys[0]
 
 
 class Guest(NamedTuple):
@@ -76,12 +76,12 @@ class Guest(NamedTuple):
 class Scene:
     """A robot, and all who are connected."""
 
-    def __init__(self, kept: Kept) -> None:
-        self.robot = Esp32Robot(kept=kept)
+    def __init__(self, kept_memory: Kept) -> None:
+        self.robot = Esp32Robot(kept_memory=kept_memory)
         school_in_reach(self.robot)
         self.robot.wait(500)
         self.guests: list[Guest] = []
-        self.places = [0]  # where somebody was
+        self.places = [0]  # slots used so far
         self.nonce = 10
 
     def new(self, what: str) -> Client:
@@ -94,8 +94,8 @@ class Scene:
             return remote_with_wrong_key(self.robot, keys, self.nonce)
         return remote(self.robot, None, self.nonce) if what == "stranger" else Bytes()
 
-    def come(self, place: int, what: str) -> Guest | None:
-        """Let somebody connect, over a radio or the cable, unless its place is taken."""
+    def connect_guest(self, place: int, what: str) -> Guest | None:
+        """Connect a guest over a radio or the cable, unless the slot is taken."""
         if place != NETWORK and any(guest.place == place for guest in self.guests):
             return None
         make = MAKES[place]
@@ -127,7 +127,7 @@ def a_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
     """
     what = rng.randrange(8)
     if what == 0 or not scene.guests:
-        scene.come(rng.randrange(is_soon, 4), rng.choice(WHO))
+        scene.connect_guest(rng.randrange(is_soon, 4), rng.choice(WHO))
         return
     guest = rng.choice(scene.guests)
     if what == 1:
@@ -148,14 +148,14 @@ def a_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
 
 
 def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
-    """Let somebody come to a place, and mostly another one, too; return all that can be seen."""
+    """Connect one or two guests; return everything that can be observed."""
     robot = scene.robot
     states: list[object] = []
     robot.did.clear()
     scene.nonce = 100
     guests: list[Guest] = []
     for place in {first: 0, rng.randrange(4): 0}:
-        guest = scene.come(place, rng.choice(WITHOUT_THIEF))
+        guest = scene.connect_guest(place, rng.choice(WITHOUT_THIEF))
         assert guest
         guests.append(guest)
     for _ in range(rng.choice((2, 4))):
@@ -174,7 +174,7 @@ def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
         rows = (line.split(" ", 1) for line in robot.did)
         states.append([(int(ms) - begun_ms, what) for ms, what in rows])
         robot.did.clear()
-    scene.talk(1200)  # an answer in text waits behind a frame that told nobody of the stop
+    scene.talk(1200)  # a text answer waits after a frame that did not report the stop
     texts = [client.heard for _, client, *_ in guests if isinstance(client, Bytes)]
     return [*states, [sorted(re.findall(rb"// [^\r\n]*\r\n", data)) for data in texts]]
 
@@ -185,11 +185,11 @@ def check(seed: int) -> str:
     wait_ms = rng.choice((3, 30, 300, OVER_MS))
     for _ in range(rng.choice((2, 4, 8, 16))):
         a_step(scene, rng, wait_ms < OVER_MS)
-    did = scene.robot.did[:]
+    actions = scene.robot.did[:]
     scene.talk(1, 2)
     while scene.guests:
         scene.leave(scene.guests[0])
-    both = [scene, Scene(scene.robot.kept())]
+    both = [scene, Scene(scene.robot.read_kept())]
     drawn_alike, place = rng.random(), rng.choice(scene.places)
     states_of_both = []
     for one_scene in both:
@@ -197,7 +197,7 @@ def check(seed: int) -> str:
         one_scene.robot.wait(wait_ms)
         states_of_both.append(observe(one_scene, place, random.Random(drawn_alike)))
     assert states_of_both[0] == states_of_both[1], (
-        f"{did}\n{wait_ms}\n{first_difference(*states_of_both)}"
+        f"{actions}\n{wait_ms}\n{first_difference(*states_of_both)}"
     )
     return "at once" if wait_ms < OVER_MS else "later"
 
@@ -210,4 +210,4 @@ def test_a_robot_is_as_its_twin(part: int) -> None:
 
 
 if __name__ == "__main__":
-    each_seed(check, wanted(200, 10_000))
+    each_seed(check, make_options(200, 10_000))

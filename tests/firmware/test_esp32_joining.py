@@ -1,4 +1,6 @@
-"""How an ESP32 joins its network: one owner of tries, who waits between them and for a lease."""
+"""How an ESP32 joins its network: a single owner of retries, waiting between them and for a
+lease.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +9,9 @@ from struct import pack
 import pytest
 
 from tests.support.esp32_radio import in_reach, radios, talk
-from tests.support.esp32_wifi import SCHOOL, joined, owned, school_in_reach, state
+from tests.support.esp32_wifi import SCHOOL, join_network, make_owned_robot, school_in_reach, state
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import Ends, booted, ended
+from tests.support.robot_on_esp32 import Ends, boot, wait_for_outcome
 
 drawn = pytest.mark.sampled(of="how an ESP32 joins", keep=2)
 
@@ -18,11 +20,11 @@ TRY_MS = 15_000  # kJoinAgainMs
 
 @drawn
 def test_an_address_that_comes_late_is_waited_for() -> None:
-    robot, owner = owned(Keys())
+    robot, owner = make_owned_robot(Keys())
     ends: Ends = [(None, owner)]
     school_in_reach(robot)
     robot.radio("l", pack("<I", 40_000))
-    assert ended(robot, ends, owner.join(SCHOOL)) == "OK"
+    assert wait_for_outcome(robot, ends, owner.join(SCHOOL)) == "OK"
     talk(robot, ends, 39_000)
     assert state(robot, owner) == ("STATION", "SEARCHING")
     talk(robot, ends, 2000)
@@ -32,9 +34,9 @@ def test_an_address_that_comes_late_is_waited_for() -> None:
 
 @drawn
 def test_a_robot_away_from_school_leaves_the_antenna_to_bluetooth() -> None:
-    robot, owner = owned(Keys())
+    robot, owner = make_owned_robot(Keys())
     ends: Ends = [(None, owner)]
-    assert ended(robot, ends, owner.join(SCHOOL)) == "OK"
+    assert wait_for_outcome(robot, ends, owner.join(SCHOOL)) == "OK"
     robot.wait(20 * TRY_MS)
     assert 20 <= radios(robot).joins <= 21
     school_in_reach(robot)
@@ -44,7 +46,7 @@ def test_a_robot_away_from_school_leaves_the_antenna_to_bluetooth() -> None:
 
 @drawn
 def test_a_network_that_comes_back_is_joined() -> None:
-    robot, owner = joined(Keys())
+    robot, owner = join_network(Keys())
     robot.wait(TRY_MS)
     for away_ms in (50, 1000, 100_000):
         in_reach(robot, "", "")
@@ -56,8 +58,8 @@ def test_a_network_that_comes_back_is_joined() -> None:
 
 @drawn
 def test_a_network_that_sends_the_robot_away_is_joined_again() -> None:
-    """Where an authentication is over, the status stays "connected", and `begin` does nothing."""
-    robot, owner = joined(Keys())
+    """After an ended authentication the status stays "connected", and `begin` does nothing."""
+    robot, owner = join_network(Keys())
     robot.wait(2 * TRY_MS)
     joins = radios(robot).joins
     for turn in range(3):
@@ -69,6 +71,6 @@ def test_a_network_that_sends_the_robot_away_is_joined_again() -> None:
 
 def test_nothing_but_the_link_is_on_the_cable() -> None:
     """Espressif's libraries tell their errors there, in the middle of a frame."""
-    robot = booted()
+    robot = boot()
     robot.radio("L")
     assert robot.wait(50) == b""

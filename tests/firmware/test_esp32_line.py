@@ -10,17 +10,17 @@ import pytest
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import session, talk
 from tests.support.images import image_of
-from tests.support.robot_on_esp32 import Ends, booted, ended
+from tests.support.robot_on_esp32 import Ends, boot, wait_for_outcome
 from tests.support.robot_on_host import actions_of
 from tiniscript.link.messages import STOP_ZEROS
 
 NAMES = ["tinibot32", "tinibotc3"]
 FORWARD, OFF = "MOTORS 80 80", "MOTORS 0 0"
-FIFO_MS = 12  # until the driver has handed over what the chip has received
+FIFO_MS = 12  # time until the driver hands over the chip's bytes
 
 
-def typed(robot: Esp32Robot, line: bytes = b"F(60, 80)\r\n") -> Esp32Robot:
-    """Let a robot do what needs no computer."""
+def type_line(robot: Esp32Robot, line: bytes = b"F(60, 80)\r\n") -> Esp32Robot:
+    """Send a robot a line of text, after which it needs no computer."""
     robot.step(line)
     robot.wait(200)
     return robot
@@ -29,14 +29,14 @@ def typed(robot: Esp32Robot, line: bytes = b"F(60, 80)\r\n") -> Esp32Robot:
 def framing(robot: Esp32Robot) -> int:
     client = session(9, robot)
     status = client.status()
-    assert ended(robot, [(None, client)], status) == "OK" and status.outcome
+    assert wait_for_outcome(robot, [(None, client)], status) == "OK" and status.outcome
     return status.outcome.values.framing
 
 
 @pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", NAMES)
 def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(name: str) -> None:
-    robot = typed(booted(name))
+    robot = type_line(boot(name))
     assert actions_of(robot) == [FORWARD]
     robot.hold_line()
     robot.wait(10)
@@ -45,7 +45,7 @@ def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(name: str)
     for _ in range(3):
         robot.hold_line(False)
         robot.wait(1200)
-        typed(robot, b"SI|F(60, 80)\r\n")
+        type_line(robot, b"SI|F(60, 80)\r\n")
         assert actions_of(robot)[-1] == FORWARD, "a line that is high again has a sender"
         robot.hold_line()
         robot.wait(10)
@@ -57,11 +57,11 @@ def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(name: str)
 
 def test_a_line_that_stays_low_has_no_sender() -> None:
     """A cable that was pulled out stays as it is, and the robot has its button."""
-    robot = booted()
+    robot = boot()
     client = session(1, robot)
     ends: Ends = [(None, client)]
     upload = client.upload(image_of("SB|F(60, 80)"))
-    assert ended(robot, ends, upload) == "OK"
+    assert wait_for_outcome(robot, ends, upload) == "OK"
     talk(robot, ends, 2000)
     robot.hold_line()
     robot.wait(1500)
@@ -69,7 +69,7 @@ def test_a_line_that_stays_low_has_no_sender() -> None:
     robot.wait(3000)
     assert actions_of(robot)[-1] == FORWARD
     robot.push()
-    dead = Esp32Robot(kept=robot.kept())
+    dead = Esp32Robot(kept_memory=robot.read_kept())
     dead.hold_line()
     dead.wait(500)
     dead.push()
@@ -79,19 +79,19 @@ def test_a_line_that_stays_low_has_no_sender() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_short_disturbance_stops_no_robot(name: str) -> None:
-    robot = typed(booted(name))
+    robot = type_line(boot(name))
     for _ in range(3):
         robot.hold_line()
         robot.wait(2)  # much longer than a byte
         robot.hold_line(False)
         robot.wait(50)
-        robot.step(b"// \r\n")  # what came before does not count any more
+        robot.step(b"// \r\n")  # earlier bytes no longer matter
     robot.wait(1000)
     assert actions_of(robot) == [FORWARD]
 
 
 def test_each_byte_with_a_framing_error_is_a_zero() -> None:
-    robot = typed(booted())
+    robot = type_line(boot())
     for spoiled in (3, 4):
         robot.step(b"//\r\n")
         robot.wait(50)
@@ -104,8 +104,8 @@ def test_each_byte_with_a_framing_error_is_a_zero() -> None:
 
 @pytest.mark.parametrize("pause_ms", [1, 5, FIFO_MS, FIFO_MS + 1, 30, 200])
 def test_each_byte_with_a_framing_error_counts_as_soon_as_the_first_one(pause_ms: int) -> None:
-    """Nothing follows it, and there were others before."""
-    robot = typed(booted())
+    """No byte follows it, and others preceded it."""
+    robot = type_line(boot())
     for _ in range(3):
         assert actions_of(robot)[-1] == FORWARD
         for _ in range(STOP_ZEROS):
@@ -114,26 +114,26 @@ def test_each_byte_with_a_framing_error_counts_as_soon_as_the_first_one(pause_ms
         robot.wait(FIFO_MS + 2)
         assert actions_of(robot)[-1] == OFF
         robot.wait(1200)
-        typed(robot, b"SI|F(60, 80)\r\n")
+        type_line(robot, b"SI|F(60, 80)\r\n")
 
 
-@pytest.mark.parametrize("before", [b"", b"F(60, ", b"F(60, 80"])
-def test_a_line_with_a_framing_error_in_it_does_nothing(before: bytes) -> None:
+@pytest.mark.parametrize("bytes_before", [b"", b"F(60, ", b"F(60, 80"])
+def test_a_line_with_a_framing_error_in_it_does_nothing(bytes_before: bytes) -> None:
     """Wherever it is in it, and however late the driver hands the byte over."""
     for late_ms in (0, 1, 5, FIFO_MS - 2):
-        robot = booted()
-        robot.step(before)
+        robot = boot()
+        robot.step(bytes_before)
         robot.spoil_byte()
         robot.wait(late_ms)
-        robot.step(b"F(60, 80)\r\n"[len(before) :])
+        robot.step(b"F(60, 80)\r\n"[len(bytes_before) :])
         robot.wait(200)
-        assert actions_of(robot) == [], (before, late_ms)
+        assert actions_of(robot) == [], (bytes_before, late_ms)
         robot.wait(1200)
-        assert actions_of(typed(robot)) == [FORWARD], "the next line is another one"
+        assert actions_of(type_line(robot)) == [FORWARD], "the next line is another one"
 
 
 def test_bytes_after_a_framing_error_are_no_line_that_is_held() -> None:
-    robot = typed(booted())
+    robot = type_line(boot())
     robot.spoil_byte()
     for _ in range(100):
         robot.step(b"\x01\x02\x04\x08")

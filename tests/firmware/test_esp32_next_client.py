@@ -1,4 +1,4 @@
-"""What one client did, or did not do, costs the next client of its place nothing."""
+"""The actions or omissions of one client cost the next client of its slot nothing."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from tests.support.esp32_radio import (
     takes,
     talk,
 )
-from tests.support.esp32_wifi import far_owner, owned, remote, remote_with_wrong_key
+from tests.support.esp32_wifi import far_owner, make_owned_robot, remote, remote_with_wrong_key
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import AWAY, TRANSPORTS, Ends, Make, ended, uploaded
+from tests.support.robot_on_esp32 import AWAY, TRANSPORTS, Ends, Make, upload_text, wait_for_outcome
 from tests.support.robot_on_host import actions_of
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
@@ -35,7 +35,7 @@ drawn = pytest.mark.sampled(of="places of clients", keep=1)
 def shows_wrong_keys(robot: Esp32Robot, end: End, keys: Keys) -> None:
     thief = remote_with_wrong_key(robot, keys, 1)
     for _ in range(10):
-        assert ended(robot, [(end, thief)], thief.start()) != "OK"
+        assert wait_for_outcome(robot, [(end, thief)], thief.start()) != "OK"
 
 
 def begins_an_upload(robot: Esp32Robot, end: End, keys: Keys) -> None:
@@ -70,11 +70,11 @@ WRONGS = {
 
 
 def owners_time(robot: Esp32Robot, make: Make, keys: Keys) -> int:
-    """Return how long the owner takes from a new connection until a program runs."""
+    """Return the owner's time from a new connection until a program runs."""
     owner = remote(robot, keys, 8)
     began_ms = robot.now_ms
     ends: Ends = [(make(robot), owner)]
-    assert uploaded(robot, ends, owner, AWAY) == "OK"
+    assert upload_text(robot, ends, owner, AWAY) == "OK"
     return robot.now_ms - began_ms
 
 
@@ -106,11 +106,11 @@ def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -
 
 @pytest.mark.sampled("make")
 @pytest.mark.parametrize("make", TRANSPORTS[:2])
-@pytest.mark.parametrize("typed", [b"OK+CONN", b"\0si|", b"SI|LOOP(2)", b"FOO(1)\n"])
-def test_nobody_is_told_what_another_one_has_typed(make: Make, typed: bytes) -> None:
-    robot, _ = owned(Keys())
+@pytest.mark.parametrize("typed_bytes", [b"OK+CONN", b"\0si|", b"SI|LOOP(2)", b"FOO(1)\n"])
+def test_nobody_is_told_what_another_one_has_typed(make: Make, typed_bytes: bytes) -> None:
+    robot, _ = make_owned_robot(Keys())
     talk(robot, [], AUTHORITY_MS)
-    talk(robot, [(end := make(robot), Bytes(typed))], 2)
+    talk(robot, [(end := make(robot), Bytes(typed_bytes))], 2)
     end.leave()
     talk(robot, [], 1)
     talk(robot, [(make(robot), other := Bytes(b"\0"))], 4000)
@@ -141,7 +141,7 @@ CUT_STOPS = [
 def test_what_two_clients_say_is_no_stop_of_both(make: Make, pause_ms: int) -> None:
     robot, end, owner = far_owner(Keys())
     ends: Ends = [(end, owner)]
-    assert uploaded(robot, ends, owner, AWAY) == "OK"
+    assert upload_text(robot, ends, owner, AWAY) == "OK"
     for parts in CUT_STOPS:
         for part in parts:
             talk(robot, [*ends, (other := make(robot), Bytes(part))], 20)
@@ -185,18 +185,18 @@ def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, reques
 
 def test_the_next_client_gets_no_more_at_once_than_it_has_agreed_to() -> None:
     """Whatever the one before has: who agrees to nothing gets 20 bytes."""
-    robot, _ = owned(Keys())
+    robot, _ = make_owned_robot(Keys())
     for mtu in (LEAST_MTU, 247, LEAST_MTU, 100, 60, 247, LEAST_MTU):
         end, who = LowEnergy(robot, mtu), session(mtu, robot)
-        assert ended(robot, [(end, who)], who.status()) == "OK"
-        assert ended(robot, [(end, who)], who.hello()) == "OK"
+        assert wait_for_outcome(robot, [(end, who)], who.status()) == "OK"
+        assert wait_for_outcome(robot, [(end, who)], who.hello()) == "OK"
         assert 0 < max(end.lengths) <= mtu - 3
         end.leave()
         talk(robot, [], 5)
 
 
 class Late(LowEnergy):
-    """One that has not subscribed yet."""
+    """A Bluetooth client that has not subscribed yet."""
 
     def subscribe(self, has_subscribed: bool = False) -> None:
         if has_subscribed:
@@ -204,7 +204,7 @@ class Late(LowEnergy):
 
 
 def test_the_next_client_hears_its_own_answers_once_it_has_subscribed() -> None:
-    robot, _ = owned(Keys())
+    robot, _ = make_owned_robot(Keys())
     talk(robot, [(end := LowEnergy(robot), Bytes(b"\0"))], 20)
     for number in range(3):
         end.leave()
@@ -229,21 +229,21 @@ PLACE_MS = 10_000  # kPlaceMs of radio.h
 
 @drawn
 def test_a_silent_phone_keeps_nobody_off_bluetooth() -> None:
-    """Not for longer than ten seconds, and where nobody comes, not at all."""
-    robot, _ = owned(keys := Keys())
+    """Not for longer than ten seconds, and if nobody comes, not at all."""
+    robot, _ = make_owned_robot(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
     phone, first = LowEnergy(robot), remote(robot, keys, 2)
-    assert uploaded(robot, [(phone, first)], first, "SI|F(0.1, 30)") == "OK"
+    assert upload_text(robot, [(phone, first)], first, "SI|F(0.1, 30)") == "OK"
     talk(robot, [(phone, Bytes())], PLACE_MS - 50)
     early = LowEnergy(robot)
     assert early.has_ended and not phone.has_ended, "never before"
-    assert ended(robot, [(phone, first)], first.ping()) == "OK"
+    assert wait_for_outcome(robot, [(phone, first)], first.ping()) == "OK"
     talk(robot, [(phone, Bytes())], 3 * PLACE_MS)
     assert not phone.has_ended, "while nobody else comes"
     owner = remote(robot, keys, 3)
     ends: Ends = [(end := LowEnergy(robot), owner)]
     assert phone.has_ended and not end.has_ended
-    assert uploaded(robot, ends, owner) == "OK"
+    assert upload_text(robot, ends, owner) == "OK"
     phone.send(bytes(STOP_BYTES))
     talk(robot, ends, 3 * PLACE_MS)
     assert actions_of(robot)[-1] == "MOTORS 80 80", (
@@ -256,38 +256,38 @@ def test_a_silent_phone_keeps_nobody_off_bluetooth() -> None:
 
 @drawn
 def test_whoever_comes_too_early_costs_nobody_anything() -> None:
-    robot, _ = owned(keys := Keys())
+    robot, _ = make_owned_robot(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
     owner = remote(robot, keys, 2)
     ends: Ends = [(end := LowEnergy(robot, 247), owner)]
-    assert uploaded(robot, ends, owner) == "OK"
+    assert upload_text(robot, ends, owner) == "OK"
     for _ in range(300):
         other = LowEnergy(robot, 100)
-        assert other.has_ended and other.taken() == b""
+        assert other.has_ended and other.take() == b""
         other.send(b"S\n" + bytes(STOP_BYTES))
         talk(robot, ends, 100)
     assert not end.has_ended and actions_of(robot)[-1] == "MOTORS 80 80"
     end.leave()
     talk(robot, [], 5)
     next_client = remote(robot, keys, 3)
-    assert uploaded(robot, [(LowEnergy(robot), next_client)], next_client) == "OK", (
+    assert upload_text(robot, [(LowEnergy(robot), next_client)], next_client) == "OK", (
         "and the robot is still found"
     )
 
 
 @drawn
 def test_who_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:
-    robot, _ = owned(keys := Keys())
+    robot, _ = make_owned_robot(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
     for _ in range(5):
         phone, first = LowEnergy(robot), remote(robot, keys, 2)
-        assert ended(robot, [(phone, first)], first.ping()) == "OK"
+        assert wait_for_outcome(robot, [(phone, first)], first.ping()) == "OK"
         talk(robot, [(phone, Bytes())], PLACE_MS)
         end, owner = LowEnergy(robot), remote(robot, keys, 3)
         phone.leave()  # again, and the number of its connection is free
-        refused = LowEnergy(robot)
-        refused.leave()
-        assert uploaded(robot, [(end, owner)], owner) == "OK"
+        refused_low_energy = LowEnergy(robot)
+        refused_low_energy.leave()
+        assert upload_text(robot, [(end, owner)], owner) == "OK"
         talk(robot, [(end, owner)], 1500)
         assert actions_of(robot)[-1] == "MOTORS 80 80"
         end.leave()
@@ -302,10 +302,10 @@ def has_client(robot: Esp32Robot) -> bool:
 @drawn
 def test_a_silent_phone_keeps_nobody_off_the_serial_port() -> None:
     """The core sends each further one away: the next try of who was sent away gets the place."""
-    robot, _ = owned(keys := Keys())
+    robot, _ = make_owned_robot(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
     phone, first = SerialPort(robot), remote(robot, keys, 2)
-    assert uploaded(robot, [(phone, first)], first) == "OK"
+    assert upload_text(robot, [(phone, first)], first) == "OK"
     for _ in range(5):
         talk(robot, [(phone, first)], 5000)
         SerialPort(robot)
@@ -323,6 +323,6 @@ def test_a_silent_phone_keeps_nobody_off_the_serial_port() -> None:
     talk(robot, [], 5)
     assert not has_client(robot)
     ends: Ends = [(SerialPort(robot), owner)]
-    assert uploaded(robot, ends, owner) == "OK"
+    assert upload_text(robot, ends, owner) == "OK"
     talk(robot, ends, 2 * PLACE_MS)
     assert actions_of(robot)[-1] == "MOTORS 80 80"

@@ -1,4 +1,4 @@
-"""What connects to an ESP32 in a network: a client gets through, and a web page does not."""
+"""Connections to an ESP32 in a network: clients get through, web pages do not."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Network
-from tests.support.esp32_wifi import joined
+from tests.support.esp32_wifi import join_network
 from tests.support.foreign_protocols import FOREIGN_GREETINGS
 from tests.support.owners import Keys
 from tiniscript.link.messages import STOP_BYTES
@@ -17,12 +17,12 @@ from tiniscript.virtual.protocol_sniffer import sniff_robot_client
 
 @pytest.fixture(scope="module")
 def knocked_at() -> Esp32Robot:
-    return joined(Keys())[0]
+    return join_network(Keys())[0]
 
 
 @pytest.mark.parametrize("name", FOREIGN_GREETINGS)
 def test_what_a_web_page_may_send_reaches_no_robot(knocked_at: Esp32Robot, name: str) -> None:
-    """In one piece and byte by byte: the robot hangs up and answers nothing."""
+    """In one piece and byte by byte: the robot disconnects without an answer."""
     robot, data = knocked_at, FOREIGN_GREETINGS[name]
     for size in (len(data), 1 if len(data) < 1000 else 97):
         end = Network(robot)
@@ -31,7 +31,7 @@ def test_what_a_web_page_may_send_reaches_no_robot(knocked_at: Esp32Robot, name:
                 end.send(data[k : k + size])
                 robot.wait(1)
         robot.wait(3)
-        assert end.taken() == b"" and end.has_ended
+        assert end.take() == b"" and end.has_ended
         end.leave()
         robot.wait(2)
 
@@ -41,13 +41,13 @@ def test_what_is_meant_for_a_robot_gets_there(knocked_at: Esp32Robot, data: byte
     end = Network(knocked_at)
     end.send(data + bytes(STOP_BYTES))
     knocked_at.wait(5)
-    assert end.taken() != b"" and not end.has_ended, "at least the stop is confirmed"
+    assert end.take() != b"" and not end.has_ended, "at least the stop is confirmed"
     end.leave()
     knocked_at.wait(60)
 
 
-def sniffed(robot: Esp32Robot, data: bytes) -> bool | None:
-    """Return what the robot's own code says of the first bytes of a connection."""
+def sniff(robot: Esp32Robot, data: bytes) -> bool | None:
+    """Return the verdict of the robot's own code about the first bytes of a connection."""
     return (None, True, False)[robot.ask(b"G", len(data).to_bytes(4, "little") + data)[0]]
 
 
@@ -63,7 +63,7 @@ def test_the_robot_tells_its_clients_as_a_virtual_one_does(knocked_at: Esp32Robo
         if chance.random() < 0.3 and data:
             at = chance.randrange(len(data))
             data = data[:at] + chance.randbytes(1) + data[at + 1 :]
-        assert sniffed(knocked_at, data) is sniff_robot_client(data), data
+        assert sniff(knocked_at, data) is sniff_robot_client(data), data
     for data in FOREIGN_GREETINGS.values():
         for k in range(min(len(data), 400)):
-            assert sniffed(knocked_at, data[:k]) is sniff_robot_client(data[:k]), data[:k]
+            assert sniff(knocked_at, data[:k]) is sniff_robot_client(data[:k]), data[:k]

@@ -6,7 +6,7 @@ import pytest
 
 from tests.support.esp32_radio import LowEnergy, session, talk
 from tests.support.images import image_of
-from tests.support.robot_on_esp32 import Ends, booted, ended
+from tests.support.robot_on_esp32 import Ends, boot, wait_for_outcome
 from tiniscript.link.messages import AUTHORITY_MS
 from tiniscript.link.payloads import ReadingEvent
 from tiniscript.link.session import Session
@@ -22,25 +22,25 @@ def readings(client: Session) -> list[ReadingEvent]:
 
 @pytest.mark.parametrize("then", ["stays", "asks again", "leaves", "comes anew"])
 def test_who_drives_has_all_readings_whatever_another_one_does(then: str) -> None:
-    """The other one has none: they are told to whom values are shown."""
-    robot = booted()
+    """The other client gets none: readings go where values go."""
+    robot = boot()
     driver, other = session(1, robot), session(2, robot)
     end = LowEnergy(robot)
     ends: Ends = [(None, driver), (end, other)]
-    assert ended(robot, ends, other.tell_readings(True)) == "OK"
-    talk(robot, ends, AUTHORITY_MS + 300)  # an open page that does nothing gives way
-    assert ended(robot, ends, driver.tell_readings(True)) == "OK"
-    assert ended(robot, ends, driver.upload(image_of(READS), saves=False)) == "OK"
+    assert wait_for_outcome(robot, ends, other.tell_readings(True)) == "OK"
+    talk(robot, ends, AUTHORITY_MS + 300)  # an idle open page gives way
+    assert wait_for_outcome(robot, ends, driver.tell_readings(True)) == "OK"
+    assert wait_for_outcome(robot, ends, driver.upload(image_of(READS), saves=False)) == "OK"
     talk(robot, ends, 300)
     if then == "asks again":
-        assert ended(robot, ends, other.tell_readings(True)) == "OTHER_DRIVER"
+        assert wait_for_outcome(robot, ends, other.tell_readings(True)) == "OTHER_DRIVER"
     elif then == "leaves":
         end.leave()
         ends = ends[:1]
     elif then == "comes anew":
         other = session(3, robot)
         ends = [(None, driver), (end, other)]
-        assert ended(robot, ends, other.hello()) == "OK"
+        assert wait_for_outcome(robot, ends, other.hello()) == "OK"
     for number in range(1, CHANGES + 1):
         robot.analog(LIGHT_PIN, 400 * number)
         talk(robot, ends, 300)

@@ -1,4 +1,4 @@
-"""An ESP32 is READY for what is there: a broker that lets it hear, a network that has begun."""
+"""An ESP32 is READY for existing services: a broker that grants access, a network that is up."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import pytest
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_broker import broker_settings_of, until
 from tests.support.esp32_radio import radios, talk
-from tests.support.esp32_wifi import HOTSPOT, joined, owned, state
+from tests.support.esp32_wifi import HOTSPOT, join_network, make_owned_robot, state
 from tests.support.mosquitto import LOCAL
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import Ends, ended
+from tests.support.robot_on_esp32 import Ends, wait_for_outcome
 from tiniscript.link import wifi
 from tiniscript.link.messages import STATE_STOPPED, STOP_BYTES
 from tiniscript.link.session import Session
@@ -28,10 +28,10 @@ class StrictBroker:
     Before that it sends what `early` has.
     """
 
-    def __init__(self, granted: bytes = b"\0\0", early: bytes = b"") -> None:
-        self.granted, self.early = granted, early
-        self.published: list[bytes] = []  # what was published
-        self.asked = 0  # how many times somebody has subscribed
+    def __init__(self, granted_bytes: bytes = b"\0\0", early: bytes = b"") -> None:
+        self.granted, self.early = granted_bytes, early
+        self.published: list[bytes] = []  # published messages
+        self.asked = 0  # number of subscriptions
         self.listener = socket.create_server(("127.0.0.1", 0))
         threading.Thread(target=self._serve, daemon=True).start()
 
@@ -84,18 +84,18 @@ def brokers() -> Iterator[list[StrictBroker]]:
 
 def using(broker: StrictBroker, strict_brokers: list[StrictBroker]) -> tuple[Esp32Robot, Session]:
     strict_brokers.append(broker)
-    robot, owner = joined(Keys())
-    assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
+    robot, owner = join_network(Keys())
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
     return robot, owner
 
 
-@pytest.mark.sampled("granted")
-@pytest.mark.parametrize("granted", [b"\x80\x80", b"\0\x80", b"\x80\0"])
+@pytest.mark.sampled("granted_bytes")
+@pytest.mark.parametrize("granted_bytes", [b"\x80\x80", b"\0\x80", b"\x80\0"])
 def test_a_broker_that_refuses_what_the_robot_wants_to_hear_is_not_ready(
-    granted: bytes, brokers: list[StrictBroker]
+    granted_bytes: bytes, brokers: list[StrictBroker]
 ) -> None:
-    """As where a class was left out of its list of who may read what."""
-    robot, owner = using(broker := StrictBroker(granted), brokers)
+    """For example, the broker's access list may omit the class."""
+    robot, owner = using(broker := StrictBroker(granted_bytes), brokers)
     until(robot, lambda: broker.asked >= 3)
     assert broker_settings_of(robot, owner)[1] == "REFUSED", "and it is tried again"
     assert broker.published == [], "nobody is told that the robot is there"
@@ -104,10 +104,12 @@ def test_a_broker_that_refuses_what_the_robot_wants_to_hear_is_not_ready(
     until(robot, lambda: len(broker.published) == 1)
 
 
-@pytest.mark.sampled("granted")
-@pytest.mark.parametrize("granted", [b"\0", b"\0\0\0", b"\0\3"])
-def test_an_answer_to_something_else_is_none(granted: bytes, brokers: list[StrictBroker]) -> None:
-    robot, owner = using(broker := StrictBroker(granted), brokers)
+@pytest.mark.sampled("granted_bytes")
+@pytest.mark.parametrize("granted_bytes", [b"\0", b"\0\0\0", b"\0\3"])
+def test_an_answer_to_something_else_is_none(
+    granted_bytes: bytes, brokers: list[StrictBroker]
+) -> None:
+    robot, owner = using(broker := StrictBroker(granted_bytes), brokers)
     until(robot, lambda: broker.asked >= 2)
     assert broker_settings_of(robot, owner)[1] == "SEARCHING"
     assert broker.published == []
@@ -119,22 +121,22 @@ def test_a_stop_before_the_answer_is_a_stop(brokers: list[StrictBroker]) -> None
     stop = bytes([PUBLISH, 2 + len(topic) + STOP_BYTES, 0, len(topic)]) + topic + bytes(STOP_BYTES)
     robot, owner = using(broker := StrictBroker(early=stop), brokers)
 
-    def is_stopped() -> bool:  # and what was said before the stop is stale
+    def is_stopped() -> bool:  # messages from before the stop are stale
         status = owner.status()
-        assert ended(robot, [(None, owner)], status) == "OK" and status.outcome
+        assert wait_for_outcome(robot, [(None, owner)], status) == "OK" and status.outcome
         return bool(status.outcome.values.state == STATE_STOPPED)
 
     until(robot, is_stopped)
-    assert ended(robot, [(None, owner)], owner.hello()) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.hello()) == "OK"
     until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     assert broker.asked == 1, "it was the first answer"
 
 
 def test_an_access_point_that_did_not_begin_is_not_ready_and_tried_again() -> None:
-    robot, owner = owned(Keys())
+    robot, owner = make_owned_robot(Keys())
     ends: Ends = [(None, owner)]
     robot.radio("H", b"\1")
-    assert ended(robot, ends, owner.join(HOTSPOT)) == "OK"
+    assert wait_for_outcome(robot, ends, owner.join(HOTSPOT)) == "OK"
     talk(robot, ends, 1000)
     assert state(robot, owner) == ("ACCESS_POINT", "REFUSED")
     assert not radios(robot).is_access_point

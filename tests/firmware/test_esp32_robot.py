@@ -9,7 +9,14 @@ import pytest
 
 from tests.machines.esp32 import BROWN_OUT, EMPTY, EXTERNAL, TASK_WATCHDOG, Esp32Robot, Kept
 from tests.support.edited_robots import TEXTS
-from tests.support.robot_on_host import actions_of, computer, outcome, pushed, send, stored
+from tests.support.robot_on_host import (
+    actions_of,
+    computer,
+    outcome,
+    push_button,
+    send,
+    wait_until_saved,
+)
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.frames import Frame, encode_frame
@@ -85,7 +92,7 @@ right_backward = 33
 """
 
 
-def wired(motors: str, more: str = MORE) -> Esp32Robot:
+def wire_robot(motors: str, more: str = MORE) -> Esp32Robot:
     """Return a robot whose motors are wired so, with one device of every driver."""
     text = TEXTS["tinibot32"].partition("# ---- Its body")
     head = re.sub(r"\[board\.motors\].*?(?=\n\[board\.sensors)", motors, text[0], flags=re.S)
@@ -104,14 +111,14 @@ def switched_on(robot: Esp32Robot) -> Esp32Robot:
 
 def run(robot: Esp32Robot, text: str) -> Session:
     kit = robot.robot.kit
-    compiled = compile_text(text, kit)
-    assert compiled.image, compiled
+    compilation = compile_text(text, kit)
+    assert compilation.image, compilation
     session = Session(1, 9600, kit.fingerprint)
-    assert robot.until(session, session.upload(unpack(compiled.image))) == OK
+    assert robot.until(session, session.upload(unpack(compilation.image))) == OK
     return session
 
 
-def shown(robot: Esp32Robot, text: str) -> list[int]:
+def run_and_list_values(robot: Esp32Robot, text: str) -> list[int]:
     """Run a program; return what it shows in half a second."""
     session = run(robot, text)
     robot.talk(session, 500)
@@ -146,7 +153,7 @@ def test_a_program_drives_and_sounds_and_a_panic_turns_the_motors_off(
     robot.wait(50)
     assert actions_of(robot)[-1] == "MOTORS 80 80"
     robot.stick_ledc()
-    robot.panic()  # before it prints or dumps anything, by registers alone
+    robot.panic()  # registers only, before it prints or dumps anything
     pins = robot.robot.board.motors.pins.values()
     assert [robot.output(pin) for pin in pins] == [0] * len(pins)
 
@@ -163,7 +170,9 @@ def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
 
 
 def test_a_window_of_large_frames_waits_for_a_main_loop_that_writes() -> None:
-    """As while a page of flash is written: all that a computer may have under way comes at once."""
+    """During the write of a flash page, everything a computer may have under way arrives at
+    once.
+    """
     robot = switched_on(Esp32Robot())
     session = Session(1, 115200, robot.robot.kit.fingerprint)
     robot.until(session, session.hello())
@@ -228,7 +237,7 @@ def test_a_bluetooth_module_that_nobody_is_connected_to_ends_an_attached_run() -
     "motors", [SERVOS, TWO_WIRE, ONE_DIRECTION], ids=["servos", "two_wire", "pwm_dir"]
 )
 def test_other_motors(motors: str) -> None:
-    robot = wired(motors, MORE.replace("pin = 13", "pin = 14"))
+    robot = wire_robot(motors, MORE.replace("pin = 13", "pin = 14"))
     run(robot, "SI|M(-40, 60);W(0.1);F(1, 80)")
     robot.wait(300)
     assert [line for line in actions_of(robot) if line.startswith("MOTORS")] == [
@@ -238,7 +247,7 @@ def test_other_motors(motors: str) -> None:
     robot.step(bytes(4))
     robot.wait(40)
     assert "MOTORS 0 0" in actions_of(robot)
-    if motors == SERVOS:  # neutral pulses for a second, then none
+    if motors == SERVOS:  # neutral pulses for a second, then no pulses
         assert robot.output(25) > 0
         robot.wait(1100)
         assert robot.output(25) == robot.output(26) == 0
@@ -250,7 +259,7 @@ def test_other_motors(motors: str) -> None:
 
 
 def test_actuators_and_what_a_stop_makes_of_them() -> None:
-    robot = wired(TWO_WIRE)
+    robot = wire_robot(TWO_WIRE)
     assert (robot.output(13), robot.output(16), robot.output(17)) == (0, 0, 255)
     run(robot, "SI|ARM(90);FAN(50);LED(TRUE);F(60, 80)")
     robot.wait(100)
@@ -262,15 +271,15 @@ def test_actuators_and_what_a_stop_makes_of_them() -> None:
 
 
 def test_sensors() -> None:
-    robot = wired(TWO_WIRE)
+    robot = wire_robot(TWO_WIRE)
     trigger, echo = 18, 19
     robot.analog(34, 4095)
     robot.analog(35, 400)
     robot.analog(32, 100)
     robot.digital(22, False)
-    assert shown(robot, "SI|SHOW(DISTANCE)") == [400_000], "it hears nothing"
+    assert run_and_list_values(robot, "SI|SHOW(DISTANCE)") == [400_000], "it hears nothing"
     robot.sonar(trigger, echo, 50)
-    right, left, distance, *others = shown(
+    right, left, distance, *others = run_and_list_values(
         robot, "SI|SHOW(LIGHT_R);SHOW(LIGHT_L);SHOW(DISTANCE);SHOW(BUMP);SHOW(DARK)"
     )
     assert (right, left) == (1_023_000, 100_000)
@@ -283,44 +292,45 @@ def test_an_echo_that_comes_while_a_page_is_erased_is_asked_for_again() -> None:
     robot.sonar(18, 19, 50)
     robot.erase(150)
     send(robot, session, "SI|LOOP(60);SHOW(DISTANCE);W(0.07);END_LOOP")
-    stored(robot, session)
+    wait_until_saved(robot, session)
     robot.talk(session, 1000)
-    shown = [event.value for event in session.events() if event.name == "SHOW"]
-    assert len(shown) > 10
-    assert all(49_000 < value < 51_000 for value in shown), shown
+    shown_values = [event.value for event in session.events() if event.name == "SHOW"]
+    assert len(shown_values) > 10
+    assert all(49_000 < value < 51_000 for value in shown_values), shown_values
 
 
 def test_nvs_is_written_only_while_the_motors_stand() -> None:
     """A write may stop the chip while a page is erased: a stop would come late."""
     robot, session = switched_on(Esp32Robot()), computer()
     send(robot, session, AWAY)
-    before = robot.kept().writes
+    writes_before = robot.read_kept().writes
     robot.talk(session, 1000)
-    assert robot.kept().writes == before
+    assert robot.read_kept().writes == writes_before
     session.stop(robot.now_ms)
     robot.talk(session, 100)
     assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
-    stored(robot, session)
-    assert 0 < robot.kept().writes - before <= 9
+    wait_until_saved(robot, session)
+    assert 0 < robot.read_kept().writes - writes_before <= 9
 
 
 @pytest.mark.parametrize("room", range(5))
 def test_a_full_nvs_is_said_and_the_program_before_stays(room: int) -> None:
-    """The button starts what is stored, and the light says that it can. What is written last takes
-    the least room."""
+    """The button starts the stored program, and the light says that it can. The last write needs
+    the least room.
+    """
     robot, session = switched_on(Esp32Robot()), computer()
     assert not robot.is_lit
     send(robot, session, "SB|F(0.5, 80)")
-    stored(robot, session)
-    kept = robot.kept()
+    wait_until_saved(robot, session)
+    kept_memory = robot.read_kept()
     robot.fill_nvs(room)
     send(robot, session, "SB|B(0.5, 60)")
     robot.talk(session, 1000)
-    assert robot.complete(session, session.status()).saved == 1  # in memory alone
-    assert robot.kept().entries.items() >= kept.entries.items()
-    restarted = switched_on(Esp32Robot(kept=robot.kept()))
-    assert restarted.is_lit
-    assert pushed(restarted, 600)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert robot.complete(session, session.status()).saved == 1  # in memory only
+    assert robot.read_kept().entries.items() >= kept_memory.entries.items()
+    restarted_robot = switched_on(Esp32Robot(kept_memory=robot.read_kept()))
+    assert restarted_robot.is_lit
+    assert push_button(restarted_robot, 600)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
 
 
 # -- what goes wrong
@@ -343,13 +353,13 @@ def test_a_main_loop_that_hangs_is_stopped_and_restarted() -> None:
     robot.hang(1100)
     robot.step(ticks=0)
     assert actions_of(robot) == ["MOTORS 0 0", "RESTART"]
-    restarted = Esp32Robot(kept=robot.kept(), reset=TASK_WATCHDOG)
-    restarted.wait(200)
+    restarted_robot = Esp32Robot(kept_memory=robot.read_kept(), reset=TASK_WATCHDOG)
+    restarted_robot.wait(200)
     session = computer(2)
-    values = restarted.complete(session, session.status())
+    values = restarted_robot.complete(session, session.status())
     assert values.fault == STALL
     assert values.fault_program != 0
-    assert restarted.is_latched
+    assert restarted_robot.is_latched
 
 
 def test_a_page_that_is_erased_slowly_is_no_stall() -> None:
@@ -357,11 +367,11 @@ def test_a_page_that_is_erased_slowly_is_no_stall() -> None:
     robot, session = switched_on(Esp32Robot()), computer()
     robot.erase(150)
     send(robot, session, "SI|W(9);F(1, 80)")
-    stored(robot, session)
+    wait_until_saved(robot, session)
     request = session.status()
     assert robot.until(session, request) == OK
     assert outcome(request).values.fault == 0
-    robot.hang(150)  # with nothing to write
+    robot.hang(150)  # nothing is being written
     assert robot.until(session, request := session.status()) == OK
     assert outcome(request).values.fault == STALL
 
@@ -372,9 +382,9 @@ def test_a_short_stall_is_a_fault_and_no_restart() -> None:
     robot.wait(20)
     assert actions_of(robot)[0] == "MOTORS 0 0"
     assert "RESTART" not in actions_of(robot)
-    restarted = Esp32Robot(kept=robot.kept(), reset=TASK_WATCHDOG)
-    restarted.wait(200)
-    assert restarted.is_latched
+    restarted_robot = Esp32Robot(kept_memory=robot.read_kept(), reset=TASK_WATCHDOG)
+    restarted_robot.wait(200)
+    assert restarted_robot.is_latched
 
 
 @pytest.mark.parametrize(
@@ -391,6 +401,6 @@ def test_the_cause_of_a_reset(reset: int, number: int) -> None:
 def test_what_a_reset_leaves_alone_may_be_anything(take: Callable[[Kept], Kept]) -> None:
     robot = driving()
     robot.hang(1200)
-    restarted = Esp32Robot(kept=take(robot.kept()), reset=1)
-    restarted.wait(300)
-    assert actions_of(restarted) == [] and restarted.is_latched
+    restarted_robot = Esp32Robot(kept_memory=take(robot.read_kept()), reset=1)
+    restarted_robot.wait(300)
+    assert actions_of(restarted_robot) == [] and restarted_robot.is_latched

@@ -1,6 +1,6 @@
-"""What an ESP32 does with a network or a broker is what a fresh one does with it, whatever it was
-told before: one that sent it away, one of which only a part came, one that its memory has damaged,
-one whose connection was cut anywhere."""
+"""An ESP32 behaves on a network or a broker like a fresh one, whatever happened before: a
+rejection, incomplete or damaged settings, or a connection cut anywhere.
+"""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from tests.support.esp32_wifi import (
     HOTSPOT,
     SCHOOL,
     WIFI_KEY,
-    joined,
-    owned,
+    join_network,
+    make_owned_robot,
     remote,
     school_in_reach,
     state,
 )
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import Ends, ended, uploaded
+from tests.support.robot_on_esp32 import Ends, upload_text, wait_for_outcome
 from tiniscript.link import wifi
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import AUTHORITY_MS
@@ -64,7 +64,7 @@ def let_in(robot: Esp32Robot, network: wifi.Network, lease_ms: int = 0) -> None:
 
 
 def searched_long(robot: Esp32Robot, network: wifi.Network) -> None:
-    """It is not found before that."""
+    """Search until the long interval between attempts is reached."""
     let_in(robot, network)
     robot.radio("f", pack("<I", SEARCH_MS))
 
@@ -84,9 +84,9 @@ ENDS: dict[str, Callable[[Esp32Robot, wifi.Network], None]] = {
 
 
 def states(robot: Esp32Robot, owner: Session, network: wifi.Network) -> tuple[set[str], Any]:
-    """Join a network; return all states that are told then, and what is known in the end."""
+    """Join a network; return all reported states, and the final settings."""
     ends: Ends = [(None, owner)]
-    assert ended(robot, ends, owner.join(network)) == "OK"
+    assert wait_for_outcome(robot, ends, owner.join(network)) == "OK"
     talk(robot, ends, 2)
     states_seen = {state(robot, owner)[1] for _ in range(20)}
     asked = radios(robot)
@@ -97,10 +97,10 @@ def states(robot: Esp32Robot, owner: Session, network: wifi.Network) -> tuple[se
 @pytest.mark.parametrize("second", [*ENDS][:5])
 @pytest.mark.parametrize("first", ENDS)
 def test_a_second_network_is_joined_as_a_first_one(first: str, second: str) -> None:
-    robot, owner = owned(Keys())
+    robot, owner = make_owned_robot(Keys())
     ENDS[second](robot, SECOND)
     _, fresh = states(robot, owner, SECOND)
-    robot, owner = owned(Keys())
+    robot, owner = make_owned_robot(Keys())
     ENDS[first](robot, SCHOOL)
     states(robot, owner, SCHOOL)
     ENDS[second](robot, SECOND)
@@ -112,8 +112,8 @@ def test_a_second_network_is_joined_as_a_first_one(first: str, second: str) -> N
 @pytest.mark.sampled("reason")
 @pytest.mark.parametrize("reason", [15, 202, 203, 204])
 def test_who_is_let_in_at_last_was_not_refused(reason: int) -> None:
-    """As where the signal was weak: the robot has joined, and waits for its address."""
-    robot, owner = owned(Keys())
+    """With a weak signal, the robot may have joined and wait for its address."""
+    robot, owner = make_owned_robot(Keys())
     sent_away(reason, robot, SCHOOL)
     states_seen, _ = states(robot, owner, SCHOOL)
     assert "REFUSED" in states_seen
@@ -138,14 +138,14 @@ ASKED: dict[str, Callable[[Session], PendingRequest[Any]]] = {
 
 
 def kept_settings(robot: Esp32Robot) -> tuple[bytes | None, bytes | None]:
-    entries = robot.kept().entries
+    entries = robot.read_kept().entries
     return entries.get(WIFI_KEY), entries.get(BROKER_KEY)
 
 
 def took_ms(robot: Esp32Robot, owner: Session, what: str) -> int:
-    """Have something kept; return how long that took."""
+    """Save a setting; return the time that takes."""
     began_ms = robot.now_ms
-    assert ended(robot, [(None, owner)], ASKED[what](owner)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], ASKED[what](owner)) == "OK"
     return robot.now_ms - began_ms
 
 
@@ -153,32 +153,32 @@ def took_ms(robot: Esp32Robot, owner: Session, what: str) -> int:
 @pytest.mark.parametrize("seed", range(10))
 @pytest.mark.parametrize("last", ASKED)
 def test_of_what_came_in_part_nothing_is_in_what_comes_whole(last: str, seed: int) -> None:
-    """Who gives it leaves at any moment before its last part has come."""
+    """The sender may disconnect at any moment before the last part."""
     rng = random.Random(seed)
-    robot, owner = owned(Keys())
+    robot, owner = make_owned_robot(Keys())
     usual_ms = took_ms(robot, owner, last)
     fresh = kept_settings(robot)
     keys = Keys()
-    robot, _ = owned(keys)
+    robot, _ = make_owned_robot(keys)
     for nonce in range(rng.randint(1, 3)):
         talk(robot, [], AUTHORITY_MS + 100)
         first = remote(robot, keys, 20 + nonce)
-        assert ended(robot, [(None, first)], first.wifi()) == "OK"
+        assert wait_for_outcome(robot, [(None, first)], first.wifi()) == "OK"
         request = ASKED[rng.choice([last, "a network", "a broker", "a broker with TLS"])](first)
         talk(robot, [(None, first)], rng.randint(1, usual_ms))
         if request.outcome is not None or kept_settings(robot) != (None, None):
-            return  # it came whole
+            return  # the data arrived complete
     talk(robot, [], AUTHORITY_MS + 100)
     owner = remote(robot, keys, 50)
-    assert ended(robot, [(None, owner)], ASKED[last](owner)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], ASKED[last](owner)) == "OK"
     assert kept_settings(robot) == fresh
 
 
 # -- what is damaged ----------------------------------------------------------------------------
 
 
-def damaged(entry: bytes) -> Iterator[bytes]:
-    """Of another version, cut, and full of ends that are missing."""
+def damage_entry(entry: bytes) -> Iterator[bytes]:
+    """Yield damaged versions of an entry: of another version, cut, and without terminators."""
     yield from (entry[:1], entry[: len(entry) // 2], entry[:-1], entry + b"\0", entry * 2)
     yield b"~" * 8 + entry[8:]  # no mode, and no class
     yield b"x" * len(entry)
@@ -187,38 +187,41 @@ def damaged(entry: bytes) -> Iterator[bytes]:
 
 @pytest.mark.parametrize("key", [WIFI_KEY, BROKER_KEY])
 def test_damaged_settings_are_none(key: bytes) -> None:
-    """Nothing of them is told, and what is set anew is set as for the first time."""
+    """No part of them is reported, and new settings are stored as for the first time."""
     keys = Keys()
-    robot, owner = joined(keys)
+    robot, owner = join_network(keys)
     ends: Ends = [(None, owner)]
-    assert ended(robot, ends, owner.use_broker(BROKER)) == "OK"
-    kept, whole = robot.kept(), kept_settings(robot)
-    for entry in damaged(kept.entries[key]):
-        restarted = Esp32Robot(kept=Kept(b"", {**kept.entries, key: entry}, 0))
-        school_in_reach(restarted)
-        restarted.wait(400)
-        owner = remote(restarted, keys, 30)
+    assert wait_for_outcome(robot, ends, owner.use_broker(BROKER)) == "OK"
+    kept_memory, whole = robot.read_kept(), kept_settings(robot)
+    for entry in damage_entry(kept_memory.entries[key]):
+        restarted_robot = Esp32Robot(kept_memory=Kept(b"", {**kept_memory.entries, key: entry}, 0))
+        school_in_reach(restarted_robot)
+        restarted_robot.wait(400)
+        owner = remote(restarted_robot, keys, 30)
         ends = [(None, owner)]
         pending_request = owner.wifi() if key == WIFI_KEY else owner.broker()
-        assert ended(restarted, ends, pending_request) == "OK" and pending_request.outcome
+        assert (
+            wait_for_outcome(restarted_robot, ends, pending_request) == "OK"
+            and pending_request.outcome
+        )
         values = pending_request.outcome.values
         settings = wifi.MODES[values.mode], wifi.STATES[values.state], values.network
         assert settings == ("OFF", "OFF", b""), entry
-        assert (radios(restarted).joins == 0) == (key == WIFI_KEY)
-        assert ended(restarted, ends, owner.join(SCHOOL)) == "OK"
-        assert ended(restarted, ends, owner.use_broker(BROKER)) == "OK"
-        assert kept_settings(restarted) == whole
+        assert (radios(restarted_robot).joins == 0) == (key == WIFI_KEY)
+        assert wait_for_outcome(restarted_robot, ends, owner.join(SCHOOL)) == "OK"
+        assert wait_for_outcome(restarted_robot, ends, owner.use_broker(BROKER)) == "OK"
+        assert kept_settings(restarted_robot) == whole
 
 
 @pytest.mark.parametrize("what", ["joins", "forgets", "uses a broker", "uses none"])
 def test_no_setting_is_written_while_the_robot_drives(what: str) -> None:
     """Writing stops the chip for a while: it waits until the robot stands."""
-    robot, owner = joined(Keys())
+    robot, owner = join_network(Keys())
     ends: Ends = [(None, owner)]
     if what == "uses none":
-        assert ended(robot, ends, owner.use_broker(BROKER)) == "OK"
-    assert uploaded(robot, ends, owner, "SI|F(2, 80);W(60)") == "OK"
-    before = kept_settings(robot)
+        assert wait_for_outcome(robot, ends, owner.use_broker(BROKER)) == "OK"
+    assert upload_text(robot, ends, owner, "SI|F(2, 80);W(60)") == "OK"
+    kept_settings_before = kept_settings(robot)
     ways: dict[str, Callable[[], PendingRequest[Any]]] = {
         "joins": partial(owner.join, HOTSPOT),
         "forgets": owner.forget_wifi,
@@ -227,8 +230,11 @@ def test_no_setting_is_written_while_the_robot_drives(what: str) -> None:
     }
     request = ways[what]()
     talk(robot, ends, 1500)
-    assert request.outcome is None and kept_settings(robot) == before
-    assert ended(robot, ends, request) == "OK" and kept_settings(robot) != before
+    assert request.outcome is None and kept_settings(robot) == kept_settings_before
+    assert (
+        wait_for_outcome(robot, ends, request) == "OK"
+        and kept_settings(robot) != kept_settings_before
+    )
 
 
 # -- a broker's connection ----------------------------------------------------------------------
@@ -317,12 +323,12 @@ def cut_broker() -> Iterator[CutBroker]:
 
 def broker_state(robot: Esp32Robot, owner: Session) -> str:
     request = owner.broker()
-    assert ended(robot, [(None, owner)], request) == "OK" and request.outcome
+    assert wait_for_outcome(robot, [(None, owner)], request) == "OK" and request.outcome
     return wifi.STATES[request.outcome.values.state]
 
 
 def comes_back(robot: Esp32Robot, owner: Session, broker: CutBroker, limit_ms: int) -> bool:
-    """Whether the robot is at its broker, all cuts done, within so long."""
+    """Return whether the robot returns to its broker in time, after all cuts."""
     for _ in range(limit_ms // 20):
         robot.wait(20)
         broker.step()
@@ -341,10 +347,10 @@ LONGEST = len(ACCEPTED + SUBSCRIBED + MESSAGE * 3 + PINGED * 2)
 def test_a_connection_that_is_cut_anywhere_is_made_again(
     cut_broker: CutBroker, part: int, rest: bytes
 ) -> None:
-    """In each byte of each packet, or broken there; the next one begins as the first."""
-    robot, owner = joined(Keys())
+    """The cut is in each byte of each packet; the next connection begins like the first."""
+    robot, owner = join_network(Keys())
     settings = wifi.BrokerSettings(bytes((127, 0, 0, 1)), cut_broker.port, "aula")
-    assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
     assert comes_back(robot, owner, cut_broker, AGAIN_MS)
     for count, cut_after in enumerate(range(1 + part, LONGEST + 1, 6), 1):
         cut_broker.part()

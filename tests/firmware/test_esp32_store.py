@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines.esp32 import STAND_INS, flags_of
-from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, made
+from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, compile_once
 
 STORE = SOURCES / "src" / "store" / "store.cpp"
 NVS = SOURCES / "src" / "boards" / "esp32" / "nvs.cpp"
@@ -24,10 +24,10 @@ OTHERS = [
     STAND_INS / "simulated_chip.cpp",
     STAND_INS / "powercut.cpp",
 ]
-PAGE_BYTES = 4096  # of NVS
-MIN_SPIFFS_PAGES = 5  # of NVS in min_spiffs.csv
+PAGE_BYTES = 4096  # bytes of an NVS page
+MIN_SPIFFS_PAGES = 5  # NVS pages in min_spiffs.csv
 FIRST_PARTITION, FLASH_BYTES = 0x9000, 4 << 20
-WRITES = 7  # of a save, beside the blobs of its body: the generation, three marks away and back
+WRITES = 7  # writes of a save besides its blobs: the generation, and three marks removed and set
 BLOB_BYTES, HEADER_BYTES = 1024, 15
 
 
@@ -40,11 +40,19 @@ def program(store: Path = STORE) -> Path:
     flags = (*FLAGS, *WARNINGS, *flags_of("esp32dev", 2))
     texts = [path.read_bytes() for path in (*sorted(headers), NVS)]
     objects = [
-        str(made("g++", BUILDS, ".o", flags, [*texts, str(path).encode(), path.read_bytes()],
-                 ["-c", str(path)]))
+        str(
+            compile_once(
+                "g++",
+                BUILDS,
+                ".o",
+                flags,
+                [*texts, str(path).encode(), path.read_bytes()],
+                ["-c", str(path)],
+            )
+        )
         for path in (store, *OTHERS)
-    ]  # fmt: skip
-    return made("g++", BUILDS, "", flags, [name.encode() for name in objects], objects)
+    ]
+    return compile_once("g++", BUILDS, "", flags, [name.encode() for name in objects], objects)
 
 
 def run(

@@ -20,7 +20,16 @@ from tests.support.esp32_radio import (
 )
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import AWAY, RADIOS, Ends, Make, booted, claimed, ended, uploaded
+from tests.support.robot_on_esp32 import (
+    AWAY,
+    RADIOS,
+    Ends,
+    Make,
+    boot,
+    claim_robot,
+    upload_text,
+    wait_for_outcome,
+)
 from tests.support.robot_on_host import actions_of
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, DEAD_MAN_MS, STOP_BYTES
@@ -30,10 +39,10 @@ from tiniscript.link.session import Session
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("make", RADIOS)
 def test_a_program_over_each_radio(make: Make, major: int) -> None:
-    robot = booted(major=major)
+    robot = boot(major=major)
     client = session(1, robot)
     ends: Ends = [(make(robot), client)]
-    assert uploaded(robot, ends, client, "SI|SHOW(5);F(0.5, 80)") == "OK"
+    assert upload_text(robot, ends, client, "SI|SHOW(5);F(0.5, 80)") == "OK"
     talk(robot, ends, 700)
     assert actions_of(robot)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
     assert [event.name for event in client.events()] == ["SHOW", "DONE"]
@@ -41,39 +50,42 @@ def test_a_program_over_each_radio(make: Make, major: int) -> None:
 
 def test_a_chip_with_one_core_and_no_serial_port_over_bluetooth() -> None:
     """Its idle task gets its turn."""
-    robot = booted("tinibotc3")
+    robot = boot("tinibotc3")
     assert radios(robot)[:2] == ("tini-5678", "")
-    before = robot.rests()
+    rests_before = robot.rests()
     robot.wait(1000)
-    assert 8 <= robot.rests() - before <= 12
-    two_cores = booted()
+    assert 8 <= robot.rests() - rests_before <= 12
+    two_cores = boot()
     two_cores.wait(1000)
     assert two_cores.rests() == 0
 
 
 def test_the_radios_have_the_robots_name() -> None:
-    robot = booted()
+    robot = boot()
     assert radios(robot)[:2] == ("tini-5678", "tini-5678")
     client = session(1, robot)
     ends: Ends = [(None, client)]
-    assert ended(robot, ends, client.name("Señal".encode())) == "OK"
-    restarted = Esp32Robot(kept=robot.kept())
-    restarted.wait(300)
-    assert radios(restarted)[:2] == ("Señal", "Señal")
+    assert wait_for_outcome(robot, ends, client.name("Señal".encode())) == "OK"
+    restarted_robot = Esp32Robot(kept_memory=robot.read_kept())
+    restarted_robot.wait(300)
+    assert radios(restarted_robot)[:2] == ("Señal", "Señal")
 
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
-    robot = booted()
+    robot = boot()
     driver, other = session(1, robot), session(2, robot)
     end = make(robot)
     ends: Ends = [(None, driver), (end, other)]
-    assert uploaded(robot, ends, driver) == "OK"
-    for pending_request in (other.hello(), other.ping(), other.status(), other.identify()):
-        assert ended(robot, ends, pending_request) == "OK"
-    for refused in (other.live(image_of("F(1, 10)").code), other.start(), other.name(b"mine"),
-                    other.upload(image_of(AWAY)), other.undo(), other.trim()):  # fmt: skip
-        assert ended(robot, ends, refused) == "OTHER_DRIVER"
+    assert upload_text(robot, ends, driver) == "OK"
+    for request in (other.hello(), other.ping(), other.status(), other.identify()):
+        assert wait_for_outcome(robot, ends, request) == "OK"
+    refused_requests = (
+        other.live(image_of("F(1, 10)").code), other.start(), other.name(b"mine"),
+        other.upload(image_of(AWAY)), other.undo(), other.trim(),
+    )  # fmt: skip
+    for refused_request in refused_requests:
+        assert wait_for_outcome(robot, ends, refused_request) == "OTHER_DRIVER"
     assert actions_of(robot) == ["MOTORS 80 80"]
     talk(robot, ends, 1500)
     assert actions_of(robot) == ["MOTORS 80 80"], "the driver's session lives beside the other one"
@@ -82,11 +94,11 @@ def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
     assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     talk(robot, ends, 200)
     assert [event.name for event in driver.events()] == ["STOPPED"]
-    assert ended(robot, ends, other.start()) == "OTHER_DRIVER"
-    assert uploaded(robot, ends, driver) == "OK", "who drives goes on after it"
+    assert wait_for_outcome(robot, ends, other.start()) == "OTHER_DRIVER"
+    assert upload_text(robot, ends, driver) == "OK", "who drives goes on after it"
 
 
-ENDS: dict[str, tuple[str, str]] = {  # its program, and what all are told
+ENDS: dict[str, tuple[str, str]] = {  # the program, and the events for everyone
     "by itself": ("SI|F(0.2, 80)", "DONE"),
     "its fault": ("SI|X = 0;F(0.2, 80);SHOW(1 / X)", "FAULT"),
     "its silent client": (AWAY, "FAULT"),
@@ -112,13 +124,13 @@ def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) ->
     text, name = ENDS[how]
     if (how, driver) == ("its client that leaves", 0):
         driver = 1  # a cable does not leave
-    robot = booted()
+    robot = boot()
     clients = [session(number, robot) for number in (1, 2, 3)]
     ways: tuple[End | None, ...] = (None, LowEnergy(robot), SerialPort(robot))
     ends: Ends = list(zip(ways, clients, strict=True))
     for client in clients:
-        assert ended(robot, ends, client.hello()) == "OK"
-    assert uploaded(robot, ends, clients[driver], text) == "OK"
+        assert wait_for_outcome(robot, ends, client.hello()) == "OK"
+    assert upload_text(robot, ends, clients[driver], text) == "OK"
     talk(robot, ends, 100)
     for client in clients:
         client.events()
@@ -137,12 +149,12 @@ def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) ->
     assert [event.name for event in events_by_client[0]] == [name], events_by_client
     assert all(events == events_by_client[0] for events in events_by_client), events_by_client
     for place in listening:
-        assert ended(robot, listening_ends, clients[place].identify()) == "OK"
+        assert wait_for_outcome(robot, listening_ends, clients[place].identify()) == "OK"
         assert not clients[place].events()
 
 
 def say(robot: Esp32Robot, end: tuple[End | None, Client], data: bytes) -> None:
-    """Let a client say this beside its session."""
+    """Send data of a client beside its session."""
     if end[0] is None:
         end[1].receive(robot.step(data), robot.now_ms)
     else:
@@ -150,46 +162,46 @@ def say(robot: Esp32Robot, end: tuple[End | None, Client], data: bytes) -> None:
 
 
 def test_the_next_one_drives_when_the_first_is_silent() -> None:
-    robot = booted()
+    robot = boot()
     first, second = session(1, robot), session(2, robot)
     ends: Ends = [(None, first), (LowEnergy(robot), second)]
-    assert uploaded(robot, ends, first, "SI|F(0.1, 30)") == "OK"
+    assert upload_text(robot, ends, first, "SI|F(0.1, 30)") == "OK"
     talk(robot, ends, 300)
-    assert uploaded(robot, ends, second) == "OTHER_DRIVER"
+    assert upload_text(robot, ends, second) == "OTHER_DRIVER"
     only: Ends = ends[1:]
     talk(robot, only, AUTHORITY_MS + 50)
-    assert uploaded(robot, only, second) == "OK"
+    assert upload_text(robot, only, second) == "OK"
     talk(robot, only, 1500)
     assert actions_of(robot)[-1] == "MOTORS 80 80", (
         "the dead-man timer of the first ends nothing of his"
     )
-    assert uploaded(robot, ends, first) == "OTHER_DRIVER"
+    assert upload_text(robot, ends, first) == "OTHER_DRIVER"
 
 
 def test_who_drives_keeps_the_robot_while_it_asks_something_in_time() -> None:
     """Between short runs, too, and for longer than one silence may last."""
-    robot = booted()
+    robot = boot()
     first, second = session(1, robot), session(2, robot)
     ends: Ends = [(None, first), (LowEnergy(robot), second)]
     for _ in range(4):
-        assert uploaded(robot, ends, first, "SI|F(0.1, 30)") == "OK"
+        assert upload_text(robot, ends, first, "SI|F(0.1, 30)") == "OK"
         talk(robot, ends, AUTHORITY_MS - 500)
-        assert uploaded(robot, ends, second) == "OTHER_DRIVER"
+        assert upload_text(robot, ends, second) == "OTHER_DRIVER"
 
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_who_leaves_ends_his_own_run_and_drives_no_more(make: Make) -> None:
-    robot = booted()
+    robot = boot()
     driver, other = session(1, robot), session(2, robot)
     end = make(robot)
     ends: Ends = [(end, driver), (None, other)]
-    assert uploaded(robot, ends, driver) == "OK"
+    assert upload_text(robot, ends, driver) == "OK"
     end.leave()
     talk(robot, ends[1:], 5)
     assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
-    assert uploaded(robot, ends[1:], other) == "OK"
+    assert upload_text(robot, ends[1:], other) == "OK"
     looks, end = session(3, robot), make(robot)
-    assert ended(robot, [(end, looks), *ends[1:]], looks.ping()) == "OK"
+    assert wait_for_outcome(robot, [(end, looks), *ends[1:]], looks.ping()) == "OK"
     end.leave()
     talk(robot, ends[1:], 300)
     assert actions_of(robot)[-1] == "MOTORS 80 80", "nothing of others"
@@ -197,40 +209,40 @@ def test_who_leaves_ends_his_own_run_and_drives_no_more(make: Make) -> None:
 
 def test_who_comes_at_once_when_another_one_leaves_is_not_taken_for_that_one() -> None:
     """The task of a radio may wait in a write meanwhile."""
-    robot = booted()
+    robot = boot()
     driver, other = session(1, robot), session(2, robot)
     end = SerialPort(robot)
-    assert uploaded(robot, [(end, driver)], driver) == "OK"
+    assert upload_text(robot, [(end, driver)], driver) == "OK"
     end.leave()
     ends: Ends = [(SerialPort(robot), other)]
     talk(robot, ends, 5)
     assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
-    assert uploaded(robot, ends, other) == "OK"
+    assert upload_text(robot, ends, other) == "OK"
 
 
 def test_an_upload_that_another_one_has_overtaken_is_not_begun_any_more() -> None:
     """Its memory is another program's by then."""
-    robot = booted()
+    robot = boot()
     ends: Ends = [
         (None, (first := session(1, robot))),
         (LowEnergy(robot), (second := session(2, robot))),
     ]
     long = image_of("SB|" + ";".join("F(1, 80)" for _ in range(800)))
-    begun = first.upload(long)
-    while not begun.done_bytes:
-        assert begun.outcome is None  # it is too long for one frame
+    request = first.upload(long)
+    while not request.done_bytes:
+        assert request.outcome is None  # the request is too long for one frame
         talk(robot, ends, 1)
     talk(robot, ends[1:], AUTHORITY_MS + 50)  # the first one is out of reach
-    assert uploaded(robot, ends[1:], second, "SB|F(1, 10)") == "OK"
+    assert upload_text(robot, ends[1:], second, "SB|F(1, 10)") == "OK"
     talk(robot, ends[1:], 20)
     talk(robot, [(ends[1][0], Bytes())], AUTHORITY_MS + 50)
-    assert ended(robot, ends[:1], begun, 20_000) in ("OK", "NOT_BEGUN")
+    assert wait_for_outcome(robot, ends[:1], request, 20_000) in ("OK", "NOT_BEGUN")
     fetch = first.fetch()
-    assert ended(robot, ends[:1], fetch) == "OK"
+    assert wait_for_outcome(robot, ends[:1], fetch) == "OK"
 
 
 def test_notifications_are_as_long_as_was_agreed() -> None:
-    robot = booted()
+    robot = boot()
     for mtu, longest in (
         (23, 20),
         (40, 37),
@@ -242,29 +254,29 @@ def test_notifications_are_as_long_as_was_agreed() -> None:
         end = LowEnergy(robot, mtu)
         end.mtu = max(mtu, LEAST_MTU)
         ends: Ends = [(end, client)]
-        assert ended(robot, ends, client.hello()) == "OK"
+        assert wait_for_outcome(robot, ends, client.hello()) == "OK"
         assert max(end.lengths) == longest
         end.leave()
         robot.wait(5)
 
 
 def test_slow_notifications_delay_nobody_else() -> None:
-    robot = booted()
+    robot = boot()
     driver, slow = session(1, robot), session(2, robot)
     ends: Ends = [(None, driver), (LowEnergy(robot, slow=100), slow)]
-    pending_request = slow.status()
-    assert uploaded(robot, ends, driver) == "OK"
+    request = slow.status()
+    assert upload_text(robot, ends, driver) == "OK"
     begun_ms = robot.now_ms
-    assert ended(robot, ends, driver.ping()) == "OK"
+    assert wait_for_outcome(robot, ends, driver.ping()) == "OK"
     assert robot.now_ms - begun_ms < 30
-    assert ended(robot, ends, pending_request, 20_000) == "OK"
+    assert wait_for_outcome(robot, ends, request, 20_000) == "OK"
     slow.stop(robot.now_ms)
     talk(robot, ends, 20)
     assert actions_of(robot)[-1] == "MOTORS 0 0", "a stop needs no notification"
 
 
 def test_what_a_congested_stack_does_not_take_comes_later() -> None:
-    robot = booted()
+    robot = boot()
     once = Bytes(b"\0" + encode_frame(Frame(BY_NAME["STATUS"].number, 1, 0, b"")))
     end = LowEnergy(robot)
     ends: Ends = [(end, once)]
@@ -287,11 +299,11 @@ def test_what_a_congested_stack_does_not_take_comes_later() -> None:
 
 def test_a_client_that_takes_nothing_stops_nobody() -> None:
     """The ring to it is full: its own replies wait, and the robot goes on."""
-    robot = booted()
+    robot = boot()
     driver, deaf = session(1, robot), session(2, robot)
     end = LowEnergy(robot)
     ends: Ends = [(None, driver), (end, deaf)]
-    assert uploaded(robot, ends, driver) == "OK"
+    assert upload_text(robot, ends, driver) == "OK"
     end.subscribe(False)
     talk(
         robot, [(None, driver), (end, Bytes(b"\0" + encode_frame(Frame(3, 1, 0, b"")) * 40))], 3000
@@ -303,33 +315,33 @@ def test_a_client_that_takes_nothing_stops_nobody() -> None:
 
 
 def test_whoever_comes_again_begins_anew() -> None:
-    robot = booted()
+    robot = boot()
     for k in range(5):
         client = session(k + 1, robot)
         end = LowEnergy(robot)
         ends: Ends = [(end, client)]
-        assert uploaded(robot, ends, client, AWAY) == "OK"
-        end.send(b"\5\7\7")  # it leaves in the middle of a frame
+        assert upload_text(robot, ends, client, AWAY) == "OK"
+        end.send(b"\5\7\7")  # the client disconnects in the middle of a frame
         end.leave()
         talk(robot, [], 5)
         assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
-    robot = booted()
-    driver, typed = session(1, robot), Bytes(b"SI|F(0.2, 50)\n")
+    robot = boot()
+    driver, typed_bytes = session(1, robot), Bytes(b"SI|F(0.2, 50)\n")
     end = SerialPort(robot)
-    talk(robot, [(end, typed)], 400)
+    talk(robot, [(end, typed_bytes)], 400)
     assert actions_of(robot)[:2] == ["MOTORS 50 50", "MOTORS 0 0"]
-    assert b"// OK" in typed.heard
+    assert b"// OK" in typed_bytes.heard
     talk(robot, [], AUTHORITY_MS)
-    ends: Ends = [(None, driver), (end, typed)]
-    assert uploaded(robot, ends, driver) == "OK"
-    typed.to_send, typed.heard = b"F(0.2, 20)\n", b""
+    ends: Ends = [(None, driver), (end, typed_bytes)]
+    assert upload_text(robot, ends, driver) == "OK"
+    typed_bytes.to_send, typed_bytes.heard = b"F(0.2, 20)\n", b""
     talk(robot, ends, 300)
     assert actions_of(robot)[-1] == "MOTORS 80 80"
-    assert b"Not possible here" in typed.heard
-    typed.to_send = b"S\n"
+    assert b"Not possible here" in typed_bytes.heard
+    typed_bytes.to_send = b"S\n"
     talk(robot, ends, 50)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
 
@@ -337,10 +349,10 @@ def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
 @pytest.mark.parametrize("make", RADIOS)
 def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
     """An app may end none after one that does: it runs after three seconds all the same."""
-    robot = booted()
-    end, typed = make(robot), Bytes(b"SHOW(1)\n")
-    talk(robot, [(end, typed)], 100)
-    assert b"// OK" in typed.heard
+    robot = boot()
+    end, typed_bytes = make(robot), Bytes(b"SHOW(1)\n")
+    talk(robot, [(end, typed_bytes)], 100)
+    assert b"// OK" in typed_bytes.heard
     end.leave()
     talk(robot, [], AUTHORITY_MS)
     ends: Ends = [(make(robot), Bytes(b"SI|F(60, 50)"))]
@@ -352,7 +364,7 @@ def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
 
 def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
     """Both would be read in the same memory: no program is of two."""
-    robot = booted()
+    robot = boot()
     first, second = Bytes(b"SI|LOOP(2);"), Bytes()
     ends: Ends = [(None, first), (SerialPort(robot), second)]
     talk(robot, ends, 50)
@@ -373,7 +385,7 @@ def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
     "stop", [bytes(STOP_BYTES), b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))]
 )
 def test_a_stop_of_a_robot_that_stands_ends_what_is_typed_elsewhere(stop: bytes) -> None:
-    robot = booted()
+    robot = boot()
     first, second = Bytes(bytes(4)), Bytes()
     ends: Ends = [(None, first), (SerialPort(robot), second)]
     talk(robot, ends, 1500)
@@ -388,7 +400,7 @@ def test_a_stop_of_a_robot_that_stands_ends_what_is_typed_elsewhere(stop: bytes)
 
 
 def test_the_button_of_two_who_claim_is_nobodys() -> None:
-    robot = booted()
+    robot = boot()
     first, second = (Session(k, 115200, robot.robot.kit.fingerprint, keys=Keys(k)) for k in (1, 2))
     ends: Ends = [(None, first), (LowEnergy(robot), second)]
     claims = [first.claim(0), second.claim(0)]
@@ -403,23 +415,23 @@ def test_the_button_of_two_who_claim_is_nobodys() -> None:
 
 
 def test_a_teachers_stop_holds_on_every_transport() -> None:
-    robot = booted()
+    robot = boot()
     keys = Keys()
     teacher = Session(1, 115200, robot.robot.kit.fingerprint, keys=keys)
     pupil = session(2, robot)
     ends: Ends = [(LowEnergy(robot), teacher), (None, pupil)]
-    claimed(robot, ends, teacher, which=1)
-    assert ended(robot, ends, teacher.hold_back()) == "OK"
+    claim_robot(robot, ends, teacher, which=1)
+    assert wait_for_outcome(robot, ends, teacher.hold_back()) == "OK"
     talk(robot, ends[1:], AUTHORITY_MS + 100)
-    assert ended(robot, ends[1:], pupil.clear()) == "HELD_BACK"
-    assert uploaded(robot, ends[1:], pupil) == "HELD_BACK"
-    assert ended(robot, ends, teacher.clear()) == "OK"
+    assert wait_for_outcome(robot, ends[1:], pupil.clear()) == "HELD_BACK"
+    assert upload_text(robot, ends[1:], pupil) == "HELD_BACK"
+    assert wait_for_outcome(robot, ends, teacher.clear()) == "OK"
 
 
 def overrun(robot: Esp32Robot) -> int:
     client = session(99, robot)
     status = client.status()
-    assert ended(robot, [(None, client)], status) == "OK" and status.outcome
+    assert wait_for_outcome(robot, [(None, client)], status) == "OK" and status.outcome
     overrun_count: int = status.outcome.values.overrun
     return overrun_count
 
@@ -428,7 +440,7 @@ def overrun(robot: Esp32Robot) -> int:
 def test_what_finds_no_room_is_counted_and_no_stop_is_lost(make: Make) -> None:
     """A packet of a serial port has up to 990 bytes: the core keeps 512 of them, unless asked."""
     for stop in (bytes(STOP_BYTES), b"\r\nS\r\n"):
-        robot = booted()
+        robot = boot()
         end = make(robot)
         talk(robot, [(end, Bytes(b"F(60, 80)\r\n"))], 50)
         assert actions_of(robot) == ["MOTORS 80 80"]
@@ -443,11 +455,11 @@ def test_what_finds_no_room_is_counted_and_no_stop_is_lost(make: Make) -> None:
 
 def test_a_serial_port_whose_client_takes_nothing_hears_a_stop() -> None:
     """The core's `write` waits for a second meanwhile."""
-    robot = booted()
+    robot = boot()
     end = SerialPort(robot)
     talk(robot, [(end, Bytes(b"F(60, 80)\r\n"))], 50)
     robot.radio("Z", b"\1")
-    end.send(b"?\r\n")  # it has something to say
+    end.send(b"?\r\n")  # the client has data to send
     robot.wait(100)
     end.send(b"S\r\n")
     robot.wait(3)
@@ -455,18 +467,18 @@ def test_a_serial_port_whose_client_takes_nothing_hears_a_stop() -> None:
 
 
 def test_an_upload_in_long_packets_of_a_serial_port_loses_nothing() -> None:
-    robot = booted()
+    robot = boot()
     client = session(3, robot)
     ends: Ends = [(SerialPort(robot), client)]
     text = "SI|" + ";".join(f"SHOW({1000 + k})" for k in range(900))
-    assert ended(robot, ends, client.upload(image_of(text), saves=False), 60_000) == "OK"
+    assert wait_for_outcome(robot, ends, client.upload(image_of(text), saves=False), 60_000) == "OK"
     status = client.status()
-    assert ended(robot, ends, status) == "OK" and status.outcome
+    assert wait_for_outcome(robot, ends, status) == "OK" and status.outcome
     assert (status.outcome.values.damaged, status.outcome.values.overrun) == (0, 0)
 
 
 def paste(size: int, burst: int, gap_ms: int) -> Callable[[Esp32Robot, End, bytes, Bytes], None]:
-    """Return what sends a text at the pace of a radio: writes of a size, so many at once."""
+    """Return a function that sends a text at a radio's pace: writes of a size, so many at once."""
 
     def send(robot: Esp32Robot, end: End, text: bytes, who: Bytes) -> None:
         for at in range(0, len(text), size * burst):
@@ -488,14 +500,14 @@ PACES: dict[str, tuple[Make, Callable[..., None]]] = {
 @pytest.mark.parametrize("comment", [b"", b" // one of forty"])
 @pytest.mark.parametrize("pace", PACES)
 def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: bytes) -> None:
-    """At the pace of real radios; what the robot does is what it does by its cable."""
+    """At the pace of real radios, the robot acts as over its cable."""
     lines = b"".join(b"F(0.01, %d)%b\r\n" % (20 + k, comment) for k in range(40))
     text = b"LOOP(1)\r\n" + lines + b"END_LOOP\r\n"
-    by_cable = booted()
+    by_cable = boot()
     for at in range(0, len(text), 11):
         by_cable.step(text[at : at + 11])
     by_cable.wait(2500)
-    robot = booted()
+    robot = boot()
     make, send = PACES[pace]
     end, who = make(robot), Bytes()
     send(robot, end, text, who)
@@ -508,7 +520,7 @@ def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: byt
 @pytest.mark.parametrize("make", RADIOS)
 def test_lines_wait_while_what_they_are_answered_is_not_taken(make: Make) -> None:
     """Each has an answer, which a client takes late; the lines before it are lost neither."""
-    robot = booted()
+    robot = boot()
     end, who = make(robot), Bytes()
     if isinstance(end, LowEnergy):
         robot.radio("k", b"\1")
@@ -526,34 +538,34 @@ def test_lines_wait_while_what_they_are_answered_is_not_taken(make: Make) -> Non
 
 
 def pressing(robot: Esp32Robot, ends: Ends, who: Session, keys: int = 1) -> str:
-    return ended(robot, ends, who.press(keys))
+    return wait_for_outcome(robot, ends, who.press(keys))
 
 
 def test_keys_come_from_who_drives_or_from_anybody_where_nobody_does() -> None:
-    """They make nobody the driver."""
-    robot = booted()
+    """Keys do not make their sender the driver."""
+    robot = boot()
     first, second = session(1, robot), session(2, robot)
     ends: Ends = [(None, first), (LowEnergy(robot), second)]
     assert pressing(robot, ends, first) == "OK"
     assert pressing(robot, ends, second, 2) == "OK"
-    assert uploaded(robot, ends, first) == "OK", "nobody was the driver"
+    assert upload_text(robot, ends, first) == "OK", "nobody was the driver"
     assert pressing(robot, ends, second) == "OTHER_DRIVER"
     assert pressing(robot, ends, first, 4) == "OK"
     first.stop(robot.now_ms)
     talk(robot, ends, AUTHORITY_MS + 500)
     assert pressing(robot, ends, second) == "OK"
-    assert uploaded(robot, ends, first) == "OK", "nor is he who has pressed last"
+    assert upload_text(robot, ends, first) == "OK", "nor is he who has pressed last"
 
 
 def test_keys_end_no_upload_of_somebody_else() -> None:
-    robot = booted()
+    robot = boot()
     first, second = session(1, robot), session(2, robot)
     ends: Ends = [(None, first), (LowEnergy(robot), second)]
-    assert ended(robot, ends, second.hello()) == "OK"
+    assert wait_for_outcome(robot, ends, second.hello()) == "OK"
     long = first.upload(image_of("SI|" + "F(0.01, 80);" * 2500), saves=False)
     press_count = 0
     while long.outcome is None:
-        press_count += ended(robot, ends, second.press(1 + press_count % 2)) in (
+        press_count += wait_for_outcome(robot, ends, second.press(1 + press_count % 2)) in (
             "OK",
             "OTHER_DRIVER",
         )

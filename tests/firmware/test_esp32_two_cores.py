@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines.esp32 import STAND_INS, TLS, flags_of
-from tests.machines.host import BUILDS, SOURCES, made
+from tests.machines.host import BUILDS, SOURCES, compile_once
 
 CLANG = "clang++-22"
 pytestmark = pytest.mark.skipif(
@@ -39,8 +39,10 @@ def program(sources: Path = SOURCES) -> Path:
     objects = []
     for path in code:
         texts = [*headers, path.name.encode(), path.read_bytes()]
-        objects.append(str(made(CLANG, BUILDS, ".o", FLAGS, texts, ["-c", str(path)])))
-    return made(CLANG, BUILDS, "", FLAGS, [name.encode() for name in objects], [*objects, *TLS])
+        objects.append(str(compile_once(CLANG, BUILDS, ".o", FLAGS, texts, ["-c", str(path)])))
+    return compile_once(
+        CLANG, BUILDS, "", FLAGS, [name.encode() for name in objects], [*objects, *TLS]
+    )
 
 
 def run(sources: Path = SOURCES, seconds: int = 2) -> subprocess.CompletedProcess[str]:

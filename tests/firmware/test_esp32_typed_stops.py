@@ -12,10 +12,10 @@ import pytest
 
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Bytes, End, Network, session, talk
-from tests.support.esp32_wifi import joined
+from tests.support.esp32_wifi import join_network
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import RADIOS, Ends, Make, booted, ended, uploaded
+from tests.support.robot_on_esp32 import RADIOS, Ends, Make, boot, upload_text, wait_for_outcome
 from tests.support.robot_on_host import actions_of
 from tests.support.stop_spellings import ALL, HELD_MS, SILENCE_MS, spellings_after
 from tiniscript.link.frames import Frame, encode_frame
@@ -23,15 +23,15 @@ from tiniscript.link.messages import BY_NAME
 from tiniscript.link.session import Session
 from tiniscript.virtual.protocol_sniffer import sniff_robot_client
 
-ROOM = 1022  # bytes; one place is for who leaves
-LATE_MS = 3  # a turn of the radio's task, and what a network of this computer takes
+ROOM = 1022  # bytes; one slot is for a leaving client
+LATE_MS = 3  # a turn of the radio's task, and the delay of this computer's network
 WHOLE = encode_frame(Frame(BY_NAME["STATUS"].number, 9, 0))
 
 
 def drives(robot: Esp32Robot, driver: Session, end: End | None = None) -> Ends:
-    """Have a robot drive, by its cable or over a transport."""
+    """Make a robot drive, by its cable or over a transport."""
     ends: Ends = [(end, driver)]
-    assert uploaded(robot, ends, driver) == "OK"
+    assert upload_text(robot, ends, driver) == "OK"
     talk(robot, ends, 10)
     assert actions_of(robot)[-1] == "MOTORS 80 80"
     return ends
@@ -46,9 +46,9 @@ def stops(robot: Esp32Robot, end: End | None, ends: Ends, data: bytes, what: str
     typed: Ends = [*ends, (end, Bytes(data))]
     talk(robot, typed, LATE_MS)
     if not stands(robot):
-        talk(robot, typed, HELD_MS)  # in what began as a frame
+        talk(robot, typed, HELD_MS)  # inside a started frame
     assert stands(robot), what
-    talk(robot, [*ends, (end, Bytes(b"SI|F(1,80)\n"))], 50)  # not before a second of silence
+    talk(robot, [*ends, (end, Bytes(b"SI|F(1,80)\n"))], 50)  # before a second of silence
     assert stands(robot), what
 
 
@@ -64,13 +64,13 @@ def stops_after_every_prefix(
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_a_typed_stop_over_a_radio_while_the_cable_drives(make: Make) -> None:
-    robot = booted()
+    robot = boot()
     stops_after_every_prefix(robot, session(1, robot), None, make(robot))
 
 
 def test_a_typed_stop_over_a_network() -> None:
-    """Nothing that is typed there drives. A stop is one all the same."""
-    robot, owner = joined(Keys())
+    """Typed lines do not drive there, but a typed stop works."""
+    robot, owner = join_network(Keys())
     end = Network(robot)
     end.send(b"\0\0")
     stops_after_every_prefix(robot, owner, None, end)
@@ -79,11 +79,11 @@ def test_a_typed_stop_over_a_network() -> None:
 
 @pytest.mark.parametrize("word", [b"S", b"\r\n sToP; ", b"SS", b"PARA", b"Stop.", b"\x03"])
 def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
-    """Of somebody in a network who may yet be a web page: it lets nobody in."""
-    robot, owner = joined(Keys())
+    """A client in a network that may still be a web page is not admitted by it."""
+    robot, owner = join_network(Keys())
     end = Network(robot)
     end.send(word)
-    talk(robot, [(None, owner)], SILENCE_MS + 100)  # while nothing runs it is none
+    talk(robot, [(None, owner)], SILENCE_MS + 100)  # nothing runs
     ends = drives(robot, owner)
     talk(robot, ends, SILENCE_MS + 100)
     assert not stands(robot)
@@ -96,7 +96,7 @@ def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
     page = b"S / HTTP/1.1\r\n"
     other.send(page)
     talk(robot, ends, LATE_MS)
-    other.taken()
+    other.take()
     assert other.has_ended == (sniff_robot_client(word + page) is False)
     stops(robot, end, drives(robot, owner), b"S\n", "after one that has stopped nothing")
     end.leave()
@@ -106,7 +106,7 @@ def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
 @pytest.mark.parametrize("words", [[b"SSS"], [b"S", b"s", b"S"], [b"STOP ", b"STOP"]])
 def test_a_stranger_who_sends_no_line_end_stops(words: list[bytes]) -> None:
     """A request has none of these before its target; and it lets nobody in."""
-    robot, owner = joined(Keys())
+    robot, owner = join_network(Keys())
     ends = drives(robot, owner)
     end = Network(robot)
     for word in words:
@@ -118,14 +118,14 @@ def test_a_stranger_who_sends_no_line_end_stops(words: list[bytes]) -> None:
 
 
 def test_a_typed_stop_over_the_cable_while_a_radio_drives() -> None:
-    robot = booted()
+    robot = boot()
     stops_after_every_prefix(robot, session(1, robot), RADIOS[0](robot), None)
 
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_who_comes_next_begins_a_line(make: Make) -> None:
-    """What the one before has begun ends with its connection."""
-    robot = booted()
+    """Unfinished text of the previous client ends with its connection."""
+    robot = boot()
     driver = session(1, robot)
     ends = drives(robot, driver)
     end = make(robot)
@@ -142,13 +142,13 @@ def test_who_comes_next_begins_a_line(make: Make) -> None:
 @pytest.mark.parametrize("stop", [b"S\n", b" stop ;\r", bytes(4), b"Stop.\n", b"SSS", b"\0S\0"])
 def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
     """Wherever the ring ends in it, and where the robot reads before the rest comes."""
-    robot = booted()
+    robot = boot()
     driver, end = session(1, robot), make(robot)
     line = b"F(1,80)\n"
     for bytes_left in range(-1, len(stop) + 1):  # bytes of the stop that find room
         ends = drives(robot, driver)
-        before = (line * ROOM)[: ROOM - bytes_left - 1] + b"\n"
-        stops(robot, end, ends, before + stop, f"{bytes_left} of {stop!r}")
+        line_before = (line * ROOM)[: ROOM - bytes_left - 1] + b"\n"
+        stops(robot, end, ends, line_before + stop, f"{bytes_left} of {stop!r}")
     for lost in range(len(stop)):
         ends = drives(robot, driver)
         end.send(b"(" * ROOM + b"\n" + stop[:lost])
@@ -159,20 +159,20 @@ def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
 @pytest.mark.parametrize("make", RADIOS)
 def test_what_is_lost_stops_nobody(make: Make) -> None:
     """Nor does a frame with a line S in it that arrives whole, after what was lost."""
-    robot = booted()
+    robot = boot()
     driver, end = session(1, robot), make(robot)
     ends = drives(robot, driver)
     client = session(2, robot)
     code = b"Z\n\nS\n\xcc\x03"
-    for before in (b"F(1,80)\n" * 400, WHOLE * 400, b"FT\nS T\n\0\0FT" * 400):
-        end.send(before)
-        talk(robot, [*ends, (end, Bytes())], 2500)  # until the lines that wait are answered
+    for bytes_before in (b"F(1,80)\n" * 400, WHOLE * 400, b"FT\nS T\n\0\0FT" * 400):
+        end.send(bytes_before)
+        talk(robot, [*ends, (end, Bytes())], 2500)  # until the waiting lines are answered
         frame = encode_frame(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1" + code))
         assert b"\nS\n" in frame
         end.send(b"\0" + frame)
         talk(robot, ends, HELD_MS + 20)
         assert not stands(robot)
-    assert ended(robot, [*ends, (end, client)], client.status()) == "OK"
+    assert wait_for_outcome(robot, [*ends, (end, client)], client.status()) == "OK"
 
 
 def moves(robot: Esp32Robot) -> list[str]:
@@ -186,30 +186,30 @@ LINES = b"".join(b"F(1,%d)\n" % (20 + k % 70) for k in range(100))
 @pytest.mark.parametrize("make", RADIOS)
 @pytest.mark.parametrize("stop", [b"S\n", b"PARA\n", b"SSS", b"STOP STOP ", bytes(4), b"\x03\n"])
 def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
-    """Nothing that came before it starts afterwards, and what comes after it counts again."""
-    robot = booted()
+    """Earlier lines never start afterwards, and later ones count again."""
+    robot = boot()
     driver, end = session(1, robot), make(robot)
     ends = drives(robot, driver)
     few, many = LINES[: 8 * 40], LINES[: 8 * 100]
-    for before in (few, many, many + b"LOOP(2)\n", b"\0" + many):
+    for bytes_before in (few, many, many + b"LOOP(2)\n", b"\0" + many):
         who = Bytes()
-        end.send(before + stop)
+        end.send(bytes_before + stop)
         robot.wait(1)
-        assert stands(robot), (before[-20:], stop)
+        assert stands(robot), (bytes_before[-20:], stop)
         talk(robot, [*ends, (end, who)], 500)
         talk(robot, [(end, who)], 3000)  # the driver has gone
-        assert stands(robot), (before[-20:], stop)
+        assert stands(robot), (bytes_before[-20:], stop)
         who.to_send = b"\r\nSI|F(0.1,33)\n"
         talk(robot, [(end, who)], 1500)
-        assert moves(robot)[-2:] == ["MOTORS 33 33", "MOTORS 0 0"], (before[-20:], who.heard)
+        assert moves(robot)[-2:] == ["MOTORS 33 33", "MOTORS 0 0"], (bytes_before[-20:], who.heard)
         talk(robot, ends, 1500)
         ends = drives(robot, driver)
 
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_a_stop_in_an_open_block_that_waits_is_a_line_of_it(make: Make) -> None:
-    """As over a cable: it ends what runs, at once, and is read."""
-    robot = booted()
+    """As over a cable, it ends the running program at once, and is part of the line."""
+    robot = boot()
     end, who = make(robot), Bytes()
     talk(robot, [(end, Bytes(b"SI|F(60, 80)\n"))], 100)
     lines = b"".join(b"F(0.01,%d) // one of twenty\n" % (20 + k) for k in range(20))
@@ -223,7 +223,7 @@ def test_a_stop_in_an_open_block_that_waits_is_a_line_of_it(make: Make) -> None:
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_a_frame_before_a_stop_that_waits_does_nothing(make: Make) -> None:
-    robot = booted()
+    robot = boot()
     end = make(robot)
     live = b"\0" + encode_frame(Frame(BY_NAME["LIVE"].number, 9, 0, image_of("F(60, 80)").code))
     end.send(LINES[:0] + b"// " + b"x" * 500 + b"\n" + live * 6 + b"\nS\n")
@@ -233,9 +233,10 @@ def test_a_frame_before_a_stop_that_waits_does_nothing(make: Make) -> None:
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
-    """In every state of the receiver: what else waits of him is gone, but no stop that waits for
-    nothing more to come."""
-    robot = booted()
+    """In every state of the receiver: the client's other data is discarded, but not a complete
+    stop.
+    """
+    robot = boot()
     driver = session(1, robot)
     count = 0
     for k, (name, prefix) in enumerate(ALL.items()):
@@ -261,7 +262,7 @@ def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
 @pytest.mark.parametrize("make", RADIOS)
 def test_a_stop_of_a_client_that_leaves_keeps_nobody_from_driving(make: Make) -> None:
     """However much waits before it, of whichever of two clients it is, and whenever they go."""
-    robot = booted()
+    robot = boot()
     rng = random.Random(make.__name__)
     for number in range(30):
         waiting = LINES[: 8 * rng.randrange(1, 120)]
@@ -275,10 +276,10 @@ def test_a_stop_of_a_client_that_leaves_keeps_nobody_from_driving(make: Make) ->
         (end := make(robot)).send(second)
         talk(robot, [(end, Bytes())], left_ms)
         end.leave()
-        talk(robot, [], 300)  # until all of that is read
+        talk(robot, [], 300)  # until all of it is read
         who = session(100 + number, robot)
         end = make(robot)
-        assert uploaded(robot, [(end, who)], who) == "OK"
+        assert upload_text(robot, [(end, who)], who) == "OK"
         talk(robot, [(end, who)], 20)
         outcome = (len(waiting), first, second, left_ms)
         assert moves(robot)[-1] == "MOTORS 80 80", outcome

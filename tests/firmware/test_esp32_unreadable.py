@@ -6,10 +6,10 @@ import pytest
 
 from tests.machines.esp32 import BLOBS, CLOSED, EMPTY, NUMBERS, Esp32Robot, Kept
 from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
-from tests.support.esp32_wifi import owned, remote
+from tests.support.esp32_wifi import make_owned_robot, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import AWAY, Ends, ended, uploaded
+from tests.support.robot_on_esp32 import AWAY, Ends, upload_text, wait_for_outcome
 from tests.support.robot_on_host import actions_of
 from tiniscript.link.messages import SAVED, STOP_BYTES
 from tiniscript.link.session import Session
@@ -18,41 +18,41 @@ FAULTS = pytest.mark.parametrize("fault", [CLOSED, NUMBERS, BLOBS])
 
 
 def claimed_with_program(keys: Keys) -> Kept:
-    robot, owner = owned(keys)
+    robot, owner = make_owned_robot(keys)
     ends: Ends = [(None, owner)]
-    assert ended(robot, ends, owner.upload(image_of("SB|F(60, 80)"))) == "OK"
+    assert wait_for_outcome(robot, ends, owner.upload(image_of("SB|F(60, 80)"))) == "OK"
     talk(robot, ends, 3000)
-    return robot.kept()
+    return robot.read_kept()
 
 
-def started(kept: Kept, fault: int) -> Esp32Robot:
-    robot = Esp32Robot(kept=kept, nvs_fault=fault)
+def boot(kept_memory: Kept, fault: int) -> Esp32Robot:
+    robot = Esp32Robot(kept_memory=kept_memory, nvs_fault=fault)
     robot.wait(500)
     return robot
 
 
-def saved(robot: Esp32Robot, who: Session) -> str:
+def read_saved_state(robot: Esp32Robot, who: Session) -> str:
     request = who.status()
-    assert ended(robot, [(None, who)], request) == "OK"
+    assert wait_for_outcome(robot, [(None, who)], request) == "OK"
     assert request.outcome
     return SAVED[request.outcome.values.saved][0]
 
 
 @FAULTS
 def test_strangers_do_not_drive_a_claimed_robot(fault: int) -> None:
-    robot = started(claimed_with_program(Keys()), fault)
-    stranger, typed = session(2, robot), Bytes(b"SI|F(60, 80)\n")
+    robot = boot(claimed_with_program(Keys()), fault)
+    stranger, typed_bytes = session(2, robot), Bytes(b"SI|F(60, 80)\n")
     ends: Ends = [(None, stranger)]
-    assert saved(robot, stranger) == "UNREADABLE"
+    assert read_saved_state(robot, stranger) == "UNREADABLE"
     for request in (
         stranger.upload(image_of(AWAY)), stranger.live(image_of("F(1, 10)").code), stranger.start(),
         stranger.name(b"mine"), stranger.fetch(), stranger.undo(),
     ):  # fmt: skip
-        assert ended(robot, ends, request) == "NOT_OWNER"
+        assert wait_for_outcome(robot, ends, request) == "NOT_OWNER"
     thief = remote(robot, Keys(80), 4)
-    assert ended(robot, [(None, thief)], thief.claim(0)) == "UNREADABLE"
-    talk(robot, [(LowEnergy(robot), typed)], 1500)
-    assert b"//" in typed.heard
+    assert wait_for_outcome(robot, [(None, thief)], thief.claim(0)) == "UNREADABLE"
+    talk(robot, [(LowEnergy(robot), typed_bytes)], 1500)
+    assert b"//" in typed_bytes.heard
     robot.step(flags=1)
     robot.wait(100)
     robot.step(flags=2)
@@ -62,24 +62,24 @@ def test_strangers_do_not_drive_a_claimed_robot(fault: int) -> None:
 
 @FAULTS
 def test_its_owner_is_told_why_and_keeps_the_key(fault: int) -> None:
-    kept = claimed_with_program(keys := Keys())
-    robot = started(kept, fault)
+    kept_memory = claimed_with_program(keys := Keys())
+    robot = boot(kept_memory, fault)
     owner = remote(robot, keys, 4)
-    assert uploaded(robot, [(None, owner)], owner) == "UNREADABLE"
+    assert upload_text(robot, [(None, owner)], owner) == "UNREADABLE"
     assert [(key.is_stale, key.is_pending) for key in keys.stored_keys] == [(False, False)]
     robot.step(bytes(STOP_BYTES))
     robot.wait(20)
     assert robot.is_latched
-    restarted = started(kept, 0)
-    owner = remote(restarted, keys, 5)
-    assert uploaded(restarted, [(None, owner)], owner) == "OK"
+    restarted_robot = boot(kept_memory, 0)
+    owner = remote(restarted_robot, keys, 5)
+    assert upload_text(restarted_robot, [(None, owner)], owner) == "OK"
 
 
-@pytest.mark.parametrize("fault", [CLOSED, NUMBERS])  # of a new one there are no blobs to read
+@pytest.mark.parametrize("fault", [CLOSED, NUMBERS])  # a new chip has no blobs to read
 def test_a_new_robot_is_nobodys_until_its_memory_can_be_read(fault: int) -> None:
-    robot = started(EMPTY, fault)
+    robot = boot(EMPTY, fault)
     anybody = session(2, robot)
-    assert uploaded(robot, [(None, anybody)], anybody) == "NOT_OWNER"
-    robot = started(EMPTY, 0)
+    assert upload_text(robot, [(None, anybody)], anybody) == "NOT_OWNER"
+    robot = boot(EMPTY, 0)
     anybody = session(2, robot)
-    assert uploaded(robot, [(None, anybody)], anybody) == "OK"
+    assert upload_text(robot, [(None, anybody)], anybody) == "OK"

@@ -23,8 +23,8 @@ from tests.support.esp32_wifi import (
     SCHOOL,
     WIFI_KEY,
     far_owner,
-    joined,
-    owned,
+    join_network,
+    make_owned_robot,
     remote,
     school_in_reach,
     state,
@@ -32,7 +32,7 @@ from tests.support.esp32_wifi import (
 )
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import AWAY, Ends, booted, ended, uploaded
+from tests.support.robot_on_esp32 import AWAY, Ends, boot, upload_text, wait_for_outcome
 from tests.support.robot_on_host import actions_of
 from tiniscript.link import wifi
 from tiniscript.link.authority import RobotKey
@@ -46,7 +46,7 @@ from tiniscript.link.session import Session
 
 @pytest.mark.parametrize("network", [SCHOOL, HOTSPOT])
 def test_the_owner_gives_the_robot_a_network(network: wifi.Network) -> None:
-    robot, owner = joined(Keys(), network)
+    robot, owner = join_network(Keys(), network)
     wifi_reply = wifi_reply_of(robot, [(None, owner)], owner)
     assert (wifi_reply.network, wifi.STATES[wifi_reply.state]) == (network.name, "READY")
     assert wifi.address(wifi_reply) == ("192.168.4.1" if network.is_access_point else "127.0.0.1")
@@ -58,30 +58,30 @@ def test_the_owner_gives_the_robot_a_network(network: wifi.Network) -> None:
 
 
 def test_what_there_is_no_memory_for_is_announced_later() -> None:
-    robot, _ = joined(Keys())
-    rebooted = Esp32Robot(kept=robot.kept())
-    rebooted.wait(100)
-    rebooted.radio("H", b"\1")
-    school_in_reach(rebooted)
-    rebooted.wait(400)
-    assert port_of(rebooted) and not radios(rebooted).service
-    rebooted.radio("H", b"\0")
-    rebooted.wait(400)
-    assert radios(rebooted).service == "_tiniscript._tcp 8473"
+    robot, _ = join_network(Keys())
+    rebooted_robot = Esp32Robot(kept_memory=robot.read_kept())
+    rebooted_robot.wait(100)
+    rebooted_robot.radio("H", b"\1")
+    school_in_reach(rebooted_robot)
+    rebooted_robot.wait(400)
+    assert port_of(rebooted_robot) and not radios(rebooted_robot).service
+    rebooted_robot.radio("H", b"\0")
+    rebooted_robot.wait(400)
+    assert radios(rebooted_robot).service == "_tiniscript._tcp 8473"
 
 
 def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
-    robot, owner = joined(Keys())
-    rebooted = Esp32Robot(kept=robot.kept())
-    school_in_reach(rebooted)
-    rebooted.wait(400)
-    assert port_of(rebooted)
+    robot, owner = join_network(Keys())
+    rebooted_robot = Esp32Robot(kept_memory=robot.read_kept())
+    school_in_reach(rebooted_robot)
+    rebooted_robot.wait(400)
+    assert port_of(rebooted_robot)
     ends: Ends = [(None, owner)]
-    assert ended(robot, ends, owner.forget_wifi()) == "OK"
+    assert wait_for_outcome(robot, ends, owner.forget_wifi()) == "OK"
     talk(robot, ends, 50)
     assert state(robot, owner) == ("OFF", "OFF")
     assert radios(robot).network == "" and radios(robot).service == ""
-    third = Esp32Robot(kept=robot.kept())
+    third = Esp32Robot(kept_memory=robot.read_kept())
     third.wait(400)
     assert radios(third).joins == 0
 
@@ -89,90 +89,92 @@ def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
 def overheard(
     robot: Esp32Robot, end: LowEnergy | None, who: Session, request: PendingRequest[Any]
 ) -> tuple[bytes, bytes]:
-    """Let somebody talk until a request is over; return all bytes to the robot, and those back."""
-    sent = replies = b""
+    """Let a client talk until a request is over; return all bytes in both directions."""
+    sent_bytes = replies = b""
     while request.outcome is None:
         data = who.poll(robot.now_ms)
-        sent += data
+        sent_bytes += data
         if end is None:
             reply = robot.step(data)
         else:
             end.send(data)
             robot.step()
-            reply = end.taken()
+            reply = end.take()
         replies += reply
         who.receive(reply, robot.now_ms)
-    return sent, replies
+    return sent_bytes, replies
 
 
 def test_the_password_is_not_readable_on_the_line() -> None:
     """Not the password: who listens to Bluetooth LE hears all bytes. The replies have the name."""
     keys = Keys()
-    robot, _ = owned(keys)
+    robot, _ = make_owned_robot(keys)
     talk(robot, [], 2500)
     over = remote(robot, keys)
     request = over.join(SCHOOL)
-    sent, replies = overheard(robot, LowEnergy(robot), over, request)
+    sent_bytes, replies = overheard(robot, LowEnergy(robot), over, request)
     assert request.outcome and request.outcome.status == 0
     assert radios(robot).password.encode() == SCHOOL.password
-    for text, heard in ((SCHOOL.name, sent), (SCHOOL.password, sent + replies)):
-        assert all(text[k : k + 4] not in heard for k in range(len(text) - 3))
+    for text, heard_bytes in ((SCHOOL.name, sent_bytes), (SCHOOL.password, sent_bytes + replies)):
+        assert all(text[k : k + 4] not in heard_bytes for k in range(len(text) - 3))
 
 
 def test_a_robot_without_an_owner_takes_none() -> None:
-    robot = booted()
+    robot = boot()
     client = session(1, robot)
     for request in (client.join(SCHOOL), client.forget_wifi(), client.wifi()):
-        sent, _ = overheard(robot, None, client, request)
+        sent_bytes, _ = overheard(robot, None, client, request)
         assert request.outcome and request.outcome.status != 0
-        assert SCHOOL.password[:8] not in sent
+        assert SCHOOL.password[:8] not in sent_bytes
     assert radios(robot).joins == 0
-    assert ended(robot, [(None, client)], client.ping()) == "OK"
+    assert wait_for_outcome(robot, [(None, client)], client.ping()) == "OK"
 
 
 def test_a_stranger_takes_none_away() -> None:
-    robot, _ = joined(Keys())
+    robot, _ = join_network(Keys())
     stranger = remote(robot, Keys(50))
     ends: Ends = [(LowEnergy(robot), stranger)]
     for request in (stranger.join(HOTSPOT), stranger.forget_wifi(), stranger.wifi()):
-        assert ended(robot, ends, request) == "NOT_OWNER"
+        assert wait_for_outcome(robot, ends, request) == "NOT_OWNER"
     assert radios(robot).network.encode() == SCHOOL.name
 
 
 def test_what_is_no_network_is_refused() -> None:
-    robot, owner = owned(Keys())
+    robot, owner = make_owned_robot(Keys())
     for name, password in (
         (b"x", b"short"), (b"x", b""), (b"a\0b", b"12345678"), (b"x", b"1234\0" + b"5678"),
     ):  # fmt: skip
         request = owner.join(wifi.Network(name, password))
-        assert ended(robot, [(None, owner)], request) == "BAD_VALUE", (name, password)
+        assert wait_for_outcome(robot, [(None, owner)], request) == "BAD_VALUE", (name, password)
         assert state(robot, owner) == ("OFF", "OFF")
 
 
 def test_it_is_kept_when_the_motors_stand_and_whole_or_not_at_all() -> None:
-    robot, owner = owned(Keys())
+    robot, owner = make_owned_robot(Keys())
     ends: Ends = [(None, owner)]
-    assert uploaded(robot, ends, owner, "SI|F(1.5, 40)") == "OK"
+    assert upload_text(robot, ends, owner, "SI|F(1.5, 40)") == "OK"
     request = owner.join(SCHOOL)
     talk(robot, ends, 800)
-    assert request.outcome is None and WIFI_KEY not in robot.kept().entries
-    assert ended(robot, ends, request) == "OK"
-    assert WIFI_KEY in robot.kept().entries
-    before = robot.kept().entries[WIFI_KEY]
+    assert request.outcome is None and WIFI_KEY not in robot.read_kept().entries
+    assert wait_for_outcome(robot, ends, request) == "OK"
+    assert WIFI_KEY in robot.read_kept().entries
+    entries_before = robot.read_kept().entries[WIFI_KEY]
     robot.fill_nvs()
-    assert ended(robot, ends, owner.join(HOTSPOT)) == "NOT_KEPT"
-    assert robot.kept().entries[WIFI_KEY] == before
+    assert wait_for_outcome(robot, ends, owner.join(HOTSPOT)) == "NOT_KEPT"
+    assert robot.read_kept().entries[WIFI_KEY] == entries_before
     assert wifi_reply_of(robot, ends, owner).network == SCHOOL.name
-    kept = robot.kept()
+    kept_memory = robot.read_kept()
     for entry in (b"", b"\1" * 5, b"\xff" * 98, b"\1" + b"x" * 97):
-        rebooted = Esp32Robot(kept=Kept(kept.noinit, {**kept.entries, WIFI_KEY: entry}, 0))
-        rebooted.wait(400)
-        assert radios(rebooted).joins == 0, entry
+        rebooted_robot = Esp32Robot(
+            kept_memory=Kept(kept_memory.noinit, {**kept_memory.entries, WIFI_KEY: entry}, 0)
+        )
+        rebooted_robot.wait(400)
+        assert radios(rebooted_robot).joins == 0, entry
 
 
 def test_a_wrong_password_and_a_network_out_of_reach_are_told() -> None:
     """The core says "disconnected" of a wrong password; its event has the reason."""
-    robot, owner = joined(Keys())
+    robot, owner = join_network(Keys())
     ends: Ends = [(None, owner)]
     for reason, expected in (
         (8, "SEARCHING"), (15, "REFUSED"), (202, "REFUSED"), (203, "REFUSED"), (204, "REFUSED"),
@@ -194,32 +196,32 @@ def test_a_wrong_password_and_a_network_out_of_reach_are_told() -> None:
 
 def test_a_key_that_is_taken_away_ends_all_other_sessions_of_it() -> None:
     keys = Keys()
-    robot, owner = owned(keys)
+    robot, owner = make_owned_robot(keys)
     over = remote(robot, keys)
     ends: Ends = [(None, owner), (LowEnergy(robot), over)]
-    assert ended(robot, ends, over.wifi()) == "OK"
-    assert ended(robot, ends, owner.disown(0)) == "OK"
-    keys.stored_keys.append(RobotKey(0x12345678, 0, bytes([1] * 16)))  # as on another computer
-    assert ended(robot, ends, over.name(b"mine")) == "WRONG_KEY"
+    assert wait_for_outcome(robot, ends, over.wifi()) == "OK"
+    assert wait_for_outcome(robot, ends, owner.disown(0)) == "OK"
+    keys.stored_keys.append(RobotKey(0x12345678, 0, bytes([1] * 16)))  # a key from another computer
+    assert wait_for_outcome(robot, ends, over.name(b"mine")) == "WRONG_KEY"
 
 
 def test_no_two_transports_have_the_same_challenge() -> None:
-    """What was recorded on one would be a right answer on another."""
-    robot, _ = owned(Keys())
-    rebooted = Esp32Robot(kept=robot.kept())  # no challenge before
-    rebooted.wait(300)
+    """A recorded answer would be valid on another transport."""
+    robot, _ = make_owned_robot(Keys())
+    rebooted_robot = Esp32Robot(kept_memory=robot.read_kept())  # no challenge before
+    rebooted_robot.wait(300)
     hello = encode_payload(BY_NAME["HELLO"].request, {
         "major": MAJOR, "minor": MINOR, "isa_major": 2, "isa_minor": 0, "kit": 0, "nonce": 5,
     })  # fmt: skip
     asks = b"\0" + encode_frame(Frame(1, 1, 0, hello))
     first, second = Bytes(asks), Bytes(asks)
-    ends: Ends = [(None, first), (LowEnergy(rebooted), second)]
-    talk(rebooted, ends, 60)
+    ends: Ends = [(None, first), (LowEnergy(rebooted_robot), second)]
+    talk(rebooted_robot, ends, 60)
     frames = [decode_frame(client.heard.strip(b"\0")) for client in (first, second)]
     [epoch] = {frame.epoch for frame in frames if frame}
     first.to_send = second.to_send = encode_frame(Frame(17, 2, epoch, b"\0"))
     first.heard = second.heard = b""
-    talk(rebooted, ends, 60)
+    talk(rebooted_robot, ends, 60)
     assert len(first.heard) == 20 and first.heard != second.heard
 
 
@@ -230,11 +232,11 @@ def test_the_owner_drives_over_wifi_and_a_stranger_looks_and_stops() -> None:
     robot, end, owner = far_owner(Keys())
     stranger = remote(robot, Keys(50), 11)
     ends: Ends = [(end, owner), (Network(robot), stranger)]
-    assert uploaded(robot, ends, owner) == "OK"
+    assert upload_text(robot, ends, owner) == "OK"
     for request in (stranger.hello(), stranger.ping(), stranger.status(), stranger.identify()):
-        assert ended(robot, ends, request) == "OK"
+        assert wait_for_outcome(robot, ends, request) == "OK"
     for acting in (stranger.start(), stranger.fetch(), stranger.live(image_of("F(1, 9)").code)):
-        assert ended(robot, ends, acting) == "NOT_OWNER"
+        assert wait_for_outcome(robot, ends, acting) == "NOT_OWNER"
     talk(robot, ends, 1500)
     assert actions_of(robot)[-1] == "MOTORS 80 80"
     stranger.stop(robot.now_ms)
@@ -244,24 +246,24 @@ def test_the_owner_drives_over_wifi_and_a_stranger_looks_and_stops() -> None:
 
 def test_a_robot_that_was_given_up_does_not_move_over_wifi() -> None:
     keys = Keys()
-    robot, owner = joined(keys)
-    assert ended(robot, [(None, owner)], owner.disown(0)) == "OK"
+    robot, owner = join_network(keys)
+    assert wait_for_outcome(robot, [(None, owner)], owner.disown(0)) == "OK"
     talk(robot, [], AUTHORITY_MS + 100)
-    before = len(robot.did)
-    client, typed = remote(robot, None), Bytes(b"SI|F(1, 80)\n")
-    ends: Ends = [(Network(robot), client), (Network(robot), typed)]
+    count_before = len(robot.did)
+    client, typed_bytes = remote(robot, None), Bytes(b"SI|F(1, 80)\n")
+    ends: Ends = [(Network(robot), client), (Network(robot), typed_bytes)]
     for request in (client.hello(), client.ping(), client.status(), client.identify()):
-        assert ended(robot, ends, request) == "OK"
+        assert wait_for_outcome(robot, ends, request) == "OK"
     for acting in (
         client.live(image_of("F(1, 9)").code), client.upload(image_of(AWAY)), client.fetch(),
         client.name(b"x"), client.undo(), client.clear(),
     ):  # fmt: skip
-        assert ended(robot, ends, acting) == "UNOWNED"
-    assert "Not possible here" in typed.heard.decode()
-    assert not [line for line in robot.did[before:] if "MOTORS" in line]
+        assert wait_for_outcome(robot, ends, acting) == "UNOWNED"
+    assert "Not possible here" in typed_bytes.heard.decode()
+    assert not [line for line in robot.did[count_before:] if "MOTORS" in line]
     cable = session(3, robot)
-    assert uploaded(robot, [(None, cable)], cable) == "OK"
-    typed.to_send = b"S\n"
+    assert upload_text(robot, [(None, cable)], cable) == "OK"
+    typed_bytes.to_send = b"S\n"
     talk(robot, [(None, cable), *ends], 100)
     assert [line for line in actions_of(robot) if "MOTORS" in line][-2:] == [
         "MOTORS 80 80", "MOTORS 0 0"]  # fmt: skip
@@ -272,16 +274,16 @@ def test_a_network_that_drops_ends_the_run_and_the_cable_goes_on() -> None:
     robot, end, owner = far_owner(keys)
     cable = session(12, robot)
     ends: Ends = [(end, owner), (None, cable)]
-    assert uploaded(robot, ends, owner) == "OK"
+    assert upload_text(robot, ends, owner) == "OK"
     in_reach(robot, "", "")
     talk(robot, ends, 10)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
     assert end.has_ended
-    assert ended(robot, ends[1:], cable.ping()) == "OK"
+    assert wait_for_outcome(robot, ends[1:], cable.ping()) == "OK"
     school_in_reach(robot)
     talk(robot, [], 20)
     next_client, end = remote(robot, keys, 13), Network(robot)
-    assert uploaded(robot, [(end, next_client)], next_client) == "OK"
+    assert upload_text(robot, [(end, next_client)], next_client) == "OK"
     assert actions_of(robot)[-1] == "MOTORS 80 80"
     end.leave()
     robot.wait(5)
@@ -292,7 +294,7 @@ def test_strangers_who_trickle_bytes_keep_no_stop_out() -> None:
     """Two have both places, and say a letter of a line now and then; an owner's keeps his."""
     robot, end, owner = far_owner(Keys())
     ends: Ends = [(end, owner)]
-    assert uploaded(robot, ends, owner) == "OK"
+    assert upload_text(robot, ends, owner) == "OK"
     for _ in range(3):  # the place of one makes room for the next
         stranger = Network(robot)
         for _ in range(20):
@@ -307,41 +309,41 @@ def test_strangers_who_trickle_bytes_keep_no_stop_out() -> None:
 
 
 def test_two_strangers_are_not_kept_before_who_comes_later() -> None:
-    robot, owner = joined(Keys())
+    robot, owner = join_network(Keys())
     waiting, looking = Network(robot), remote(robot, None)
     looks: Ends = [(Network(robot), looking)]
-    assert ended(robot, looks, looking.ping()) == "OK"
+    assert wait_for_outcome(robot, looks, looking.ping()) == "OK"
     third = remote(robot, None, 14)
     comes: Ends = [(Network(robot), third), *looks]
-    assert ended(robot, comes, third.ping()) == "OK"
-    waiting.taken()
+    assert wait_for_outcome(robot, comes, third.ping()) == "OK"
+    waiting.take()
     assert waiting.has_ended, "who has said nothing goes first"
     fourth = remote(robot, None, 15)
     end = Network(robot)
-    assert ended(robot, [(end, fourth)], fourth.ping()) == "OK"
-    assert ended(robot, [(None, owner)], owner.ping()) == "OK"
+    assert wait_for_outcome(robot, [(end, fourth)], fourth.ping()) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.ping()) == "OK"
 
 
 def test_whose_first_bytes_stay_unclear_is_hung_up_on() -> None:
-    robot, _ = joined(Keys())
+    robot, _ = join_network(Keys())
     slow = Network(robot)
     for _ in range(99):
         slow.send(b"X")
         robot.wait(100)
-    slow.taken()
+    slow.take()
     assert not slow.has_ended
     slow.send(b"X")
     robot.wait(200)
-    slow.taken()
+    slow.take()
     assert slow.has_ended, "ten seconds after it came, whatever it says"
 
 
 def test_a_client_that_takes_nothing_stops_nobody() -> None:
-    robot, owner = joined(Keys())
+    robot, owner = join_network(Keys())
     deaf = Network(robot)
     deaf.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1)
     ends: Ends = [(None, owner)]
-    assert uploaded(robot, ends, owner) == "OK"
+    assert upload_text(robot, ends, owner) == "OK"
     for _ in range(300):
         deaf.send(b"\0\2\3\3\0")  # damaged, and then a stop of two zeros less
         deaf.send(b"PING|check_connection\n" * 3)
@@ -351,25 +353,25 @@ def test_a_client_that_takes_nothing_stops_nobody() -> None:
 
 # -- a chip that restarts whenever WiFi begins --------------------------------------------------
 
-PANIC = 4  # of esp_reset_reason_t
+PANIC = 4  # value of esp_reset_reason_t
 
 
-def restarted(robot: Esp32Robot, reset: int, lived_ms: int) -> Esp32Robot:
+def restart(robot: Esp32Robot, reset: int, lived_ms: int) -> Esp32Robot:
     """Return the robot after a reset that comes so long after the one before."""
     robot.wait(lived_ms)
-    kept = robot.kept()
+    kept_memory = robot.read_kept()
     robot.close()
-    rebooted = Esp32Robot(kept=kept, reset=reset)
-    school_in_reach(rebooted)
-    rebooted.wait(400)
-    return rebooted
+    rebooted_robot = Esp32Robot(kept_memory=kept_memory, reset=reset)
+    school_in_reach(rebooted_robot)
+    rebooted_robot.wait(400)
+    return rebooted_robot
 
 
 def rests(robot: Esp32Robot) -> bool:
     """Return whether its WiFi is off, as HELLO says as well."""
     client = session(40, robot)
     ends: Ends = [(None, client)]
-    assert ended(robot, ends, client.hello()) == "OK"
+    assert wait_for_outcome(robot, ends, client.hello()) == "OK"
     assert client.robot
     says_so = bool(client.robot.values.features & WIFI_RESTS)
     assert says_so == (radios(robot).joins == 0)
@@ -380,21 +382,21 @@ def rests(robot: Esp32Robot) -> bool:
 @pytest.mark.parametrize("reset", [PANIC, TASK_WATCHDOG, BROWN_OUT])
 def test_after_three_restarts_wifi_rests_and_the_cable_brings_it_back(reset: int) -> None:
     keys = Keys()
-    robot, _ = joined(keys)
+    robot, _ = join_network(keys)
     for is_third in (False, False, True):
-        robot = restarted(robot, reset, 1000)
+        robot = restart(robot, reset, 1000)
         assert rests(robot) == is_third
     owner = remote(robot, keys, 41)
     assert state(robot, owner) == ("STATION", "RESTS")
     assert wifi_reply_of(robot, [(None, owner)], owner).network == SCHOOL.name
-    robot = restarted(robot, POWER_ON, 1000)
+    robot = restart(robot, POWER_ON, 1000)
     assert rests(robot), "until somebody sets it again"
     owner = remote(robot, keys, 42)
-    assert ended(robot, [(None, owner)], owner.join(SCHOOL)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.join(SCHOOL)) == "OK"
     talk(robot, [(None, owner)], 50)
     assert state(robot, owner) == ("STATION", "READY") and not rests(robot)
     for _ in range(2):
-        robot = restarted(robot, reset, 1000)
+        robot = restart(robot, reset, 1000)
         assert not rests(robot), "it counts anew"
 
 
@@ -408,26 +410,26 @@ ROW = (PANIC, 1000)  # a reset, and how long after the one before
     [ROW, ROW, (PANIC, 20_000), ROW, ROW, (PANIC, 20_000)],
 ], ids=["power-on", "external", "20 seconds"])  # fmt: skip
 def test_what_is_no_row_of_restarts(row: list[tuple[int, int]]) -> None:
-    robot, _ = joined(Keys())
+    robot, _ = join_network(Keys())
     for reset, lived_ms in row:
-        robot = restarted(robot, reset, lived_ms)
+        robot = restart(robot, reset, lived_ms)
         assert not rests(robot)
     if row[-1][0] != PANIC:  # these are not counted, and do not end a row
-        assert rests(restarted(robot, PANIC, 1000))
+        assert rests(restart(robot, PANIC, 1000))
 
 
 def test_wifi_rests_where_nvs_is_full_and_without_wifi_nothing_counts() -> None:
     keys = Keys()
-    robot, owner = joined(keys)
+    robot, owner = join_network(keys)
     for _ in range(2):
-        robot = restarted(robot, PANIC, 1000)
-    kept = robot.kept()
-    full = Esp32Robot(kept=kept, reset=PANIC)
+        robot = restart(robot, PANIC, 1000)
+    kept_memory = robot.read_kept()
+    full = Esp32Robot(kept_memory=kept_memory, reset=PANIC)
     full.fill_nvs()
     full.wait(400)
     assert rests(full)
     owner = remote(robot, keys, 43)
-    assert ended(robot, [(None, owner)], owner.forget_wifi()) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.forget_wifi()) == "OK"
     for _ in range(4):
-        robot = restarted(robot, PANIC, 1000)
+        robot = restart(robot, PANIC, 1000)
         assert state(robot, remote(robot, keys, 44)) == ("OFF", "OFF")

@@ -1,4 +1,4 @@
-"""What a robot was told and what it went through leaves nothing but what it keeps.
+"""The history of a robot affects nothing but its stored data.
 
 Computers and people do anything with a robot: they ask for everything, give up in the middle of it,
 type lines and parts of lines, push the button, pull the cable. Then it is stopped, and its twin is
@@ -21,12 +21,12 @@ import pytest
 
 from tests.machines.host_firmware import HostFirmware
 from tests.support.bytes_around import PIECES
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.compared_answers import answer_without_counts, first_difference, without_counts
 from tests.support.images import image_of
 from tests.support.owners import Keys, Owned
 from tests.support.robot_on_host import KIT
-from tests.support.small_robot import READINGS, SmallRobot, drawn, without_readings
+from tests.support.small_robot import READINGS, SmallRobot, draw_program, without_readings
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, KEY_OWNER, KEY_TEACHER
@@ -42,17 +42,17 @@ TONE = "BEEP(0.9, 440);W(0.1)"
 TRIMS = ((0, 0, 0), (1, 0, 0), (0, 30, 0), (6, -20, 25), (9, 0, 0))
 NO_ZERO = b"// Lines end with Enter, not with 0\r\n"
 LOST = b"// The old program is lost.\r\n"
-UNHEARD_MS = 4200  # then no client is listened to any more
-AGAIN_MS = 105  # between two requests to a robot that is not ready, and what writing adds
+UNHEARD_MS = 4200  # time after which no client is heard
+AGAIN_MS = 105  # time between two requests to a robot that is not ready, and the time of writing
 RUNS_MS = 700
-BEGUN_MS = 60_000  # since a computer was switched on
+BEGUN_MS = 60_000  # uptime of the computer
 IDENTIFIES_MS = 3300
-FORGETS_MS = 65_000  # then nobody knows whether lines end here
+FORGETS_MS = 65_000  # time after which line ends are no longer assumed
 
 
 def starts(rng: random.Random) -> str:
     """Return a program that begins at once."""
-    return "SI|" + rng.choice((SHORT[3:], LONG[3:], drawn(rng)))
+    return "SI|" + rng.choice((SHORT[3:], LONG[3:], draw_program(rng)))
 
 
 def sensible(rng: random.Random) -> str:
@@ -64,7 +64,7 @@ def sensible(rng: random.Random) -> str:
 
 # -- what can be asked and typed ----------------------------------------------------------------
 
-# Of these none changes what a robot keeps.
+# Steps that leave the robot's memory unchanged.
 ASKS: dict[str, Asks] = {
     "hello": lambda session, rng: session.hello(),
     "ping": lambda session, rng: session.ping(),
@@ -86,13 +86,13 @@ MORE: dict[str, Asks] = {
     "any program": lambda session, rng: session.upload(image_of(starts(rng), KIT), saves=False),
     "a saved program": lambda session, rng: session.upload(image_of(starts(rng), KIT)),
     "a waiting program": lambda session, rng: session.upload(
-        image_of("SB|" + drawn(rng), KIT), runs=False
+        image_of("SB|" + draw_program(rng), KIT), runs=False
     ),
     "undo": lambda session, rng: session.undo(),
     "name": lambda session, rng: session.name(rng.choice((b"Pia", b"x", b"sixteen letters!"))),
     "trim": lambda session, rng: session.trim(bytes(k % 256 for k in rng.choice(TRIMS))),
 }
-# Of the program that a robot holds: it may be another one than the one that it has saved.
+# Results for the program that a robot holds, which may differ from the saved one.
 HELD: dict[str, Asks] = {
     "start": lambda session, rng: session.start(),
     "fetch": lambda session, rng: session.fetch(),
@@ -120,14 +120,14 @@ HARMLESS = (b" ", b"\t", b";", b"\xef\xbb\xbf", b"AT", b"AT+NAMEx", b"OK+CONN", 
             b"SI|X = TRUE", b"SI|CM = 1", b"SB|BEEP(0.001, 97)", b"SI|F(1 80)")  # fmt: skip
 WITH_SETUP = tuple(line for line in LINES if "|" in line)
 STOPS = (bytes(4), b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0)), b"\0S\n", b"S\n")
-TYPED_STOP = b"\nSI|W(9)\nS\n"  # it ends an open block, in which S would be an instruction
+TYPED_STOP = b"\nSI|W(9)\nS\n"  # ends an open block, inside which S would be an instruction
 
 
-KeyRings = dict[str, Keys]  # by who has them; nobody's is empty
+KeyRings = dict[str, Keys]  # key rings by owner; a stranger's is empty
 
 
 class Scene:
-    """A robot, with whoever talks to it."""
+    """A robot with its clients."""
 
     def __init__(
         self,
@@ -150,7 +150,7 @@ class Scene:
         self.observed: list[object] = []  # all that can be seen
 
     def next_session(self, who: str = "owner") -> Session:
-        """Let the next computer come: that of who has this key, a wrong one, or none."""
+        """Start the session of another computer: with the owner's key, a wrong one, or none."""
         self.nonce += 1
         ring = self.rings.get(who, Keys())
         self.session = Session(self.nonce, 9600, KIT.fingerprint, keys=ring)
@@ -162,7 +162,7 @@ class Scene:
         rows = (line.split(" ", 1) for line in self.robot.did)
         self.observed.append((what, [(int(ms) - begun_ms, event) for ms, event in rows]))
         lines = re.findall(rb"// [^\r\n]*\r\n", data)
-        lines = [line for line in lines if line != NO_ZERO]  # it comes late
+        lines = [line for line in lines if line != NO_ZERO]  # this line may be late
         self.observed += [line for line in lines if self.is_saved or line != LOST]
         heard = (event for event in self.session.events() if not isinstance(event, TextEvent))
         self.observed += [without_counts(event) for event in heard]
@@ -254,7 +254,7 @@ def noise(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
 
 
 def the_button(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
-    """It goes down, or up again."""
+    """Press or release the button."""
     scene.is_down = not scene.is_down
     scene.robot.talk(scene.session, 1, PRESSED if scene.is_down else RELEASED)
     if scene.is_down and rng.random() < 0.5:
@@ -264,7 +264,7 @@ def the_button(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
 
 
 def the_supply(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
-    """It is too low for a while, in which something is to be saved."""
+    """Lower the supply for a while, in which something may be saved."""
     scene.robot.supply(True)
     for _ in range(rng.choice((1, 2))):
         a_request(scene, rng, MORE)
@@ -307,7 +307,7 @@ def a_long_press(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> Non
 
 
 class Before(NamedTuple):
-    """Steps, what is asked in them, and whether they change what is kept."""
+    """Steps, their requests, and whether they change stored data."""
 
     steps: tuple[Callable[[Scene, random.Random, dict[str, Asks]], None], ...]
     asks: dict[str, Asks]
@@ -327,10 +327,10 @@ BEFORE = {
 }  # fmt: skip
 
 
-def settled(scene: Scene, saves: bool, rng: random.Random) -> bytes:
-    """Let go of everything, and wait until what is to be kept is; return it."""
+def settle(scene: Scene, saves: bool, rng: random.Random) -> bytes:
+    """Release everything, and wait until all data is stored; return the memory."""
     robot = scene.robot
-    if scene.rings:  # the button lets go of what only a teacher may, and text drives no more
+    if scene.rings:  # releasing the button ends the teacher's rights, and text drives no more
         robot.wait(AUTHORITY_MS)
         robot.push()
         sessions = map(scene.next_session, WHO)  # any of them may have claimed it
@@ -348,7 +348,7 @@ def settled(scene: Scene, saves: bool, rng: random.Random) -> bytes:
         if robot.memory() == memory:
             break
         memory = robot.memory()
-    if robot.is_latched:  # what happens then is over before the next program
+    if robot.is_latched:  # its effects end before the next program
         robot.step(flags=rng.choice((0, STALLED, UNPLUGGED)))
     return memory
 
@@ -359,38 +359,38 @@ def settled(scene: Scene, saves: bool, rng: random.Random) -> bytes:
 class Behind(NamedTuple):
     stop: bytes
     wait_ms: int
-    is_cut: bool  # an upload before: the robot holds what it has saved
+    is_cut: bool  # after an earlier upload, the robot holds the saved program
     steps: int
     is_typed: bool
-    is_going_on: bool = False  # nothing has stopped it
+    is_going_on: bool = False  # whether the program still runs
 
 
-def drawn_stop(rng: random.Random, before: str) -> Behind:
-    """Return how a robot is stopped. A person who types comes when no client is heard any more."""
-    how = drawn_behind(rng, before)
-    # Of a robot with an owner nobody else gets what it holds.
-    return how._replace(is_cut=False) if before == "owners" else how
+def drawn_stop(rng: random.Random, text_before: str) -> Behind:
+    """Return a way to stop the robot. A person types only when no client is heard any more."""
+    how = drawn_behind(rng, text_before)
+    # Only the owner gets the program of a claimed robot.
+    return how._replace(is_cut=False) if text_before == "owners" else how
 
 
-def drawn_behind(rng: random.Random, before: str) -> Behind:
-    is_typed = "lines" in before or (before == "anything" and rng.random() < 0.5)
-    if before == "whole lines":
+def drawn_behind(rng: random.Random, text_before: str) -> Behind:
+    is_typed = "lines" in text_before or (text_before == "anything" and rng.random() < 0.5)
+    if text_before == "whole lines":
         return Behind(b"", 0, False, rng.choice((1, 2, 4)), True, True)
     waits: tuple[int, ...] = (30, 60, 300, 1100, UNHEARD_MS)
-    if before == "lines" and rng.random() < 0.6:
+    if text_before == "lines" and rng.random() < 0.6:
         return Behind(TYPED_STOP, rng.choice((1, 100, 200, 700, 1300)), False, 3, True)
-    if before == "lines":
+    if text_before == "lines":
         waits = (1100, 1100, 1300, 2500)
     elif is_typed:
         waits = (UNHEARD_MS, 6000, FORGETS_MS)
     # In an open block S is an instruction of it. After frames it waits, as it may be one of them.
-    stops = STOPS if before == "anything" else STOPS[:2]
-    is_cut = before != "lines" and rng.random() < 0.6
+    stops = STOPS if text_before == "anything" else STOPS[:2]
+    is_cut = text_before != "lines" and rng.random() < 0.6
     return Behind(rng.choice(stops), rng.choice(waits), is_cut, rng.choice((1, 2, 3, 5)), is_typed)
 
 
-def stopped(scene: Scene, how: Behind) -> None:
-    """The robot and its twin are told the same."""
+def stop_both(scene: Scene, how: Behind) -> None:
+    """Stop the robot and its twin in the same way."""
     robot = scene.robot
     scene.is_saved = how.is_cut
     if how.is_cut:
@@ -404,7 +404,7 @@ def stopped(scene: Scene, how: Behind) -> None:
     elif not scene.observed:
         robot.wait(300, b"//\n")
     if how.is_typed and how.stop not in (b"", TYPED_STOP) and how.wait_ms < FORGETS_MS:
-        robot.wait(1200, b"\n")  # that lines end here is known
+        robot.wait(1200, b"\n")  # tells the robot that lines end with \n
     robot.did.clear()
     scene.observed.clear()
     scene.nonce = 1000
@@ -444,13 +444,13 @@ def in_the_end(scene: Scene, how: Behind) -> list[object]:
     trim = session.trim()  # a claim that was confirmed may have given it another key
     robot.until(session, trim)
     robot.talk(session, 1500)
-    kept = robot.memory() if how.is_cut else b""
-    return [(values.id, values.name, values.features, answer_without_counts(trim)), kept]
+    kept_bytes = robot.memory() if how.is_cut else b""
+    return [(values.id, values.name, values.features, answer_without_counts(trim)), kept_bytes]
 
 
 @lru_cache(maxsize=1)
 def new_memory() -> bytes:
-    """Return what a robot keeps that nobody has talked to."""
+    """Return the memory of a robot that nobody has talked to."""
     robot = HostFirmware(KIT)
     robot.wait(1000)
     return robot.memory()
@@ -458,10 +458,10 @@ def new_memory() -> bytes:
 
 @lru_cache(maxsize=1)
 def claimed_memory_and_keys() -> tuple[bytes, KeyRings]:
-    """Return what a robot keeps that has an owner and a teacher, and everybody's keys."""
+    """Return the memory of a robot with an owner and a teacher, and everybody's keys."""
     table, keys = Owned(new_memory()), Keys()
     for which in (KEY_OWNER, KEY_TEACHER):
-        table.claimed(keys, which)
+        table.claim_session(keys, which)
     table.robot.wait(1000)
     owner_key, teacher_key = keys.stored_keys
     wrong_key = owner_key._replace(key=bytes(range(16)))
@@ -473,29 +473,33 @@ def claimed_memory_and_keys() -> tuple[bytes, KeyRings]:
 
 
 def clock(rng: random.Random) -> int:
-    """Return what a clock says at first; mostly a part of it wraps around soon, or in the story."""
+    """Return the initial value of a clock; usually a part of it wraps around soon, or in the
+    story.
+    """
     return rng.choice((0, 2**16, 2**31, 2**32)) - rng.choice((0, 500, 3000, 12_000, 30_000))
 
 
-def check(seed: int, kind: str, before: str) -> int:
+def check(seed: int, kind: str, text_before: str) -> int:
     """Compare a robot with its twin; return how much there was to be seen."""
-    rng = random.Random(f"{seed} {kind} {before}")
+    rng = random.Random(f"{seed} {kind} {text_before}")
     write_ms = rng.choice((3.4, 3.4, 12))
-    first, rings = deepcopy(claimed_memory_and_keys()) if before == "owners" else (new_memory(), {})
+    first, rings = (
+        deepcopy(claimed_memory_and_keys()) if text_before == "owners" else (new_memory(), {})
+    )
     scene = Scene(KINDS[kind], first, write_ms, clock(rng), rings)
     for _ in range(rng.choice((1, 2, 4, 8))):
-        rng.choice(BEFORE[before].steps)(scene, rng, BEFORE[before].asks)
+        rng.choice(BEFORE[text_before].steps)(scene, rng, BEFORE[text_before].asks)
     scene.talk(0)
-    saves = BEFORE[before].saves or scene.has_faulted
-    memory = settled(scene, saves, rng)
+    saves = BEFORE[text_before].saves or scene.has_faulted
+    memory = settle(scene, saves, rng)
     assert saves or memory == new_memory()
     history = scene.observed[:]
-    how = drawn_stop(rng, before)
+    how = drawn_stop(rng, text_before)
     twin = Scene(KINDS[kind], memory, write_ms, clock(rng), deepcopy(scene.rings))
     drawn_alike = rng.random()
     states_of_both = []
     for one_scene in (scene, twin):
-        stopped(one_scene, how)
+        stop_both(one_scene, how)
         states_of_both.append(all_seen(one_scene, how, random.Random(drawn_alike)))
     # Where a cut program is still being saved, a request is asked again until that is over.
     assert are_alike(states_of_both[0], states_of_both[1], AGAIN_MS if how.is_cut else 0), (
@@ -505,7 +509,7 @@ def check(seed: int, kind: str, before: str) -> int:
 
 
 def are_alike(one: object, other: object, apart_ms: int) -> bool:
-    """Whether the same was seen of both, at times that differ by so much at most."""
+    """Return whether both observations are the same, at times that differ by at most so much."""
     if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
         if len(one) == len(other) == 2 and isinstance(one[0], int) and isinstance(one[1], str):
             is_near = isinstance(other[0], int) and abs(one[0] - other[0]) <= apart_ms
@@ -521,17 +525,17 @@ KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallR
 @pytest.mark.sampled("kind", "part")
 @pytest.mark.parametrize("part", range(10))
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("before", BEFORE)
-def test_a_robot_is_as_its_twin(before: str, kind: str, part: int) -> None:
-    counts = [check(seed, kind, before) for seed in range(part * 10, part * 10 + 10)]
+@pytest.mark.parametrize("text_before", BEFORE)
+def test_a_robot_is_as_its_twin(text_before: str, kind: str, part: int) -> None:
+    counts = [check(seed, kind, text_before) for seed in range(part * 10, part * 10 + 10)]
     assert sum(counts) > 20 and min(counts) > 0, counts
 
 
 def check_all(seed: int) -> None:
     for kind in KINDS:
-        for before in BEFORE:
-            check(seed, kind, before)
+        for text_before in BEFORE:
+            check(seed, kind, text_before)
 
 
 if __name__ == "__main__":
-    each_seed(check_all, wanted(2000, 10_000))
+    each_seed(check_all, make_options(2000, 10_000))

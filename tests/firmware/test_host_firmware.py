@@ -58,13 +58,13 @@ def test_code_in_one_frame_is_the_program_that_was_compiled(more: str) -> None:
 def test_after_power_on_nothing_moves_and_the_button_starts_what_is_stored() -> None:
     assert not switched_on().is_lit
     robot, _ = holding("SI|F(0.5, 80)")
-    restarted = switched_on(robot.memory())
-    assert restarted.is_lit
-    restarted.wait(2000)
-    assert restarted.did == []
-    restarted.push()
-    restarted.wait(600)
-    assert actions_of(restarted) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    restarted_robot = switched_on(robot.memory())
+    assert restarted_robot.is_lit
+    restarted_robot.wait(2000)
+    assert restarted_robot.did == []
+    restarted_robot.push()
+    restarted_robot.wait(600)
+    assert actions_of(restarted_robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 def test_without_frames_the_motors_go_off_in_time() -> None:
@@ -121,12 +121,12 @@ def test_a_pulled_plug_leaves_one_program_or_the_other(seed: int) -> None:
         session.upload(image_of("SI|B(0.1, 60); " + "SHOW(1); " * rng.randrange(30)))
         robot.talk(session, rng.randrange(1, 1500))
         memory = robot.memory()
-        restarted = switched_on(memory)
-        assert restarted.is_lit
-        restarted.push()
-        restarted.wait(400)
-        assert actions_of(restarted)[0] in ("MOTORS 80 80", "MOTORS -60 -60")
-        assert actions_of(restarted)[-1] == "FINISHED"
+        restarted_robot = switched_on(memory)
+        assert restarted_robot.is_lit
+        restarted_robot.push()
+        restarted_robot.wait(400)
+        assert actions_of(restarted_robot)[0] in ("MOTORS 80 80", "MOTORS -60 -60")
+        assert actions_of(restarted_robot)[-1] == "FINISHED"
 
 
 def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_program() -> None:
@@ -206,8 +206,8 @@ def test_a_line_that_replaces_a_run_begins_at_its_own_beginning(is_line: bool) -
     robot.talk(session, 300)
     moves = [line for line in actions_of(robot) if line.startswith("MOTORS")]
     assert moves[-2:] == ["MOTORS 60 60", "MOTORS 0 0"] and "MOTORS 40 40" not in moves
-    shown = [event.value for event in session.events() if event.name == "SHOW"]
-    assert shown == [1, 5000]
+    shown_values = [event.value for event in session.events() if event.name == "SHOW"]
+    assert shown_values == [1, 5000]
 
 
 @pytest.mark.parametrize("at", range(-5, 0))
@@ -222,7 +222,7 @@ def test_a_damaged_line_changes_nothing_of_the_one_that_runs(at: int) -> None:
     wire = bytearray(encode_frame(frame))
     if at < -1:
         wire[at] ^= 0x11
-    for byte in wire if at < -1 else wire[:-1]:  # or it is cut before its end
+    for byte in wire if at < -1 else wire[:-1]:  # a sequence cut before its end
         robot.step(bytes([byte]))
     robot.talk(session, 600)
     moves = [line for line in actions_of(robot) if line.startswith("MOTORS")]

@@ -11,7 +11,7 @@ import random
 
 import pytest
 
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.robot_on_host import KIT, switched_on
 from tiniscript.bytecode.image import HEADER_BYTES, pack
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
@@ -30,7 +30,7 @@ from tiniscript.link.messages import (
     sizes,
 )
 
-SEEDS = 12  # in the tests; a campaign runs more
+SEEDS = 12  # seeds of the tests; a campaign runs more
 TURNS = 120
 LARGEST = 63
 EVENTS = {number for number in BY_NUMBER if number >= FIRST_EVENT}
@@ -52,7 +52,7 @@ class Client:
         self.rng = random.Random(seed)
         self.robot = switched_on()
         self.heard = b""
-        self.frames_ms: int | None = None  # when a 0x00 was sent last, and nothing since
+        self.frames_ms: int | None = None  # time of the last 0x00, if nothing was sent since
         self.seq, self.epoch = self.rng.randrange(256), 0
         self.replies: list[Frame] = []
 
@@ -63,15 +63,15 @@ class Client:
         self.receive(self.robot.wait(milliseconds, data))
 
     def zero(self) -> bytes:
-        """Return what a sender of frames sends before one."""
+        """Return the 0x00 that a sender sends before a frame."""
         is_silent = self.frames_ms is None or self.robot.now_ms - self.frames_ms >= ZERO_MS
         return b"\0" * is_silent
 
-    def receive(self, sent: bytes) -> None:
-        *packets, self.heard = (self.heard + sent).split(b"\0")
+    def receive(self, sent_bytes: bytes) -> None:
+        *packets, self.heard = (self.heard + sent_bytes).split(b"\0")
         for packet in packets:
             frame = decode_frame(packet)
-            if frame is not None:  # else it is text
+            if frame is not None:  # otherwise it is text
                 self.epoch = frame.epoch
                 self.replies += [frame] if frame.number not in EVENTS else []
 
@@ -86,13 +86,13 @@ class Client:
         assert reply.payload[0] == OK or len(reply.payload) == 3, reply
         return reply.payload
 
-    def named(self, name: str, payload: bytes = b"") -> bytes:
+    def ask_by_name(self, name: str, payload: bytes = b"") -> bytes:
         return self.ask(BY_NAME[name].number, payload)
 
     def hello(self) -> None:
         kit = self.rng.choice((KIT.fingerprint, 7)).to_bytes(2, "little")
         nonce = self.rng.choice((5, self.rng.getrandbits(32))).to_bytes(4, "little")
-        assert self.named("HELLO", bytes((MAJOR, MINOR, 2, 0)) + kit + nonce)[0] == OK
+        assert self.ask_by_name("HELLO", bytes((MAJOR, MINOR, 2, 0)) + kit + nonce)[0] == OK
 
     # -- what it does ---------------------------------------------------------------------------
 
@@ -127,10 +127,10 @@ class Client:
             assert not [line for line in self.robot.did if " MOTORS " in line]
 
     def repeat_frame(self) -> None:
-        """The same frame twice: the same answer, and what runs is the same run."""
+        """Repeat a frame: the answer and the run stay the same."""
         name = self.rng.choice(("START", "CLEAR", "IDENTIFY", "ABORT"))
         mode = b"\x40" if name == "START" else b""
-        first = self.named(name, mode)
+        first = self.ask_by_name(name, mode)
         self.replies.clear()
         epoch = self.epoch
         self.put(b"\0" + encode_frame(Frame(BY_NAME[name].number, self.seq, epoch, mode)))
@@ -144,7 +144,7 @@ class Client:
                            b"\x51\x01" * rng.randrange(1, 190)))  # fmt: skip
         image = pack("SI", 0, code)
         mode = bytes([rng.choice((0x00, 0x20, 0x30))])
-        reply = self.named("BEGIN", mode + image[2:10])
+        reply = self.ask_by_name("BEGIN", mode + image[2:10])
         body, at = image[14:], 0
         if len(code) > ROOM and reply[0] != STALE:
             assert reply[0] != OK
@@ -152,19 +152,19 @@ class Client:
             if rng.random() < 0.1:
                 rng.choice((self.hello, self.zeros, self.line, self.request))()
             piece = body[at : at + rng.choice((1, 20, 53))]
-            reply = self.named("DATA", at.to_bytes(2, "little") + piece)
+            reply = self.ask_by_name("DATA", at.to_bytes(2, "little") + piece)
             if reply[0] == OK:
                 at = int.from_bytes(reply[1:3], "little")
                 assert at <= len(body)
-        if self.named("COMMIT", image[10:14])[0] == OK:
-            assert self.held() == image
+        if self.ask_by_name("COMMIT", image[10:14])[0] == OK:
+            assert self.fetch_image() == image
             assert code != b"\xff" * 9
 
-    def held(self) -> bytes:
+    def fetch_image(self) -> bytes:
         """Return the image that the robot holds."""
         image, whole = b"", HEADER_BYTES
         while len(image) < whole:
-            reply = self.named("FETCH", len(image).to_bytes(2, "little"))
+            reply = self.ask_by_name("FETCH", len(image).to_bytes(2, "little"))
             if reply[0] == BUSY:
                 self.put(b"", 50)
                 continue
@@ -222,4 +222,4 @@ def test_a_hostile_client_is_answered_and_the_robot_lives(seed: int) -> None:
 
 
 if __name__ == "__main__":
-    each_seed(play, wanted(1000, 1000))
+    each_seed(play, make_options(1000, 1000))

@@ -15,7 +15,7 @@ from tests.support.images import image_of
 from tests.support.owners import Keys, Owned
 from tests.support.remote_readings import RELEASED, remote_readings
 from tests.support.robot_on_host import KIT, computer
-from tests.support.text_robot import typed
+from tests.support.text_robot import type_text
 from tiniscript.link.messages import HOLD_MS
 from tiniscript.link.remote import RemoteState, remote_state_of
 from tiniscript.link.requests import OK
@@ -25,7 +25,7 @@ DRIVES = "SI|F(9,50)"
 UP, A = remote_state_of(["UP"]), remote_state_of(["A"])
 
 
-def booted(kind: type[HostFirmware] = HostFirmware) -> HostFirmware:
+def boot(kind: type[HostFirmware] = HostFirmware) -> HostFirmware:
     robot = kind(KIT)
     robot.wait(300)
     return robot
@@ -43,16 +43,16 @@ BEFORE = (*ENDS, " \n", "\t\r\n")  # lines of nothing
 
 
 @pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
-@pytest.mark.parametrize(("line", "held"), WORDS)
+@pytest.mark.parametrize(("line", "held_state"), WORDS)
 def test_a_line_holds_what_it_says_for_half_a_second(
-    line: str, held: RemoteState, kind: type[HostFirmware]
+    line: str, held_state: RemoteState, kind: type[HostFirmware]
 ) -> None:
-    robot = booted(kind)
-    typed(robot, "KEY_LEFT\n")
-    assert typed(robot, line + "\n") == []
-    assert robot.remote() == remote_readings(held)
+    robot = boot(kind)
+    type_text(robot, "KEY_LEFT\n")
+    assert type_text(robot, line + "\n") == []
+    assert robot.remote() == remote_readings(held_state)
     robot.wait(HOLD_MS - 40)
-    assert robot.remote() == remote_readings(held)
+    assert robot.remote() == remote_readings(held_state)
     robot.wait(40)
     assert robot.remote() == RELEASED and robot.did == []
 
@@ -62,21 +62,21 @@ def test_any_blanks_around_its_words_and_any_line_ends_make_the_same_line(
     kind: type[HostFirmware],
 ) -> None:
     rng = random.Random(1)
-    robot = booted(kind)
-    typed(robot, "KEY_LEFT\n")  # after which nothing is said of keys
+    robot = boot(kind)
+    type_text(robot, "KEY_LEFT\n")  # after this line, keys are not mentioned
 
     def blanks(least: int = 0) -> str:
         return "".join(rng.choices(" \t", k=rng.choice((least, 1, 2, 30))))
 
     for _ in range(20):
-        for line, held in WORDS:
+        for line, held_state in WORDS:
             words = blanks(1).join(line.strip(" ;").split())
             words = "".join(rng.choice((letter.lower(), letter)) for letter in words)
             end = rng.choice(("", ";", " ;")) + blanks() + rng.choice(ENDS)
-            before = "".join(rng.choice(BEFORE) for _ in range(rng.randint(0, 3)))
-            text = before + blanks() + words + end
-            assert typed(robot, text, 20) == [], repr(text)
-            assert robot.remote() == remote_readings(held), repr(text)
+            join_before = "".join(rng.choice(BEFORE) for _ in range(rng.randint(0, 3)))
+            text = join_before + blanks() + words + end
+            assert type_text(robot, text, 20) == [], repr(text)
+            assert robot.remote() == remote_readings(held_state), repr(text)
             robot.wait(HOLD_MS)
 
 
@@ -87,27 +87,27 @@ def test_any_blanks_around_its_words_and_any_line_ends_make_the_same_line(
     "SI|KEY_A", "KEY = 5", "PADX = 3",
 ])  # fmt: skip
 def test_any_other_line_is_read_as_before(line: str) -> None:
-    robot = booted()
-    typed(robot, "KEY_A\n")
-    typed(robot, line + "\n")
+    robot = boot()
+    type_text(robot, "KEY_A\n")
+    type_text(robot, line + "\n")
     robot.wait(HOLD_MS)
     assert robot.remote() == RELEASED
 
 
 def test_who_presses_is_told_once_that_no_program_reads_it() -> None:
-    robot = booted()
-    assert typed(robot, "KEY_UP\n", 1500) == [TOLD]
-    assert typed(robot, "KEY_UP\n" * 3, 1500) == []
-    typed(robot, DRIVES + "\n", 1500)
-    assert typed(robot, "KEY_UP\n", 1500) == []
-    robot.remote()  # as a program that reads it
-    assert typed(robot, "KEY_UP\n", 1500) == []
-    typed(robot, "S\n", 2500)
-    assert typed(robot, "KEY_UP\n", 1500) == [TOLD]
+    robot = boot()
+    assert type_text(robot, "KEY_UP\n", 1500) == [TOLD]
+    assert type_text(robot, "KEY_UP\n" * 3, 1500) == []
+    type_text(robot, DRIVES + "\n", 1500)
+    assert type_text(robot, "KEY_UP\n", 1500) == []
+    robot.remote()  # simulates a program that reads keys
+    assert type_text(robot, "KEY_UP\n", 1500) == []
+    type_text(robot, "S\n", 2500)
+    assert type_text(robot, "KEY_UP\n", 1500) == [TOLD]
 
 
 def test_a_key_that_is_said_every_300_ms_at_9600_baud_does_not_flicker() -> None:
-    robot = booted()
+    robot = boot()
     line = b"KEY_UP\r\n"
     robot.latched_while(20, line, is_spread=True)
     for _ in range(40):
@@ -132,55 +132,55 @@ def test_they_end_nothing_start_nothing_and_work_beside_a_live() -> None:
 
 
 def test_in_an_open_block_the_line_is_the_programs() -> None:
-    robot = booted()
-    assert typed(robot, "SI|LOOP(2)\nKEY_A\n", 100) != [] or robot.remote() == RELEASED
+    robot = boot()
+    assert type_text(robot, "SI|LOOP(2)\nKEY_A\n", 100) != [] or robot.remote() == RELEASED
     assert robot.remote() == RELEASED
 
 
 @pytest.mark.parametrize("how", ["text", "zeros", "button"])
 def test_after_a_stop_they_count_as_silence_and_release_nothing(how: str) -> None:
-    """Who goes on holding a key types a program a second later."""
-    robot = booted()
-    typed(robot, DRIVES + "\n", 100)
+    """A person who keeps holding a key can type a program a second later."""
+    robot = boot()
+    type_text(robot, DRIVES + "\n", 100)
     assert "MOTORS 50 50" in robot.did[-1]
     if how == "text":
-        typed(robot, "S\n", 20)
+        type_text(robot, "S\n", 20)
     elif how == "zeros":
         robot.wait(20, bytes(4))
-        robot.wait(1500)  # text comes again
-        typed(robot, "KEY_UP\n", 20)
+        robot.wait(1500)  # from here on the robot reads text again
+        type_text(robot, "KEY_UP\n", 20)
     else:
         robot.push()
     for _ in range(5):
-        typed(robot, "KEY_UP\n", 290)
+        type_text(robot, "KEY_UP\n", 290)
     assert robot.is_latched
     robot.did.clear()
-    typed(robot, "SI|F(1,30)\n", 100)
+    type_text(robot, "SI|F(1,30)\n", 100)
     assert any("MOTORS 30 30" in line for line in robot.did)
 
 
 def test_a_wrong_line_costs_no_more_while_a_key_is_held() -> None:
-    """What is left of its program is ignored until a second of silence: keys are silence."""
-    robot = booted()
-    typed(robot, "SI|FOO\n", 10)
+    """The rest of the program is ignored until a second of silence, and keys count as silence."""
+    robot = boot()
+    type_text(robot, "SI|FOO\n", 10)
     for _ in range(5):
-        typed(robot, "KEY_UP\n", 290)
-    typed(robot, "F(1,30)\n", 100)
+        type_text(robot, "KEY_UP\n", 290)
+    type_text(robot, "F(1,30)\n", 100)
     assert any("MOTORS 30 30" in line for line in robot.did)
 
 
 def test_text_that_may_not_drive_presses_nothing() -> None:
     table, keys = Owned(), Keys()
-    table.claimed(keys)
+    table.claim_session(keys)
     table.robot.wait(3000)
-    typed(table.robot, "KEY_A\n", 1500)
+    type_text(table.robot, "KEY_A\n", 1500)
     assert table.robot.remote() == RELEASED
 
 
 def test_a_thousand_lines_in_a_burst() -> None:
-    robot = booted()
+    robot = boot()
     robot.wait(10, b"KEY_B\n" * 1000)
     robot.wait(1000)
-    typed(robot, "KEY_A\n", 20)
+    type_text(robot, "KEY_A\n", 20)
     assert robot.remote() == remote_readings(A)
     assert robot.did == []

@@ -18,7 +18,7 @@ from tests.support.kept_programs import (
     bytes_of,
     eeprom_with,
     later_version_image,
-    saved,
+    read_saved_state,
 )
 from tests.support.robot_on_host import actions_of, computer, send, switched_on
 from tiniscript.bytecode.image import REFUSALS, pack, unpack, with_checksum
@@ -30,7 +30,7 @@ OTHER_VERSION = REFUSALS["OTHER_VERSION"][0]
 VERSION_1 = bytes.fromhex("54530100000000000300101604fa443250")
 
 
-def met(memory: bytes) -> tuple[HostFirmware, Session]:
+def open_session(memory: bytes) -> tuple[HostFirmware, Session]:
     robot, session = switched_on(memory), computer(5)
     robot.wait(200)
     assert robot.until(session, session.hello()) == OK
@@ -41,8 +41,8 @@ def met(memory: bytes) -> tuple[HostFirmware, Session]:
 @pytest.mark.parametrize("length", [0, 3, 389])
 def test_a_robot_says_that_its_program_is_of_another_version(place: int, length: int) -> None:
     memory = eeprom_with((place, 7, later_version_image(random.Random(length).randbytes(length))))
-    robot, session = met(memory)
-    assert saved(robot, session) == "OTHER_VERSION"
+    robot, session = open_session(memory)
+    assert read_saved_state(robot, session) == "OTHER_VERSION"
     for ask in (session.start, session.fetch):
         assert robot.until(session, ask()) == OTHER_VERSION
     assert not robot.is_lit
@@ -54,40 +54,40 @@ def test_a_robot_says_that_its_program_is_of_another_version(place: int, length:
 
 
 def test_the_next_program_replaces_it() -> None:
-    robot, session = met(
+    robot, session = open_session(
         eeprom_with((FIRST, 0, later_version_image(bytes(20), "SB")), (SECOND, 1, LATER_VERSION))
     )
-    assert saved(robot, session) == "OTHER_VERSION"
+    assert read_saved_state(robot, session) == "OTHER_VERSION"
     image = image_of("SB|F(0.1, 60)")
     assert robot.until(session, session.upload(image)) == OK
     robot.talk(session, 1000)
-    assert saved(robot, session) == "STORED"
-    restarted, session = met(robot.memory())
-    assert saved(restarted, session) == "STORED"
-    assert restarted.complete(session, session.fetch()).image[15:] == image.code
+    assert read_saved_state(robot, session) == "STORED"
+    restarted_robot, session = open_session(robot.memory())
+    assert read_saved_state(restarted_robot, session) == "STORED"
+    assert restarted_robot.complete(session, session.fetch()).image[15:] == image.code
 
 
 @pytest.mark.parametrize("place", [FIRST, SECOND])
 def test_a_program_of_version_1_counts_as_none(place: int) -> None:
-    robot, session = met(eeprom_with((place, 7, VERSION_1)))
-    assert saved(robot, session) == "NOTHING"
+    robot, session = open_session(eeprom_with((place, 7, VERSION_1)))
+    assert read_saved_state(robot, session) == "NOTHING"
     assert robot.memory()[place : place + 2] == b"\xff\xff", "the slot is empty"
 
 
 def test_one_of_this_version_before_it_counts() -> None:
     mine = bytes_of("SB|F(0.1, 60)")
-    robot, session = met(eeprom_with((FIRST, 3, mine), (SECOND, 4, LATER_VERSION)))
-    assert saved(robot, session) == "STORED"
-    later = with_checksum(mine[:3] + b"\2" + mine[4:])  # of a later minor version
-    robot, session = met(eeprom_with((FIRST, 3, later), (SECOND, 2, LATER_VERSION)))
-    assert saved(robot, session) == "OTHER_VERSION"
+    robot, session = open_session(eeprom_with((FIRST, 3, mine), (SECOND, 4, LATER_VERSION)))
+    assert read_saved_state(robot, session) == "STORED"
+    later = with_checksum(mine[:3] + b"\2" + mine[4:])  # a later minor version
+    robot, session = open_session(eeprom_with((FIRST, 3, later), (SECOND, 2, LATER_VERSION)))
+    assert read_saved_state(robot, session) == "OTHER_VERSION"
 
 
 def test_a_program_with_a_longer_header_is_run() -> None:
     image = unpack(bytes_of("SB|F(0.1, 60)"))
     longer = pack("SB", image.devices, image.code, b"what a later version says")
-    robot, session = met(eeprom_with((FIRST, 3, longer)))
-    assert saved(robot, session) == "STORED"
+    robot, session = open_session(eeprom_with((FIRST, 3, longer)))
+    assert read_saved_state(robot, session) == "STORED"
     assert robot.complete(session, session.fetch()).image == longer
     robot.push()
     robot.wait(300)
@@ -95,36 +95,36 @@ def test_a_program_with_a_longer_header_is_run() -> None:
 
 
 def test_name_and_trim_outlive_an_update() -> None:
-    """They lie where they lay, whatever version the program is of."""
-    robot, session = met(eeprom_with((FIRST, 0, LATER_VERSION)))
+    """Their places do not depend on the program's version."""
+    robot, session = open_session(eeprom_with((FIRST, 0, LATER_VERSION)))
     assert robot.until(session, session.name(b"Ada")) == OK
     memory = bytearray(robot.memory())
     assert memory[4 : 4 + EACH] != EMPTY[4 : 4 + EACH]
-    restarted, session = met(bytes(memory))
+    restarted_robot, session = open_session(bytes(memory))
     assert session.robot is not None and session.robot.name == "Ada"
-    assert saved(restarted, session) == "OTHER_VERSION"
+    assert read_saved_state(restarted_robot, session) == "OTHER_VERSION"
 
 
 @pytest.mark.parametrize("trim", [b"\x08\0\0", b"\0\x29\0", b"\0\xd7\0", b"\0\0\x29", b"\xff" * 3])
 def test_a_trim_that_other_firmware_has_kept_is_none(trim: bytes) -> None:
     """Numbers that no trim of this version has would make levels beyond those of a motor."""
     body = struct_pack("<I16s3s", 77, b"Ada", trim)
-    robot, session = met(eeprom_with((4, 3, struct_pack("<I", zlib.crc32(body)) + body)))
+    robot, session = open_session(eeprom_with((4, 3, struct_pack("<I", zlib.crc32(body)) + body)))
     assert session.robot is not None
     assert (session.robot.id, session.robot.name) == (77, "Ada")
     values = robot.complete(session, session.trim())
     assert (values.wheels, values.balance, values.least) == (0, 0, 0)
     sound = body[:-3] + b"\1\5\7"
-    robot, session = met(eeprom_with((4, 3, struct_pack("<I", zlib.crc32(sound)) + sound)))
+    robot, session = open_session(eeprom_with((4, 3, struct_pack("<I", zlib.crc32(sound)) + sound)))
     assert robot.complete(session, session.trim()).least == 7
 
 
 @pytest.mark.parametrize("pace", [(0xFFFF, 0xFFFF), (900, 100), (500, 500), (0, 0)])
 def test_a_pace_that_other_firmware_has_kept_is_none(pace: tuple[int, int]) -> None:
-    """What no line leads through would end a way too early: the kit's speed holds."""
+    """Impossible values would end a move too early, so the kit's speed is used."""
     body = bytes(15) + struct_pack("<4H", *pace, *pace)
     record = struct_pack("<I", zlib.crc32(body)) + body
-    robot, session = met(eeprom_with((4 + 2 * EACH, 3, record)))
+    robot, session = open_session(eeprom_with((4 + 2 * EACH, 3, record)))
     values = robot.complete(session, session.trim())
     assert values.pace == struct_pack("<4H", *pace, *pace), "it is read"
     send(robot, session, "SI|F(20 CM, 60)", saves=False)

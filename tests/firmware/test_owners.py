@@ -45,7 +45,7 @@ __all__ = ("robots_of_both_kinds",)  # a fixture
 
 def test_the_button_confirms_a_claim_and_the_robot_keeps_the_key() -> None:
     table, keys = Owned(), Keys()
-    session = table.claimed(keys)
+    session = table.claim_session(keys)
     assert [key.is_pending for key in keys.stored_keys] == [False]
     assert owner_of(table, session) == OWNED_BY_YOU
     assert table.tries(session) == "OK"
@@ -94,16 +94,16 @@ class Late:
         self.is_cut = False
 
     def pass_time(self, milliseconds: int, flags: int = 0) -> None:
-        """Let time pass, at whose beginning something happens to the button."""
+        """Let time pass, with a button event at its beginning."""
         robot, (to_robot, to_computer) = self.table.robot, self.ways
         end_ms = robot.now_ms + milliseconds
         while robot.now_ms < end_ms:
             data = self.session.poll(robot.now_ms)
             to_robot.put(b"" if self.is_cut else data, robot.now_ms)
-            data = to_robot.arrived(robot.now_ms)
-            sent = robot.step(data, flags) if flags else robot.wait(LINE_STEP_MS, data)
-            to_computer.put(b"" if self.is_cut else sent, robot.now_ms)
-            self.session.receive(to_computer.arrived(robot.now_ms), robot.now_ms)
+            data = to_robot.take_arrived(robot.now_ms)
+            sent_bytes = robot.step(data, flags) if flags else robot.wait(LINE_STEP_MS, data)
+            to_computer.put(b"" if self.is_cut else sent_bytes, robot.now_ms)
+            self.session.receive(to_computer.take_arrived(robot.now_ms), robot.now_ms)
             flags = 0
 
     def until(self, request: PendingRequest[Any]) -> None:
@@ -161,7 +161,7 @@ def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() 
     assert owner_of(table, table.session(nonce=5)) == FREE
     early.claim(KEY_OWNER)
     table.pass_time(early, 300)
-    request = late.claim(KEY_OWNER)  # and its session lives
+    request = late.claim(KEY_OWNER)  # its session is alive
     table.pass_time(late, 300)
     table.hold(late, 2200)
     assert table.outcome(late, request) == "OK"
@@ -178,7 +178,7 @@ def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() 
 @pytest.mark.parametrize("cut_ms", range(1, 260, 7))
 def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
     table, keys = Owned(), Keys()
-    session = table.claimed(keys)
+    session = table.claim_session(keys)
     session.claim(KEY_OWNER)
     table.pass_time(session, 300)
     table.pass_time(session, 1, PRESSED)
@@ -232,14 +232,14 @@ def test_a_key_that_one_of_both_cannot_keep_is_nobodys() -> None:
 def test_a_claim_is_kept_beside_a_name_that_is_not_and_leaves_that_told() -> None:
     table, keys = Owned(), Keys()
     for place in (4, 4 + 31):  # both slots of the name
-        table.robot.wear_out(place + 12)  # its first letter
+        table.robot.wear_out(place + 12)  # the first letter of its name
     session = table.session(keys)
     assert table.outcome(session, session.name(b"NEW")) == "NOT_KEPT"
     table.pass_time(session, 500)  # the robot has tried again
     assert table.claim(session) == "OK"
     assert table.outcome(session, session.name(b"NEW")) == "NOT_KEPT"
-    restarted = Owned(table.robot.memory())
-    assert owner_of(restarted, restarted.session()) == OWNED_BY_OTHER
+    restarted_robot = Owned(table.robot.memory())
+    assert owner_of(restarted_robot, restarted_robot.session()) == OWNED_BY_OTHER
 
 
 def test_a_name_is_kept_beside_a_key_that_is_not() -> None:
@@ -256,17 +256,17 @@ def test_a_name_is_kept_beside_a_key_that_is_not() -> None:
 @pytest.mark.parametrize("first", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("by", ["the same session", "the next one", "one whose answer was lost"])
 def test_each_claim_has_a_press_of_its_own(first: int, second: int, by: str) -> None:
-    """Who has confirmed the one has not confirmed the next, however often that was asked for."""
+    """A confirmed claim does not confirm the next one, whatever its number of requests."""
     table, keys = Owned(), Keys()
-    session = table.claimed(keys, first)
+    session = table.claim_session(keys, first)
     if by == "one whose answer was lost":
-        session = table.claimed(keys, first)
+        session = table.claim_session(keys, first)
     elif by == "the next one":
         session = table.session(keys, nonce=8)
-    before = table.robot.memory()
+    memory_before = table.robot.memory()
     request = session.claim(second)
     table.pass_time(session, 3000)
-    assert request.outcome is None and table.robot.memory() == before
+    assert request.outcome is None and table.robot.memory() == memory_before
     table.hold(session, 2200)
     assert table.outcome(session, request) == "OK"
 
@@ -281,31 +281,31 @@ def test_a_press_for_who_has_gone_confirms_nobody_else(
     table, keys = Owned(), Keys()
     first = table.session()
     assert table.outcome(first, first.hello()) == "OK"
-    answer = table.asked(first, "CLAIM", bytes([which]) + bytes([70] * KEY_BYTES))
+    answer = table.ask_unsealed(first, "CLAIM", bytes([which]) + bytes([70] * KEY_BYTES))
     assert answer[0] == STATUSES["HOLD_BUTTON"]
     if has_pressed:
         table.hold(first, 2200)
     table.robot.wait(max(1, silent_ms))
-    before = table.robot.memory()
+    memory_before = table.robot.memory()
     session = table.session(keys, nonce=8)
     assert table.outcome(session, session.hello()) == "OK"
     if not has_pressed:
-        table.hold(session, 2200)  # for nothing
+        table.hold(session, 2200)  # has no effect
     request = session.claim(which)
     table.pass_time(session, 3000)
-    assert request.outcome is None and table.robot.memory() == before
+    assert request.outcome is None and table.robot.memory() == memory_before
     table.hold(session, 2200)
     assert table.outcome(session, request) == "OK"
 
 
 def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
     table, mine, other = Owned(), Keys(), Keys(70)
-    table.claimed(mine)
+    table.claim_session(mine)
     session = table.session(mine, nonce=2)
     assert table.outcome(session, session.disown(KEY_OWNER)) == "OK"
     assert session.robot
     mine.stored_keys = [RobotKey(session.robot.id, KEY_OWNER, bytes([1] * 16), "")]
-    table.claimed(other)
+    table.claim_session(other)
     for nonce in range(10, 30):  # more often than it may be tried
         assert owner_of(table, table.session(mine, nonce=nonce)) == OWNED_BY_OTHER
         assert [key.is_stale for key in mine.stored_keys] == [True]
@@ -313,9 +313,9 @@ def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
 
 
 def test_a_stale_key_that_is_right_after_all_is_none() -> None:
-    """As where another session came between challenge and tag."""
+    """Another session may come between challenge and tag."""
     table, keys = Owned(), Keys()
-    table.claimed(keys)
+    table.claim_session(keys)
     keys.mark_stale(keys.stored_keys[0])
     session = table.session(keys, nonce=9)
     assert owner_of(table, session) == OWNED_BY_OTHER
@@ -346,8 +346,8 @@ def test_a_teachers_key_drives_and_gives_a_robot_back() -> None:
 
 def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
     table, pupil, teacher = Owned(), Keys(), Keys(90)
-    table.claimed(teacher, KEY_TEACHER)
-    table.claimed(pupil)
+    table.claim_session(teacher, KEY_TEACHER)
+    table.claim_session(pupil)
     mine = table.session(pupil, nonce=5)
     assert table.outcome(mine, mine.upload(image_of("SB|F(200, 40)"))) == "OK"
     session = table.session(teacher, nonce=6)
@@ -373,10 +373,10 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_a_robot_is_held_back_from_a_teachers_stop_until_it_is_released(seed: int) -> None:
-    """However often that was, and whoever stops, starts or presses in between."""
+    """This holds for any number of stops, and whoever stops, starts or presses in between."""
     rng, table, pupil, teacher = Random(seed), Owned(), Keys(), Keys(90)
-    table.claimed(teacher, KEY_TEACHER)
-    table.claimed(pupil)
+    table.claim_session(teacher, KEY_TEACHER)
+    table.claim_session(pupil)
     mine = table.session(pupil, nonce=5)
     assert table.outcome(mine, mine.upload(image_of("SB|F(200, 40)"), runs=False)) == "OK"
     is_held_back = False
@@ -396,9 +396,9 @@ def test_a_robot_is_held_back_from_a_teachers_stop_until_it_is_released(seed: in
             table.hold(None, 200)
             is_held_back = False
         else:
-            wanted = "HELD_BACK" if is_held_back else "OK"
-            assert table.outcome(session, session.clear()) == wanted
-            assert table.outcome(session, session.start()) == wanted
+            wanted_text = "HELD_BACK" if is_held_back else "OK"
+            assert table.outcome(session, session.clear()) == wanted_text
+            assert table.outcome(session, session.start()) == wanted_text
 
 
 # -- forgetting, text, identifying -----------------------------------------------------------------
@@ -406,19 +406,20 @@ def test_a_robot_is_held_back_from_a_teachers_stop_until_it_is_released(seed: in
 
 def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
     table, keys = Owned(), Keys()
-    table.claimed(keys, KEY_TEACHER)
-    table.claimed(keys)
+    table.claim_session(keys, KEY_TEACHER)
+    table.claim_session(keys)
     table.hold(None, 11_000)
     assert owner_of(table, table.session(keys, nonce=4)) == OWNED_BY_YOU, (
         "later they forget nothing"
     )
     for milliseconds, owner in ((9800, OWNED_BY_YOU), (10_800, FREE)):
         table = Owned(table.robot.memory(), seed=milliseconds)
-        table.pass_time(None, 1, HELD)  # as a button that was down before the reset
+        table.pass_time(None, 1, HELD)  # a button that was down before the reset
         table.pass_time(None, milliseconds - 1)
         table.pass_time(None, 1, RELEASED)
         session = table.session(keys)
-        if owner == FREE and table.seals:  # our own keys say otherwise, until they are forgotten
+        # Our own keys still have the old owner until they are forgotten.
+        if owner == FREE and table.seals:
             assert table.outcome(session, session.hello()) == str(UNPROVEN)
             session = table.session()
         assert owner_of(table, session) == owner
@@ -427,9 +428,9 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
 
 
 def test_text_drives_an_owned_robot_only_where_it_may() -> None:
-    """It may while the owner says so, or since a press of two seconds, until power-off."""
+    """The owner may allow text, or a press of two seconds does until power-off."""
     table, keys = Owned(), Keys()
-    session = table.claimed(keys)
+    session = table.claim_session(keys)
 
     def answer(line: bytes = b"SI|F(1, 80)\n") -> bytes:
         table.pass_time(None, 5000)
@@ -467,7 +468,7 @@ def test_a_robot_makes_itself_known_and_leaves_the_buzzer_to_a_program() -> None
     assert not [line for line in table.robot.did if "BEEP" in line]
 
 
-STEP_MS, STEPS = 250, 12  # of the light
+STEP_MS, STEPS = 250, 12  # pattern of the light
 HELD_PROGRAMS = {"nothing": "", "a program for the button": "SB|F(1, 50)", "what it runs": FOREVER}
 
 
@@ -506,7 +507,7 @@ def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds:
 def test_a_storm_of_identify_leaves_a_run_and_a_stop_alone() -> None:
     """A stranger may ask as often as the line carries it."""
     table, keys = Owned(), Keys()
-    session = table.claimed(keys)
+    session = table.claim_session(keys)
     assert table.tries(session) == "OK"
     table.robot.did.clear()
     number, epoch = BY_NAME["IDENTIFY"].number, session._epoch
@@ -528,6 +529,6 @@ def test_a_firmware_without_owners_says_so_and_is_free() -> None:
     assert not session.robot.values.features & OWNERS
     assert table.tries(session) == "OK"
     for name, payload in (("CLAIM", bytes(17)), ("AUTHENTICATE", b"\0"), ("TEXT", b"\0")):
-        assert table.asked(session, name, payload)[0] == STATUSES["UNKNOWN_MESSAGE"]
+        assert table.ask_unsealed(session, name, payload)[0] == STATUSES["UNKNOWN_MESSAGE"]
     table.pass_time(None, 5000)
     assert b"OK" in table.robot.wait(200, b"SI|F(1, 80)\n")

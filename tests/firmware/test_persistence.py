@@ -1,5 +1,6 @@
-"""When a robot writes down what it keeps: while its motors stand, with enough voltage, and never
-says that it has before it has."""
+"""A robot writes its data only while its motors stand, with enough voltage, and never confirms a
+write before it is done.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ from tests.support.kept_programs import (
     bytes_of,
     name_after_power_off,
     program_after_power_off,
-    saved,
+    read_saved_state,
 )
 from tests.support.robot_on_host import (
     KIT,
@@ -26,10 +27,10 @@ from tests.support.robot_on_host import (
     broken_upload,
     computer,
     holding,
-    pushed,
+    push_button,
     send,
-    stored,
     switched_on,
+    wait_until_saved,
 )
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import STATUSES
@@ -52,8 +53,8 @@ def marks(robot: HostFirmware) -> list[str]:
 def test_what_stands_is_saved_while_it_runs() -> None:
     robot, session = switched_on(), computer()
     send(robot, session, WAITS)
-    assert saved(robot, session) == "SAVING"
-    stored(robot, session, 2000)
+    assert read_saved_state(robot, session) == "SAVING"
+    wait_until_saved(robot, session, 2000)
     assert program_after_power_off(robot) == bytes_of(WAITS)
     assert robot.until(session, session.name(b"NEW")) == OK
     assert session.is_running
@@ -64,11 +65,11 @@ def test_a_program_that_drives_without_a_pause_is_saved_when_it_ends() -> None:
     robot, session = switched_on(), computer()
     send(robot, session, DRIVES)
     robot.talk(session, 5000)
-    assert saved(robot, session) == "SAVING"
+    assert read_saved_state(robot, session) == "SAVING"
     assert program_after_power_off(robot) == b""
     session.stop(robot.now_ms)
     robot.talk(session, 300)
-    assert saved(robot, session) == "STORED"
+    assert read_saved_state(robot, session) == "STORED"
     assert program_after_power_off(robot) == bytes_of(DRIVES)
 
 
@@ -79,7 +80,7 @@ def test_a_program_is_saved_in_its_pauses_and_no_motor_runs_meanwhile(wait: int)
     robot, session = switched_on(), computer()
     text = PAUSES.replace("0.004", f"0.00{wait}")
     send(robot, session, text)
-    stored(robot, session, 5000)
+    wait_until_saved(robot, session, 5000)
     assert session.is_running
     assert marks(robot) == []
     assert program_after_power_off(robot) == bytes_of(text)
@@ -101,7 +102,7 @@ def test_a_program_that_stands_is_stored_in_the_end_whatever_was_before(seed: in
             robot.supply(is_low=False)
         text = chance.choice([text, *texts])
         send(robot, session, text)
-        stored(robot, session)
+        wait_until_saved(robot, session)
         assert program_after_power_off(robot) == bytes_of(text)
 
 
@@ -118,7 +119,7 @@ def test_a_name_is_ok_when_it_is_kept_and_told_to_be_kept_later_while_it_drives(
     send(robot, session, DRIVES, saves=False)
     begun_ms = robot.now_ms
     assert robot.until(session, session.name(b"NEW")) == STATUSES["SAVING"]
-    assert robot.now_ms - begun_ms < 6000  # for which a command waits
+    assert robot.now_ms - begun_ms < 6000  # time that a command waits
     assert session.is_running
     assert name_after_power_off(robot) == "ANA"
     session.stop(robot.now_ms)
@@ -142,8 +143,8 @@ def test_a_trim_is_ok_when_it_is_kept() -> None:
     robot, session = switched_on(), computer()
     for trim in (b"\1\5\7", b"\1\5\1", b"\0\0\0"):
         assert robot.until(session, session.trim(trim)) == OK
-        restarted, other = switched_on(robot.memory()), computer(2)
-        values = restarted.complete(other, other.trim())
+        restarted_robot, other = switched_on(robot.memory()), computer(2)
+        values = restarted_robot.complete(other, other.trim())
         assert bytes((values.wheels, values.balance, values.least)) == trim
     send(robot, session, DRIVES, saves=False)
     assert robot.until(session, session.trim(b"\1\2\3")) == STATUSES["SAVING"]
@@ -152,30 +153,30 @@ def test_a_trim_is_ok_when_it_is_kept() -> None:
 def test_a_plug_pulled_while_a_pace_is_kept_leaves_a_whole_one() -> None:
     """The old or the new one, whatever the trim beside it is; both are new once it has said OK."""
     robot, session = switched_on(), computer()
-    before = Trim(balance=3, least=7, pace=Pace(9, 19, 80, 170))
-    after = Trim(balance=5, least=7, pace=Pace(11, 30, 70, 260))
-    assert robot.until(session, session.trim(before.data())) == OK
-    request = session.trim(after.data())
+    trim_before = Trim(balance=3, least=7, pace=Pace(9, 19, 80, 170))
+    trim_after = Trim(balance=5, least=7, pace=Pace(11, 30, 70, 260))
+    assert robot.until(session, session.trim(trim_before.data())) == OK
+    request = session.trim(trim_after.data())
     trims: list[Trim] = []
     while request.outcome is None or robot.now_ms % 7:
         robot.talk(session, 1)
         if robot.now_ms % 7 == 0:
             trims.append(trim_after_power_off(robot))
     assert robot.until(session, request) == OK
-    assert {trim.pace for trim in trims} == {before.pace, after.pace}
+    assert {trim.pace for trim in trims} == {trim_before.pace, trim_after.pace}
     assert {trim._replace(pace=Pace()) for trim in trims} == {
-        trim._replace(pace=Pace()) for trim in (before, after)
+        trim._replace(pace=Pace()) for trim in (trim_before, trim_after)
     }
-    assert trim_after_power_off(robot) == trims[-1] == after
+    assert trim_after_power_off(robot) == trims[-1] == trim_after
 
 
 def trim_after_power_off(robot: HostFirmware) -> Trim:
-    restarted, other = switched_on(robot.memory()), computer(2)
-    return trim_from_reply(restarted.complete(other, other.trim()))
+    restarted_robot, other = switched_on(robot.memory()), computer(2)
+    return trim_from_reply(restarted_robot.complete(other, other.trim()))
 
 
 def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:
-    """The byte of the first letter stays an O. What did not fit leaves nothing behind."""
+    """The byte of the first letter stays an O. A name that did not fit has no effect."""
     robot, session = switched_on(), computer()
     for name in (b"OLD", b"NEW"):
         assert robot.until(session, session.name(name)) == OK
@@ -187,7 +188,7 @@ def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:
 
 
 PACED = Trim(is_exchanged=True, least=3, pace=Pace(10, 20, 30, 40))
-# What is asked for, and what a robot has that is switched on again.
+# A request, and the state of a robot after the next power-on.
 KEPT: dict[str, tuple[Callable[[Session], PendingRequest[Any]], Callable[[HostFirmware], bool]]] = {
     "a name": (lambda session: session.name(b"XYZ"),
                lambda robot: name_after_power_off(robot) == "XYZ"),
@@ -202,13 +203,14 @@ KEPT: dict[str, tuple[Callable[[Session], PendingRequest[Any]], Callable[[HostFi
 
 @pytest.mark.parametrize("what", KEPT)
 def test_what_could_not_be_kept_is_kept_when_it_is_asked_for_again(what: str) -> None:
-    """The memory takes nothing for a while, as where the supply breaks down in each write. The
-    first answer after it may still be about the last time."""
+    """The memory accepts nothing for a while, as if the supply failed in each write. The first
+    answer afterwards may still be about the last time.
+    """
     robot, session = holding()
     asks, is_kept = KEPT[what]
     for place in range(len(robot.memory())):
         robot.wear_out(place)
-    is_program = what == "a program"  # whose answer does not wait for that
+    is_program = what == "a program"  # programs are answered at once
     assert robot.until(session, asks(session)) == (OK if is_program else STATUSES["NOT_KEPT"])
     robot.talk(session, 3000)
     assert not is_kept(robot)
@@ -223,11 +225,11 @@ def test_a_name_is_kept_after_a_program_that_met_a_worn_byte() -> None:
     robot, session = switched_on(), computer()
     for power in (20, 30):
         send(robot, session, f"SB|F(1, {power})")
-        assert stored(robot, session)
+        assert wait_until_saved(robot, session)
     robot.wear_out(robot.memory().index(image_of("SB|F(1, 20)").code) + 2)  # the power
     send(robot, session, "SB|F(1, 40)")
     robot.talk(session, 1500)
-    assert saved(robot, session) == "MEMORY"
+    assert read_saved_state(robot, session) == "MEMORY"
     assert robot.until(session, session.name(b"NEW")) == OK
     assert name_after_power_off(robot) == "NEW"
 
@@ -251,20 +253,20 @@ def test_a_low_supply_is_told_and_waited_for() -> None:
     robot.supply(is_low=True)
     send(robot, session, "SI|SHOW(1)")
     robot.talk(session, 1500)
-    assert saved(robot, session) == "LOW_SUPPLY"
+    assert read_saved_state(robot, session) == "LOW_SUPPLY"
     assert robot.until(session, session.name(b"NEW")) == STATUSES["LOW_SUPPLY"]
     assert program_after_power_off(robot) == b""
     assert marks(robot) == []
     robot.supply(is_low=False)
     robot.talk(session, 1500)
-    assert saved(robot, session) == "STORED"
+    assert read_saved_state(robot, session) == "STORED"
     assert robot.until(session, session.name(b"NEW")) == OK
     assert program_after_power_off(robot) == bytes_of("SI|SHOW(1)")
     assert name_after_power_off(robot) == "NEW"
 
 
 def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
-    """What counted before is kept, what was to be kept is given up for the new one."""
+    """The earlier program is kept, and the pending one is given up for the new one."""
     robot, session = holding()
     robot.supply(is_low=True)
     for power in (20, 30, 40):
@@ -272,13 +274,13 @@ def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
         send(robot, session, text)
         robot.talk(session, 800)
         assert f"MOTORS {power} {power}" in actions_of(robot)
-        assert saved(robot, session) == "LOW_SUPPLY"
+        assert read_saved_state(robot, session) == "LOW_SUPPLY"
     assert program_after_power_off(robot) == bytes_of("SB|F(0.2, 80)")
     broken_upload(robot, session)
-    assert pushed(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    assert push_button(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
     robot.supply(is_low=False)
     robot.talk(session, 3000)
-    assert saved(robot, session) == "STORED"
+    assert read_saved_state(robot, session) == "STORED"
     assert marks(robot) == []
 
 
@@ -291,29 +293,29 @@ def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) ->
     programs, kept = (
         [bytes_of("SB|F(0.2, 80)")],
         0,
-    )  # that were taken; the one that is kept
+    )  # accepted programs, and the saved one
     for number in range(6):
         robot.supply(is_low=chance.random() < 0.6)
         robot.talk(session, chance.choice((1, 20, 60, 130, 400, 700)))
         text = f"SI|SHOW({number}); " + "SHOW(1); " * chance.choice((2, 20, 40))
         if robot.until(session, session.upload(image_of(text))) != OK:
-            continue  # what is being written is not written over
+            continue  # data being written is not overwritten
         robot.talk(session, chance.choice((1, 20, 60, 130, 400, 700)))
-        if chance.random() < 0.7:  # it recovers while that waits
+        if chance.random() < 0.7:  # the supply recovers during the wait
             robot.supply(is_low=False)
             robot.talk(session, chance.choice((1, 20, 60, 130, 400, 700)))
         programs.append(bytes_of(text))
-        if saved(robot, session) == "STORED":
+        if read_saved_state(robot, session) == "STORED":
             kept = len(programs) - 1
         assert program_after_power_off(robot) in programs[kept:], number
     robot.supply(is_low=False)
     robot.talk(session, 3000)
-    assert saved(robot, session) == "STORED"
+    assert read_saved_state(robot, session) == "STORED"
     assert program_after_power_off(robot) == programs[-1]
 
 
 def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
-    """What a cut has left is put in order with enough voltage only; until then nothing is known."""
+    """Repairs after a cut need enough voltage; until then nothing is known."""
     robot, session = holding()
     memory = bytearray(robot.memory())
     assert memory[FIRST] == 0
@@ -321,14 +323,14 @@ def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
     robot, session = HostFirmware(KIT, bytes(memory)), computer()
     robot.supply(is_low=True)
     robot.wait(500)
-    assert saved(robot, session) == "LOW_SUPPLY"
+    assert read_saved_state(robot, session) == "LOW_SUPPLY"
     low = STATUSES["LOW_SUPPLY"]
     assert robot.until(session, session.fetch()) == low
     assert robot.until(session, session.upload(image_of("SI|F(0.1, 50)"))) == low
     assert robot.until(session, session.name(b"NEW")) == low
     robot.supply(is_low=False)
     robot.wait(1000)
-    assert saved(robot, session) == "STORED"
+    assert read_saved_state(robot, session) == "STORED"
     assert program_after_power_off(robot) == bytes_of("SB|F(0.2, 80)")
 
 
@@ -336,7 +338,7 @@ def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
 
 
 def writing_a_name(robot: HostFirmware, session: Session, name: bytes = b"A LONG NAME") -> Session:
-    """Return another session of a robot that holds what is stored, and writes its name."""
+    """Return another session of a robot with a stored program that writes its name."""
     broken_upload(robot, session)
     other = computer(3)
     assert robot.until(other, other.hello()) == OK

@@ -1,4 +1,4 @@
-"""Where a program is: the firmware tells the place at which the machine in Python is then."""
+"""Places of programs: the firmware reports the same place as the machine in Python."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PROGRAMS = [
 DRIVE = PROGRAMS[0]
 
 
-def asked(robot: HostFirmware, seq: int, epoch: int) -> tuple[int, int, bytes]:
+def ask_for_place(robot: HostFirmware, seq: int, epoch: int) -> tuple[int, int, bytes]:
     """Ask for the place in one frame; return state, run and place of the reply."""
     data = b"\0" + encode_frame(Frame(BY_NAME["PING"].number, seq & 0xFF, epoch, b"\1"))
     frames = [decode_frame(part) for part in robot.step(data).split(b"\0") if part]
@@ -65,13 +65,13 @@ def test_a_place_is_that_of_the_machine_in_python(text: str) -> None:
     for _ in range(robot.now_ms - begun_ms + 1):
         next(machine)
     for seq, at in enumerate(machine, 50):
-        state, _, place = asked(robot, seq, session._epoch)
+        state, _, place = ask_for_place(robot, seq, session._epoch)
         assert state == STATE_RUNNING
         assert place == at.to_bytes(2, "little") + image.checksum.to_bytes(4, "little")
         place_events_of.append(at)
     assert len(set(place_events_of)) >= 3
     robot.wait(20)
-    assert asked(robot, 40, session._epoch)[2] == b""
+    assert ask_for_place(robot, 40, session._epoch)[2] == b""
 
 
 def listener(nonce: int = 1) -> Session:
@@ -128,19 +128,19 @@ def test_what_the_button_starts_and_a_line_have_places_too() -> None:
 
 def test_a_sealed_session_hears_places_sealed() -> None:
     table, keys = Owned(), Keys()
-    table.claimed(keys)
+    table.claim_session(keys)
     session = table.session(keys, nonce=4)
     assert owner_of(table, session) == OWNED_BY_YOU
     session.tells_places = True
     image = image_of(DRIVE)
     assert table.robot.until(session, session.upload(image, saves=False)) == OK
-    received = b""
+    received_bytes = b""
     events: list[Event] = []
     for _ in range(900):
         data = session.poll(table.robot.now_ms)
-        received += data
+        received_bytes += data
         session.receive(table.robot.step(data), table.robot.now_ms)
         events += session.events()
-    frames = [decode_frame(part) for part in received.split(b"\0") if part]
+    frames = [decode_frame(part) for part in received_bytes.split(b"\0") if part]
     assert frames and all(frame and frame.is_sealed for frame in frames)
     assert {place_event.program for place_event in place_events_of(events)} == {image.checksum}

@@ -1,4 +1,4 @@
-"""What a program reads is told to a computer, and pins do the same at the same times.
+"""Readings of a program are reported to a computer, without a change of its pins' times.
 
 A whole robot on this computer, whose line takes as long for a byte as one of 9600 baud.
 """
@@ -21,45 +21,48 @@ from tiniscript.link.payloads import ReadingEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
-MOST_BYTES = 17  # of READING on the line, as SHOW
-FAST_TICKS = 0  # a line that takes no time
+MOST_BYTES = 17  # bytes of READING on the line, as for SHOW
+FAST_TICKS = 0  # a line without delay
 READING = BY_NAME["READING"]
 
 
 @pytest.mark.sampled("seed", keep=10)
 @pytest.mark.parametrize("seed", range(100))
 def test_pins_do_the_same_at_the_same_times_while_readings_are_told(seed: int) -> None:
-    """Of a program whose times do not depend on whether its line is 5 % slower or faster: in
-    others a SHOW that waits, a byte longer or shorter, changes all that follows."""
+    """The programs' times do not depend on a line that is 5 % slower or faster: in others, a
+    waiting SHOW changes everything after it.
+    """
     text = program(random.Random(seed))
     alone, reporting = (sensed_run(text, seed, is_told, BYTE_TICKS) for is_told in (False, True))
     apart = apart_ms(alone.did, reporting.did)
     assert apart < inf, f"all do the same in the same order: {text}"
     assert apart <= MOST_APART_MS or not is_steady(text, seed), text
-    shown = [[event for event in run.events if event.name == "SHOW"] for run in (alone, reporting)]
-    assert abs(len(shown[0]) - len(shown[1])) <= max(2, len(shown[0]) // 20)
+    shown_events = [
+        [event for event in run.events if event.name == "SHOW"] for run in (alone, reporting)
+    ]
+    assert abs(len(shown_events[0]) - len(shown_events[1])) <= max(2, len(shown_events[0]) // 20)
     assert not alone.readings
 
 
 @pytest.mark.parametrize("seed", range(8))
 def test_what_is_not_told_is_said_of_its_sensor(seed: int) -> None:
-    """A line that takes no time tells all; one that does tells the same, or that it does not."""
+    """A line without delay reports all readings; a slow one the same, or that some are missing."""
     text = program(random.Random(seed)).replace("SHOW(", "W(0.001) // ")
     every_ms = 5 if seed % 2 else 30
-    whole, limited = (
+    whole, limited_sensed_run = (
         sensed_run(text, seed, True, ticks, every_ms) for ticks in (FAST_TICKS, BYTE_TICKS)
     )
     assert not [event for event in whole.readings if event.sensor & UNTOLD]
     for sensor in range(len(KIT.sensors)):
         all_of_it = [event for event in whole.readings if event.sensor == sensor]
         at = 0
-        for event in limited.readings:
+        for event in limited_sensed_run.readings:
             if event.sensor & ~UNTOLD != sensor:
                 continue
             if not event.sensor & UNTOLD:
                 assert event == all_of_it[at], "nothing is left out before it"
                 at += 1
-            else:  # it is what was read last
+            else:  # the value is the last reading
                 before = [k for k, reading in enumerate(all_of_it) if reading.ms <= event.ms]
                 assert before and before[-1] >= at and all_of_it[before[-1]].value == event.value
                 at = before[-1] + 1

@@ -1,4 +1,4 @@
-"""Readings that are told delay no program on a simulated Mega either, at 9600 baud.
+"""Reported readings delay no program on a simulated Mega either, at 9600 baud.
 
 `python -m tests.firmware.test_readings_chip 100` runs many; another number says with which seed it
 begins.
@@ -36,28 +36,30 @@ RUN_MS = 1500
 CHANGES_MS = 25  # between two changes of the light
 LIGHT = ("A0", "A1")
 TOGETHER_MS = 0.05  # pins of one setting
-MOST_APART_MS = 1.5  # a byte, and what the main loop takes until it looks
+MOST_APART_MS = 1.5  # one byte, and the main loop's delay until it looks
 # When a run begins beside the computer's PINGs. It may be all that parts two runs without readings.
 BEGINS_MS = (0, 70, 130, 17, 41, 93, 113, 150, 171, 199)
 
 
-def ran(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list[Did], int]:
-    """Return what a program sets, and when since the first; and how many readings were told."""
-    wired = computer(uno)
-    session = wired.session
-    assert wired.until(session.upload(image, runs=False, saves=False)) == OK
-    assert wired.until(session.tell_readings(is_told)) == OK
-    wired.run(wait_ms)
-    assert wired.until(session.start()) == OK
+def run_image(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list[Did], int]:
+    """Return a program's settings with their times since the first, and the number of readings
+    reported.
+    """
+    wired_uno = computer(uno)
+    session = wired_uno.session
+    assert wired_uno.until(session.upload(image, runs=False, saves=False)) == OK
+    assert wired_uno.until(session.tell_readings(is_told)) == OK
+    wired_uno.run(wait_ms)
+    assert wired_uno.until(session.start()) == OK
     since, rng = uno.cycle, random.Random(1)
     for _ in range(RUN_MS // CHANGES_MS):
         for pin in LIGHT:
             uno.analog(pin, rng.randrange(1024))
-        wired.run(CHANGES_MS)
+        wired_uno.run(CHANGES_MS)
     reading_count = sum(event.name == "READING" for event in session.events())
     end = uno.cycle
-    session.stop(wired.now_ms)
-    wired.run(200)
+    session.stop(wired_uno.now_ms)
+    wired_uno.run(200)
     changes = sorted({change.cycle for name in MOTORS for change in uno.pins.history(name)
                       if since < change.cycle < end})  # fmt: skip
     lasting = [(cycle, f"{power(uno, 'left', cycle)} {power(uno, 'right', cycle)}")
@@ -79,10 +81,10 @@ def steady_programs(first: int) -> Iterator[tuple[int, str]]:
 def compare(text: str, uno: Uno) -> int:
     """Run a program with readings: it does what it may do without. Return how many were told."""
     image = image_of(text, KIT)
-    did, told_count = ran(image, uno, True, 0)
+    did, told_count = run_image(image, uno, True, 0)
     nearest_ms = inf
     for begin_ms in BEGINS_MS:
-        nearest_ms = min(nearest_ms, apart_ms(ran(image, uno, False, begin_ms)[0], did))
+        nearest_ms = min(nearest_ms, apart_ms(run_image(image, uno, False, begin_ms)[0], did))
         if nearest_ms <= MOST_APART_MS:
             return told_count
     raise AssertionError(f"{nearest_ms:.1f} ms from each run without: {text}")

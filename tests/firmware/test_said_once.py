@@ -1,4 +1,4 @@
-"""What a robot says from a stop, a fault or an end on, until it stands and after.
+"""The robot's messages from a stop, a fault or an end until it stands, and afterwards.
 
 A client sends random requests, one after the other, on a quick line or a slow one; programs show
 values, end, fail and go on; at any moment something stops the robot. Of all that it says:
@@ -22,7 +22,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from tests.machines.host_firmware import TICKS, HostFirmware
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.images import image_of
 from tests.support.robot_on_host import KIT
 from tests.support.small_robot import SmallRobot
@@ -44,18 +44,18 @@ HELLO, CLEAR, LIVE, PROGRAM, START, STOP = (
 )
 OTHERS = tuple(BY_NAME[name].number for name in ("PING", "STATUS", "TRIM", "IDENTIFY", "ABORT"))
 OK = STATUSES["OK"]
-SEQUENCE, MESSAGE, BUTTON, CABLE, TEXT = range(1, 6)  # who stops
+SEQUENCE, MESSAGE, BUTTON, CABLE, TEXT = range(1, 6)  # sources of a stop
 PRESSED, RELEASED, STALLED, UNPLUGGED = 1, 2, 4, 8
 KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallRobot}
 PACES = (0, 2, 21, 21)  # ticks of a byte: at once, as with 115200 baud, as with 9600
-ANSWERS_MS = 400  # on the slowest line, whatever it says before
-BUSY_MS = 70  # with what it was saying, at most
+ANSWERS_MS = 400  # longest answer time on the slowest line, including earlier output
+BUSY_MS = 70  # longest time that earlier output keeps the line busy
 ENDINGS = (";W(0.002)", ";SHOW(1 / (X - X))", ";W(9)", ";F(9, 80)")
 
 
 @dataclass(frozen=True)
 class Program:
-    """It shows so many values from a first one on, if nothing ends it before."""
+    """A program that shows so many values from a first one on, unless it is ended."""
 
     first: int
     shows: int
@@ -65,13 +65,13 @@ class Program:
 class Run:
     program: Program
     begun_ms: int
-    ended: int = 0  # by itself, as which event
+    ended: int = 0  # event by which the run ended itself
     ended_ms: int = 0
     ended_epoch: int = 0
-    is_ended: bool = False  # by itself, or by a stop
+    is_ended: bool = False  # whether it ended by itself or by a stop
     values: list[int] = field(default_factory=list)
-    reported_ends: list[int] = field(default_factory=list)  # its end
-    is_over: bool = False  # as its client knows
+    reported_ends: list[int] = field(default_factory=list)  # events that reported its end
+    is_over: bool = False  # whether its client knows that it is over
 
 
 @dataclass
@@ -80,11 +80,11 @@ class Stop:
 
     at_ms: int
     must: bool
-    epoch: int | None  # as heard before; None if the robot was stopped already
+    epoch: int | None  # the epoch last heard; None if the robot was already stopped
 
 
 class Client:
-    """Sends requests, hears what is said, and holds it to the laws."""
+    """A client that sends requests, and checks the messages against the laws."""
 
     def __init__(self, rng: random.Random, kind: str) -> None:
         self.rng = rng
@@ -99,10 +99,10 @@ class Client:
         self.nonce = 1
         self.programs: dict[bytes, Program] = {}
         self.runs: list[Run] = []
-        self.waiting: dict[int, tuple[int, int]] = {}  # by number: message, time
-        self.stops: list[Stop] = []  # that nothing has told yet
-        self.causes: list[tuple[int, int]] = []  # with times, since the robot was not stopped
-        self.cause = 0  # of what stands or is to be told
+        self.waiting: dict[int, tuple[int, int]] = {}  # message and time, by number
+        self.stops: list[Stop] = []  # stops not reported yet
+        self.causes: list[tuple[int, int]] = []  # causes with times, since the robot last ran
+        self.cause = 0  # cause of the current or next reported stop
         self.confirmed_ms = -AGAIN_MS
         self.log: list[object] = []
         self.is_new = True
@@ -116,24 +116,24 @@ class Client:
     # -- what is heard ----------------------------------------------------------------------------
 
     def passes(self, milliseconds: int, data: bytes = b"", flags: int = 0, cause: int = 0) -> None:
-        """Let time pass, at whose beginning bytes arrive, or something else stops the robot."""
+        """Let time pass, with received bytes or another stop at its beginning."""
         robot = self.robot
         until_ms = robot.now_ms + milliseconds
         if cause in (SEQUENCE, MESSAGE, TEXT):
             self.note_stop(cause)
         was_running = not robot.is_latched
-        sent = robot.step(data, flags)
+        sent_bytes = robot.step(data, flags)
         ended = self.note_runs()
         if cause in (BUTTON, CABLE) and was_running and robot.is_latched and not ended:
             self.note_stop(cause)
-        self.receive(sent)
+        self.receive(sent_bytes)
         while robot.now_ms < until_ms:
-            sent = robot.until_sent(until_ms - robot.now_ms)
+            sent_bytes = robot.until_sent(until_ms - robot.now_ms)
             self.note_runs()
-            self.receive(sent)
+            self.receive(sent_bytes)
 
     def note_stop(self, cause: int) -> None:
-        """Of a robot that stands already STOPPED comes again, but not too often."""
+        """Note a stop; a robot that already stands repeats STOPPED, but not too often."""
         now_ms = self.robot.now_ms
         passed_ms = now_ms - self.confirmed_ms
         must = not self.causes or passed_ms > AGAIN_MS + 2
@@ -150,21 +150,21 @@ class Client:
 
         Return whether one has ended by itself.
         """
-        begun = [self.programs[code] for code in self.robot.codes()]
-        did = [line.split()[1] for line in self.robot.did]
+        begun_programs = [self.programs[code] for code in self.robot.codes()]
+        actions = [line.split()[1] for line in self.robot.did]
         self.robot.did.clear()
         for what, end in (("FINISHED", DONE), ("FAULTED", FAULT)):
-            if what in did:
+            if what in actions:
                 if end == FAULT:
-                    self.begin(begun)
+                    self.begin(begun_programs)
                 self.runs[-1].ended = end
                 self.runs[-1].ended_ms, self.runs[-1].ended_epoch = self.robot.now_ms, self.epoch
                 self.runs[-1].is_ended = True
                 self.log.append((self.robot.now_ms, what))
-        self.begin(begun)
+        self.begin(begun_programs)
         if self.runs and self.robot.is_latched:
             self.runs[-1].is_ended = True
-        return "FINISHED" in did or "FAULTED" in did
+        return "FINISHED" in actions or "FAULTED" in actions
 
     def begin(self, programs: list[Program]) -> None:
         for program in programs:
@@ -179,8 +179,8 @@ class Client:
         if self.causes:
             self.cause = self.causes[0][1]
 
-    def receive(self, sent: bytes) -> None:
-        *packets, self.heard = (self.heard + sent).split(b"\0")
+    def receive(self, sent_bytes: bytes) -> None:
+        *packets, self.heard = (self.heard + sent_bytes).split(b"\0")
         for packet in packets:
             frame = decode_frame(packet) if packet else None
             assert frame or not packet, f"no frame: {packet!r}"
@@ -238,12 +238,12 @@ class Client:
             (ms for asked, ms in self.waiting.values() if asked == CLEAR), default=None
         )
         first = {self.cause}
-        if cleared_ms is not None:  # it may have been done before
+        if cleared_ms is not None:  # this may have happened earlier
             first |= {cause for at_ms, cause in self.causes if at_ms >= cleared_ms}
         assert cause in first, f"not the first cause: {first}"
         assert frame.epoch != self.stops.pop(0).epoch, "a stop without an epoch"
         self.stops = [stop for stop in self.stops if stop.at_ms >= begun_ms - 2]
-        for stop in self.stops:  # it may have come before what is said was written
+        for stop in self.stops:  # the stop may precede the writing of this message
             stop.must = False
         for run in self.runs:
             run.is_over |= run.is_ended and run.ended == 0
@@ -260,9 +260,9 @@ class Client:
         wait = rng.choice(("", "", "W(0.001);", "W(0.02);"))
         loop = f"LOOP({shows});SHOW(X);X = X + 1;{wait}END_LOOP" if shows else f"{wait}W(0)"
         text = f"SI|X = {first};{loop}{rng.choice(ENDINGS)}"
-        return self.known(text, Program(first, shows))
+        return self.code_of(text, Program(first, shows))
 
-    def known(self, text: str, program: Program) -> bytes:
+    def code_of(self, text: str, program: Program) -> bytes:
         """Return the code of a text, whose runs count as the program's."""
         code = image_of(text, KIT).code
         self.programs[code] = program
@@ -281,7 +281,9 @@ class Client:
             return number, bytes((rng.choice((0, RUN, RUN | DETACHED)),)) + self.program()
         return number, bytes((rng.choice((0, DETACHED)),)) if number == START else b""
 
-    def ask(self, number: int, payload: bytes = b"", after: bytes = b"", cause: int = 0) -> None:
+    def ask(
+        self, number: int, payload: bytes = b"", bytes_after: bytes = b"", cause: int = 0
+    ) -> None:
         """Send a request; a stop may follow at once. What has another epoch is done by none."""
         now_ms = self.robot.now_ms
         zero = b"\0" if number == HELLO or now_ms - self.sent_ms >= ZERO_MS else b""
@@ -291,7 +293,7 @@ class Client:
         self.sent_ms = self.asked_ms = now_ms
         if number == STOP:
             self.note_stop(MESSAGE)
-        self.passes(1, zero + encode_frame(frame) + after, 0, cause)
+        self.passes(1, zero + encode_frame(frame) + bytes_after, 0, cause)
 
     def turn(self) -> None:
         """Ask for something, or let time pass; mostly something stops the robot at any moment."""
@@ -302,7 +304,8 @@ class Client:
             (b"", 0, 0), (b"", 0, 0), (b"", 0, 0),
         ))  # fmt: skip
         is_at_once = not flags and rng.random() < 0.3
-        if rng.random() < 0.9 or self.robot.now_ms - self.asked_ms > 1000:  # it is always heard
+        # Most messages are heard.
+        if rng.random() < 0.9 or self.robot.now_ms - self.asked_ms > 1000:
             self.ask(*self.request(), *((data, cause) if is_at_once else ()))
         if not is_at_once:
             self.passes(rng.choice((1, 2, 5, 15, 40, 70)))
@@ -339,19 +342,19 @@ def check(seed: int, kind: str) -> Counter[str]:
         log = "\n".join(map(str, client.log[-25:]))
         raise AssertionError(f"{seed} {kind} {client.ticks}: {error!r}\n{log}") from error
     names = {DONE: "done", FAULT: "faults"}
-    happened = Counter(names[run.ended] for run in client.runs if run.ended)
-    happened["stops"] += sum(isinstance(row, tuple) and row[1] == "stop" for row in client.log)
-    return happened
+    event_counts = Counter(names[run.ended] for run in client.runs if run.ended)
+    event_counts["stops"] += sum(isinstance(row, tuple) and row[1] == "stop" for row in client.log)
+    return event_counts
 
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(5))
 @pytest.mark.parametrize("kind", KINDS)
 def test_all_that_happens_is_told_once(kind: str, part: int) -> None:
-    happened: Counter[str] = Counter()
+    event_counts: Counter[str] = Counter()
     for seed in range(part * 20, part * 20 + 20):
-        happened += check(seed, kind)
-    assert all(happened[name] for name in ("done", "faults", "stops")), happened
+        event_counts += check(seed, kind)
+    assert all(event_counts[name] for name in ("done", "faults", "stops")), event_counts
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -364,10 +367,10 @@ def test_an_end_is_told_of_its_own_run_though_another_waits_for_the_line(
     for delay_ms in range(1, 40):
         client = Client(random.Random(delay_ms), kind)
         client.pace(21)
-        first, pressed = (fault, finished_text) if is_fault_first else (finished_text, fault)
-        client.ask(PROGRAM, bytes((0,)) + client.known(pressed, Program(0, 0)))
+        first, pressed_text = (fault, finished_text) if is_fault_first else (finished_text, fault)
+        client.ask(PROGRAM, bytes((0,)) + client.code_of(pressed_text, Program(0, 0)))
         client.passes(ANSWERS_MS)
-        client.ask(LIVE, bytes((RUN,)) + client.known(first, Program(0, 0)))
+        client.ask(LIVE, bytes((RUN,)) + client.code_of(first, Program(0, 0)))
         client.passes(delay_ms)
         client.passes(1, b"", PRESSED, BUTTON)
         client.passes(5)
@@ -383,4 +386,4 @@ def check_all(seed: int) -> None:
 
 
 if __name__ == "__main__":
-    each_seed(check_all, wanted(2000, 10_000))
+    each_seed(check_all, make_options(2000, 10_000))

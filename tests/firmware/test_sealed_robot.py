@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.support.campaign import wanted
+from tests.support.campaign import make_options
 from tests.support.images import image_of
 from tests.support.owners import (
     FOREVER,
@@ -53,32 +53,32 @@ MOST_TIMES, SHOWN_MS = 3, 500  # each piece again, and a key is shown
 def upload_and_capture(
     table: Owned, session: Session, text: str
 ) -> tuple[list[bytes], list[bytes]]:
-    """Have a program run; return the frames to the robot and those back."""
+    """Run a program; return the frames to the robot and those back."""
     return table.frames(session, session.upload(image_of(text), saves=False))
 
 
-def opened(*defines: str) -> tuple[Owned, Session, Keys]:
+def open_sealed_session(*defines: str) -> tuple[Owned, Session, Keys]:
     """Return a robot, and a session whose seal both know, with its keys."""
     table, keys = Owned(defines=defines), Keys()
-    table.claimed(keys)
+    table.claim_session(keys)
     session = table.session(keys, nonce=4)
     assert owner_of(table, session) == OWNED_BY_YOU
     return table, session, keys
 
 
 def test_a_firmware_without_seals_does_as_before() -> None:
-    table, session, _ = opened("tiniscript_without_seals")
+    table, session, _ = open_sealed_session("tiniscript_without_seals")
     assert session.robot and session.robot.values.features & (SEALS | OWNERS) == OWNERS
-    sent, _ = upload_and_capture(table, session, SHORT)
-    assert not any(frame.is_sealed for frame in map(decode_frame, sent) if frame)
-    sealed = Seal(bytes(16)).seal_frame(Frame(BY_NAME["START"].number, 1, 0, b"\0"))
-    reply = table.answer(sealed)
+    sent_bytes, _ = upload_and_capture(table, session, SHORT)
+    assert not any(frame.is_sealed for frame in map(decode_frame, sent_bytes) if frame)
+    sealed_frame = Seal(bytes(16)).seal_frame(Frame(BY_NAME["START"].number, 1, 0, b"\0"))
+    reply = table.answer(sealed_frame)
     assert reply and reply.payload[0] == STATUSES["NOT_SEALED"]
 
 
 def test_what_is_not_sealed_has_no_authority() -> None:
-    """Who writes into the owner's line, in its epoch, with the next number."""
-    table, session, _ = opened()
+    """The attacker writes into the owner's line, in its epoch, with the next number."""
+    table, session, _ = open_sealed_session()
     upload_and_capture(table, session, FOREVER)
     open_to_all = {"HELLO", "PING", "STATUS", "STOP", "CLAIM", "AUTHENTICATE", "IDENTIFY"}
     for message in MESSAGES:
@@ -96,8 +96,8 @@ def test_what_is_not_sealed_has_no_authority() -> None:
 
 
 def test_an_answer_is_told_again_to_nobody_else() -> None:
-    """The same number without a seal gets no receipt and no bytes of the program."""
-    table, session, _ = opened()
+    """The same number without a seal gets neither a receipt nor the program's bytes."""
+    table, session, _ = open_sealed_session()
     upload_and_capture(table, session, SHORT)
     request = session.fetch()
     assert table.outcome(session, request) == "OK"
@@ -110,7 +110,7 @@ def test_a_stranger_keeps_no_program_running() -> None:
     """The owner is gone, and somebody else pings: or opens a session and pings."""
     ping, hello = BY_NAME["PING"].number, BY_NAME["HELLO"].number
     for is_greeting in (False, True):
-        table, session, _ = opened()
+        table, session, _ = open_sealed_session()
         upload_and_capture(table, session, FOREVER)
         begun_ms = table.robot.now_ms
         if is_greeting:
@@ -124,10 +124,10 @@ def test_a_stranger_keeps_no_program_running() -> None:
 
 
 def test_a_relay_cannot_say_that_it_worked() -> None:
-    """Nothing reaches the robot, and what comes back is forged in all ways but with the key."""
+    """Nothing reaches the robot, and its answers are forged in all ways without the key."""
     chance = random.Random(1)
-    table, session, _ = opened()
-    sent, replies = upload_and_capture(table, session, SHORT)
+    table, session, _ = open_sealed_session()
+    sent_bytes, replies = upload_and_capture(table, session, SHORT)
     table.pass_time(session, 400)
     request = session.live(image_of(SHORT).code)
     for _ in range(25_000):
@@ -137,22 +137,24 @@ def test_a_relay_cannot_say_that_it_worked() -> None:
         if frame is None:
             continue
         receipt = bytes(8)
-        forged = [
+        forged_frames = [
             Frame(frame.number, frame.seq, frame.epoch, b"\0" + receipt, is_reply=True),
             Frame(frame.number, frame.seq, frame.epoch, b"\0" + receipt, True, True),
             Frame(frame.number, frame.seq, frame.epoch, bytes(22), True, True),
             frame._replace(is_reply=True),
         ]
         for packet in [
-            *map(encode_frame, forged),
-            *(packet + b"\0" for packet in replies + sent),
+            *map(encode_frame, forged_frames),
+            *(packet + b"\0" for packet in replies + sent_bytes),
             data,
         ]:
             session.receive(packet, table.robot.now_ms)
             assert request.outcome is None
         if chance.random() < 0.2:
-            lost = bytes([STATUSES["NOT_OWNER"], 0, 0])
-            session.receive(encode_frame(forged[0]._replace(payload=lost)), table.robot.now_ms)
+            lost_bytes = bytes([STATUSES["NOT_OWNER"], 0, 0])
+            session.receive(
+                encode_frame(forged_frames[0]._replace(payload=lost_bytes)), table.robot.now_ms
+            )
         if request.outcome is not None:
             break
     assert request.outcome and request.outcome.status in (LOST, STATUSES["NOT_OWNER"])
@@ -179,8 +181,8 @@ def refused_by_a_stranger(table: Owned, session: Session, is_cut: bool) -> Reply
 @pytest.mark.parametrize("is_pending", [False, True])
 def test_no_refusal_of_a_stranger_takes_a_key(is_pending: bool, is_cut: bool) -> None:
     """A refusal has no seal: the robot's own answer, which has one, is waited for. Whoever cuts the
-    line may refuse a key for ever; without that it opens the robot again."""
-    table, _, keys = opened()
+    line may refuse a key forever; without that it opens the robot again."""
+    table, _, keys = open_sealed_session()
     keys.stored_keys = [robot_key._replace(is_pending=is_pending) for robot_key in keys.stored_keys]
     session = table.session(keys, nonce=8)
     assert refused_by_a_stranger(table, session, is_cut).status == 0
@@ -194,15 +196,15 @@ def test_no_refusal_of_a_stranger_takes_a_key(is_pending: bool, is_cut: bool) ->
 
 
 def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
-    table, session, _ = opened()
+    table, session, _ = open_sealed_session()
     upload_and_capture(table, session, FOREVER)
     session.events()
     session.stop(table.robot.now_ms)
-    stopped = Frame(BY_NAME["STOPPED"].number, 9, session._epoch + 1, b"\1", is_reply=True)
-    forged = b"\0" + encode_frame(stopped)
+    stopped_frame = Frame(BY_NAME["STOPPED"].number, 9, session._epoch + 1, b"\1", is_reply=True)
+    forged_bytes = b"\0" + encode_frame(stopped_frame)
     for _ in range(500):  # the zeros do not arrive
         session.poll(table.robot.now_ms)
-        session.receive(forged, table.robot.now_ms)
+        session.receive(forged_bytes, table.robot.now_ms)
         table.robot.step()
     assert not [
         stopped_event for stopped_event in session.events() if stopped_event.name == "STOPPED"
@@ -218,7 +220,7 @@ def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
 @pytest.mark.parametrize("payload", [b"", bytes(12), bytes(13), bytes(40)])
 def test_a_stop_whose_seal_is_wrong_stops_all_the_same(payload: bytes) -> None:
     for is_claimed in (False, True):
-        table, session, _ = opened()
+        table, session, _ = open_sealed_session()
         if not is_claimed:
             table = Owned()
             session = table.session()
@@ -228,10 +230,10 @@ def test_a_stop_whose_seal_is_wrong_stops_all_the_same(payload: bytes) -> None:
 
 
 def test_a_teachers_stop_needs_the_teachers_seal() -> None:
-    """A STOP that somebody writes into the teacher's line is nobody's: the owner goes on."""
+    """A STOP written into the teacher's line has no authority: the owner's program goes on."""
     table, pupil, teacher = Owned(), Keys(), Keys(90)
-    table.claimed(teacher, KEY_TEACHER)
-    table.claimed(pupil)
+    table.claim_session(teacher, KEY_TEACHER)
+    table.claim_session(pupil)
     session = table.session(teacher, nonce=6)
     assert table.tries(session) == "OK"
     table.answer(Frame(BY_NAME["STOP"].number, 77, session._epoch))
@@ -241,7 +243,7 @@ def test_a_teachers_stop_needs_the_teachers_seal() -> None:
 
 
 def test_a_counter_at_its_end_begins_another_seal() -> None:
-    table, session, _ = opened()
+    table, session, _ = open_sealed_session()
     seal = session._sealing.seal
     assert seal
     seal.sent_counter = LAST_COUNTER - 1
@@ -254,15 +256,15 @@ def test_a_counter_at_its_end_begins_another_seal() -> None:
 
 def test_a_seal_that_has_expired_is_made_again_for_the_same_request() -> None:
     """After more requests than numbers: AUTHENTICATE has one after those of the sealed ones."""
-    table, session, _ = opened()
-    before = session._sealing.seal
+    table, session, _ = open_sealed_session()
+    seal_before = session._sealing.seal
     for _ in range(200):
         assert table.outcome(session, session.trim()) == "OK"
     table.pass_time(None, 2100)
     table.robot.did.clear()
     request = session.live(image_of(SHORT).code)
     assert table.outcome(session, request) == "OK"
-    assert session._sealing.seal is not before
+    assert session._sealing.seal is not seal_before
     assert len([line for line in table.robot.did if "MOTORS 80 80" in line]) == 1
 
 
@@ -274,20 +276,20 @@ def cable_off(table: Owned, session: Session) -> None:
     table.robot.step(flags=UNPLUGGED)
 
 
-def spent(table: Owned, session: Session) -> None:
+def spend_number(table: Owned, session: Session) -> None:
     """The session has one more number for it."""
     if session._sealing.seal:
         session._sealing.seal.sent_counter = LAST_COUNTER - 1
 
 
-@pytest.mark.parametrize("loses", [cable_off, spent])
+@pytest.mark.parametrize("loses", [cable_off, spend_number])
 @pytest.mark.parametrize("pieces", PIECES)
 def test_a_seal_that_is_lost_at_any_moment_of_an_upload_costs_no_piece_of_it(
     pieces: int, loses: Callable[[Owned, Session], None]
 ) -> None:
     """Nor time: no piece that was under way is waited for."""
     image = image_of("SI|" + PIECES[pieces])
-    table, session, _ = opened()
+    table, session, _ = open_sealed_session()
     begun_ms = table.robot.now_ms
     assert table.outcome(session, session.upload(image, saves=False)) == "OK"
     took_ms = table.robot.now_ms - begun_ms
@@ -304,7 +306,7 @@ def test_a_seal_that_is_lost_at_any_moment_of_an_upload_costs_no_piece_of_it(
 
 def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
     """Whatever is asked first, also what needs no HELLO."""
-    table, session, _ = opened()
+    table, session, _ = open_sealed_session()
     later = Owned(table.robot.memory(), seed=7)
     later.robot.now_ms = table.robot.now_ms
     assert later.outcome(session, session.status()) == "OK"
@@ -312,21 +314,21 @@ def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
 
 
 def test_another_session_with_the_same_numbers_is_another_seal() -> None:
-    table, session, keys = opened()
-    sent, _ = upload_and_capture(table, session, SHORT)
+    table, session, keys = open_sealed_session()
+    sent_bytes, _ = upload_and_capture(table, session, SHORT)
     table.pass_time(None, 3000)
     table.robot.did.clear()
     memory = table.robot.memory()
     for seed in (0x12345678, 7):  # the same noise at the start, and another one
         later = Owned(memory, seed=seed)
         assert owner_of(later, later.session(keys, nonce=4)) == OWNED_BY_YOU
-        for data in sent * 3:
+        for data in sent_bytes * 3:
             later.robot.wait(5, b"\0" + data + b"\0")
         assert not [line for line in later.robot.did if "MOTORS" in line]
 
 
 def test_a_stranger_is_told_all_that_is_for_all_beside_a_seal() -> None:
-    table, session, _ = opened()
+    table, session, _ = open_sealed_session()
     for name, payload in (("PING", b""), ("STATUS", b""), ("IDENTIFY", b"")):
         frame = Frame(BY_NAME[name].number, (session._seq + 9) & 0xFF, session._epoch, payload)
         reply = table.answer(frame)
@@ -337,20 +339,20 @@ def test_a_stranger_is_told_all_that_is_for_all_beside_a_seal() -> None:
 
 
 def test_frames_of_the_wire_open_nothing(frames: int = 2500) -> None:
-    """As `python -m tests.firmware.test_sealed_robot 100000`, which does more of the same."""
-    counts = attacked(frames, 1)
+    """`python -m tests.firmware.test_sealed_robot 100000` sends more of them."""
+    counts = attack(frames, 1)
     assert counts["accepted"] == 0 and counts["stops"] > 1
 
 
 # -- by command -----------------------------------------------------------------------------------
 
 
-def attacked(frames: int, seed: int) -> Counter[str]:
+def attack(frames: int, seed: int) -> Counter[str]:
     """Send frames of a thief into the line of an owner, in its session, whose seal lives; return
     how many of each kind, how many were accepted, and how many stops were tried and obeyed.
     """
     chance = random.Random(seed)
-    table, session, _keys = opened()
+    table, session, _keys = open_sealed_session()
     recorded_frames, _ = upload_and_capture(table, session, SHORT)
     old = recorded_frames[-1:]
     robot = table.robot
@@ -375,8 +377,8 @@ def attacked(frames: int, seed: int) -> Counter[str]:
             assert table.outcome(session, session.status()) == "OK", f"seed {seed}, frame {count}"
         how, data = thief.frame(session._epoch, (session._seq + 1 + count % 3) & 0xFF)
         counts[how] += 1
-        sent = robot.wait(2, b"\0" + data + b"\0")
-        packets = [part for part in sent.split(b"\0") if part]
+        sent_bytes = robot.wait(2, b"\0" + data + b"\0")
+        packets = [part for part in sent_bytes.split(b"\0") if part]
         counts["accepted"] += sum(grants_key_request(data) or _is_sealed(data) for data in packets)
         counts["accepted"] += len([line for line in robot.did if "MOTORS" in line])
         robot.did.clear()
@@ -397,7 +399,7 @@ def _stop(chance: random.Random) -> bytes:
 
 
 if __name__ == "__main__":
-    given = wanted(100_000, 1)
-    kinds = attacked(given.count, given.seed)
-    print(f"{given.count} frames of a thief: {dict(sorted(kinds.items()))}")
+    options = make_options(100_000, 1)
+    kinds = attack(options.count, options.seed)
+    print(f"{options.count} frames of a thief: {dict(sorted(kinds.items()))}")
     assert kinds["accepted"] == 0

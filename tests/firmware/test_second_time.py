@@ -1,4 +1,4 @@
-"""What a robot does the second time is what a fresh robot does, whatever it did the first time.
+"""A robot's second action is that of a fresh robot, whatever the first one was.
 
 A random program is stopped, ends, loses its computer or is written over at a random moment, while
 somebody holds the button or a wheel, or the supply is low; then comes another, the same way or
@@ -22,19 +22,19 @@ import pytest
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
 from tests.oracle.task_programs import task_program
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.images import image_for, image_of
-from tests.support.kept_programs import saved
+from tests.support.kept_programs import read_saved_state
 from tests.support.robot_on_host import computer
 from tests.support.small_robot import (
     FIRST_READINGS,
     MARK,
     READINGS,
     SmallRobot,
-    drawn,
+    draw_program,
     without_readings,
 )
-from tests.support.text_robot import typed
+from tests.support.text_robot import type_text
 from tiniscript import robots
 from tiniscript.base.source import Source
 from tiniscript.bytecode.image import Image, unpack
@@ -46,8 +46,8 @@ from tiniscript.link.requests import OK
 KIT = robots.load("tinibot").kit
 ESP32 = robots.load("tinibot32")
 MARKED = ("BEEP 31 1", "TONE 31")
-CLOCKS_MS = (0, 2**16 - 900, 2**31 - 900, 2**32 - 900)  # what a robot's clock says at first
-RUNS_MS = 600  # of the second program that are looked at
+CLOCKS_MS = (0, 2**16 - 900, 2**31 - 900, 2**32 - 900)  # clock values of a robot at its start
+RUNS_MS = 600  # observed time of the second program
 STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
 
 
@@ -67,7 +67,7 @@ class Scene:
         self.count += 1
         self.session = computer(self.count)
 
-    def opened(self) -> None:
+    def open_session(self) -> None:
         assert self.robot.until(self.session, self.session.hello()) == OK
 
 
@@ -79,7 +79,7 @@ KINDS: dict[str, Callable[[], HostFirmware]] = {
 
 
 READS, KEPT = bytes((0x92,)), bytes((0x8A,))  # PUSH_READ_2 and PUSH_SENSOR_2
-UNREAD = MARK + "SHOW(DISTANCE);W(0.1)"  # in its image nothing reads it before
+UNREAD = MARK + "SHOW(DISTANCE);W(0.1)"  # nothing earlier in the image reads this sensor
 
 
 def image(text: str) -> Image:
@@ -87,25 +87,25 @@ def image(text: str) -> Image:
     return unpack(image_for(code.replace(READS, KEPT) if text == UNREAD else code, KIT))
 
 
-# How a program comes to run. -----------------------------------------------------------------
+# Ways to start a program. ----------------------------------------------------------------------
 
 
 def uploads(scene: Scene, text: str) -> list[str]:
-    scene.opened()
+    scene.open_session()
     upload = scene.session.upload(image(text), saves=False)
     assert scene.robot.until(scene.session, upload) == OK
     return []
 
 
 def saves(scene: Scene, text: str) -> list[str]:
-    scene.opened()
+    scene.open_session()
     assert scene.robot.until(scene.session, scene.session.upload(image(text))) == OK
     return []
 
 
 def pushes(scene: Scene, text: str) -> list[str]:
     """The button starts what has been sent."""
-    scene.opened()
+    scene.open_session()
     upload = scene.session.upload(image(text), runs=False, saves=False)
     assert scene.robot.until(scene.session, upload) == OK
     scene.robot.talk(scene.session, 100, flags=1)
@@ -114,15 +114,15 @@ def pushes(scene: Scene, text: str) -> list[str]:
 
 
 def types(scene: Scene, text: str) -> list[str]:
-    scene.robot.wait(4000)  # until the computer has gone
-    return typed(scene.robot, line_of(Source("SI|" + text)) + "\n", 1)
+    scene.robot.wait(4000)  # until the computer counts as gone
+    return type_text(scene.robot, line_of(Source("SI|" + text)) + "\n", 1)
 
 
 STARTS: dict[str, Callable[[Scene, str], list[str]]] = {
     action.__name__: action for action in (uploads, saves, pushes, types)
 }
 
-# What ends the first. ------------------------------------------------------------------------
+# Ways to end the first one. ---------------------------------------------------------------------
 
 
 def loses(scene: Scene) -> None:
@@ -152,15 +152,15 @@ ENDS: dict[str, Callable[[Scene], object]] = {
     "a stall": lambda scene: scene.robot.step(flags=4),
     "silence": loses,
     "an upload": breaks_off,
-    "a block": lambda scene: typed(scene.robot, "\nLOOP(2)\n"),
+    "a block": lambda scene: type_text(scene.robot, "\nLOOP(2)\n"),
     "a reset": lambda scene: scene.next_computer(),
 }
 
 
-# After these it stands still until the second one.
+# After these the robot stands until the second program.
 STOPS = ("zeros", "a message", "a line", "its computer")
 
-# What goes on beside the first, and what that is over with: before the second, or during it.
+# Actions beside the first program, and when they end: before the second, or during it.
 BESIDE: dict[str, tuple[Callable[[HostFirmware], object], Callable[[HostFirmware], object]]] = {
     "nothing": (lambda robot: None, lambda robot: None),
     "the button is down": (lambda robot: robot.step(flags=1), lambda robot: robot.step(flags=2)),
@@ -194,8 +194,8 @@ class Story(NamedTuple):
 
 
 def story(rng: random.Random, starts: str, kind: str) -> Story:
-    first, second = drawn(rng), drawn(rng)
-    if kind == "an esp32":  # when its sonar hears something depends on when it has asked before
+    first, second = draw_program(rng), draw_program(rng)
+    if kind == "an esp32":  # a sonar's answer depends on the time of its last ping
         second = without_readings(second)
     elif starts != "types" and rng.random() < 0.1:
         second = UNREAD
@@ -209,29 +209,36 @@ def story(rng: random.Random, starts: str, kind: str) -> Story:
 
 
 def run_second(scene: Scene, tale: Story) -> tuple[list[str], list[str]]:
-    """Return what the second program does, with times from its mark on, and what is heard."""
+    """Return the second program's actions, with times from its mark, and the messages heard."""
     robot = scene.robot
     if not isinstance(robot, Esp32Robot):
         robot.sense(*READINGS)
     scene.session.events()
     scene.before = scene.session.run
     robot.did.clear()
-    heard = STARTS[tale.starts](scene, tale.second)
-    heard += passed(scene, tale.starts, 40)
+    heard_lines = STARTS[tale.starts](scene, tale.second)
+    heard_lines += run_and_listen(scene, tale.starts, 40)
     if tale.lasts:
         BESIDE[tale.beside][1](robot)
-    heard += passed(scene, tale.starts, RUNS_MS + 260)
+    heard_lines += run_and_listen(scene, tale.starts, RUNS_MS + 260)
     marks = [k for k, line in enumerate(robot.did) if line.split(" ", 1)[1] in MARKED]
     if not marks:
-        return [], heard  # the line is too long for this robot, or another tone covers the mark
+        return (
+            [],
+            heard_lines,
+        )  # the line is too long for this robot, or another tone covers the mark
     begin_ms = int(robot.did[marks[-1]].split()[0])
     lines = (line.split(" ", 1) for line in robot.did[marks[-1] :])
-    did = [f"{int(ms) - begin_ms} {what}" for ms, what in lines if int(ms) <= begin_ms + RUNS_MS]
-    return did, heard
+    actions = [
+        f"{int(ms) - begin_ms} {what}" for ms, what in lines if int(ms) <= begin_ms + RUNS_MS
+    ]
+    return actions, heard_lines
 
 
-def passed(scene: Scene, begins: str, milliseconds: int) -> list[str]:
-    """Let a program run that was begun so; return what its computer or person hears."""
+def run_and_listen(scene: Scene, begins: str, milliseconds: int) -> list[str]:
+    """Run a program that was started like this; return the messages that its computer or person
+    hears.
+    """
     if begins == "types":
         return scene.robot.wait(milliseconds).decode("latin-1").splitlines()
     scene.robot.talk(scene.session, milliseconds)
@@ -247,29 +254,31 @@ def after(tale: Story, scene: Scene) -> Scene:
     if not isinstance(robot, Esp32Robot):
         robot.sense(*FIRST_READINGS)
     STARTS[tale.begins](scene, tale.first)
-    passed(scene, tale.begins, tale.runs_ms)
+    run_and_listen(scene, tale.begins, tale.runs_ms)
     begins, is_over = BESIDE[tale.beside]
     begins(robot)
     ENDS[tale.ends](scene)
-    begun = len(robot.did)
+    action_count_before = len(robot.did)
     if tale.waits_ms:
         robot.wait(tale.waits_ms)
     if not tale.lasts:
         is_over(robot)
         robot.wait(30)
-    moved = [line for line in robot.did[begun:] if not line.endswith(" MOTORS 0 0")]
-    assert tale.ends not in STOPS or (robot.is_latched and not moved), f"{tale} {moved}"
+    motor_lines = [
+        line for line in robot.did[action_count_before:] if not line.endswith(" MOTORS 0 0")
+    ]
+    assert tale.ends not in STOPS or (robot.is_latched and not motor_lines), f"{tale} {motor_lines}"
     if tale.is_next:
         scene.next_computer()
     return scene
 
 
-# What is still said about the first: its end, or that it was not saved, or a block that was open.
+# Events of the first program that are still to come: its end, a failed save, or an open block.
 OF_THE_FIRST = ("MissedEvent", "StartedEvent", "// Started again", "// The old program is lost.")
 
 
-def without_the_first(heard: list[str]) -> list[str]:
-    return [line for line in heard if not line.startswith(OF_THE_FIRST)]
+def without_the_first(heard_lines: list[str]) -> list[str]:
+    return [line for line in heard_lines if not line.startswith(OF_THE_FIRST)]
 
 
 def fitting(rng: random.Random, starts: str, kind: str) -> tuple[Story, list[str], list[str]]:
@@ -285,21 +294,21 @@ def fitting(rng: random.Random, starts: str, kind: str) -> tuple[Story, list[str
 def check(seed: int, starts: str, kind: str) -> str:
     tale, want, wanted_words = fitting(random.Random(f"{seed} {starts} {kind}"), starts, kind)
     scene = after(tale, Scene(kind, random.Random(seed).choice(CLOCKS_MS)))
-    goes_on = not scene.robot.is_latched  # until the second begins
-    did, heard = run_second(scene, tale)
-    heard, wanted_words = without_the_first(heard), without_the_first(wanted_words)
+    goes_on = not scene.robot.is_latched  # until the second program begins
+    actions, heard_lines = run_second(scene, tale)
+    heard_lines, wanted_words = without_the_first(heard_lines), without_the_first(wanted_words)
     if tale.beside == "the button is down":
-        heard = [line for line in heard if "StoppedEvent(cause=3" not in line]
-    if goes_on and heard == ["// Still saving. Send it again."]:
-        return "it says why not"  # what is saved is what drives
+        heard_lines = [line for line in heard_lines if "StoppedEvent(cause=3" not in line]
+    if goes_on and heard_lines == ["// Still saving. Send it again."]:
+        return "it says why not"  # the saved program drives
     if goes_on:
-        heard = heard[max(0, len(heard) - len(wanted_words)) :]
-    explanation = f"{kind} {tale}\n{did}\n{heard}\nnot\n{want}\n{wanted_words}"
-    assert did == want and heard == wanted_words, explanation
+        heard_lines = heard_lines[max(0, len(heard_lines) - len(wanted_words)) :]
+    explanation = f"{kind} {tale}\n{actions}\n{heard_lines}\nnot\n{want}\n{wanted_words}"
+    assert actions == want and heard_lines == wanted_words, explanation
     return tale.ends
 
 
-SOME = {"a mega": 20, "an uno": 10, "an esp32": 3}  # of each start on a commit
+SOME = {"a mega": 20, "an uno": 10, "an esp32": 3}  # cases of each start that a commit draws
 PARTS = 20
 
 
@@ -309,7 +318,7 @@ PARTS = 20
 @pytest.mark.parametrize("starts", STARTS)
 def test_the_second_program_is_as_on_a_fresh_robot(starts: str, kind: str, part: int) -> None:
     if (kind, starts) == ("an esp32", "pushes"):
-        starts = "uploads"  # its button takes longer than ours, `test_button` has it
+        starts = "uploads"  # the button takes longer here; `test_button` covers it
     many = SOME[kind]
     counts = Counter(check(seed, starts, kind) for seed in range(part * many, (part + 1) * many))
     assert counts["it says why not"] <= many / 2, counts
@@ -323,17 +332,17 @@ def waiting_start() -> tuple[Scene, bytes]:
     scene = Scene("a mega")
     scene.robot = robot = HostFirmware(KIT, write_ms=12)
     robot.wait(300)
-    scene.opened()
+    scene.open_session()
     image = image_of("SI|" + "F(0.1, 80); B(0.1, 60);" * 30, KIT)
     assert robot.until(scene.session, scene.session.upload(image)) == OK
-    while saved(robot, scene.session) != "STORED":
+    while read_saved_state(robot, scene.session) != "STORED":
         robot.talk(scene.session, 100)
     scene.session.stop(robot.now_ms)
     robot.talk(scene.session, 100)
-    breaks_off(scene)  # what it holds is what it has saved
-    scene.opened()
+    breaks_off(scene)  # the robot holds the saved program
+    scene.open_session()
     scene.session.name(b"Pia")
-    robot.talk(scene.session, 15)  # it saves it, which takes longer
+    robot.talk(scene.session, 15)  # saving takes longer
     robot.step(flags=1)
     robot.codes()
     return scene, image.code
@@ -343,7 +352,7 @@ def test_what_the_button_has_asked_for_begins_once() -> None:
     scene, code = waiting_start()
     robot = scene.robot
     robot.step(flags=2)
-    assert robot.codes() == []  # it waits
+    assert robot.codes() == []  # the robot waits
     robot.wait(100)
     assert robot.codes() == [code]
     robot.wait(3000)
@@ -365,7 +374,7 @@ def test_what_the_button_has_asked_for_begins_not_after_another_program() -> Non
     robot = scene.robot
     other = image_of("SI|B(60, 40)", KIT).code
     scene.next_computer()
-    scene.opened()
+    scene.open_session()
     request = scene.session.live(other)
     robot.talk(scene.session, 1, flags=2)
     assert robot.until(scene.session, request) == OK
@@ -375,7 +384,7 @@ def test_what_the_button_has_asked_for_begins_not_after_another_program() -> Non
 
 # -- with discs -------------------------------------------------------------------------------
 
-EDGES = (32_673, 277_333)  # of a tinibot2
+EDGES = (32_673, 277_333)  # edges on the discs of a tinibot2
 NEAR_EDGES, ROLLS_EDGES = 2.5, 9.0  # the latter from a move whose wheels still roll
 NEAR_MS = 400
 
@@ -399,29 +408,31 @@ def quiet(rng: random.Random) -> str:
     return MARK + rng.choice(("W(2)", "S;W(1);SHOW(1)", "M(20, 20);W(0.3);M(0, 0)", "F(0.5, 50)"))
 
 
-def driven(scene: Scene, starts: str, text: str) -> tuple[list[str], int, float, float]:
-    """Return what a program does, how long that takes, and how far the wheels go."""
+def drive(scene: Scene, starts: str, text: str) -> tuple[list[str], int, float, float]:
+    """Return a program's actions, their duration, and the distance of the wheels."""
     robot = scene.robot
     robot.did.clear()
     left, right = robot.wheel_edges()
     STARTS[starts](scene, text)
     rows: list[list[str]] = []
     while not rows or rows[-1][1] not in ("FINISHED", "FAULTED"):
-        passed(scene, starts, 100)
+        run_and_listen(scene, starts, 100)
         events = [line.split(" ", 1) for line in robot.did]
         marks = [k for k, row in enumerate(events) if row[1] in MARKED]
         rows = events[marks[-1] :] if marks else []
         assert robot.now_ms < 120_000, text
-    passed(scene, starts, 700)  # until its wheels stand
+    run_and_listen(scene, starts, 700)  # until its wheels stop
     took_ms = int(rows[-1][0]) - int(rows[0][0])
     its_left, its_right = robot.wheel_edges()
     return [what for _, what in rows], took_ms, its_left - left, its_right - right
 
 
 def stands(robot: HostFirmware) -> bool:
-    before = robot.wheel_edges()
+    wheel_edges_before = robot.wheel_edges()
     robot.wait(50)
-    return all(abs(a - b) < 0.05 for a, b in zip(before, robot.wheel_edges(), strict=True))
+    return all(
+        abs(a - b) < 0.05 for a, b in zip(wheel_edges_before, robot.wheel_edges(), strict=True)
+    )
 
 
 def check_ways(seed: int) -> str:
@@ -436,10 +447,10 @@ def check_ways(seed: int) -> str:
     )
     scene = after(tale, with_discs())
     is_over, stood = scene.robot.is_latched, stands(scene.robot)
-    did, took_ms, *distances_cm = driven(scene, tale.starts, tale.second)
-    want, its_ms, *far = driven(with_discs(), tale.starts, tale.second)
-    explanation = f"{tale}\n{did} {took_ms} {distances_cm}\nnot\n{want} {its_ms} {far}"
-    assert did == want and abs(took_ms - its_ms) < NEAR_MS * len(want), explanation
+    actions, took_ms, *distances_cm = drive(scene, tale.starts, tale.second)
+    want, its_ms, *far = drive(with_discs(), tale.starts, tale.second)
+    explanation = f"{tale}\n{actions} {took_ms} {distances_cm}\nnot\n{want} {its_ms} {far}"
+    assert actions == want and abs(took_ms - its_ms) < NEAR_MS * len(want), explanation
     if is_over:
         near = NEAR_EDGES if stood else ROLLS_EDGES
         assert all(abs(a - b) < near for a, b in zip(distances_cm, far, strict=True)), explanation
@@ -454,7 +465,7 @@ def test_ways_after_anything_are_as_on_a_fresh_robot(part: int) -> None:
 
 
 def most_ahead(scene: Scene) -> float:
-    """Return how far one wheel is ahead of the other at most in a straight move."""
+    """Return the greatest lead of one wheel over the other in a straight move."""
     robot = scene.robot
     uploads(scene, "F(60 CM, 60)")
     left, right = robot.wheel_edges()
@@ -482,22 +493,25 @@ def test_what_a_held_wheel_was_behind_is_not_made_up_for_by_the_next_program(whe
 
 
 def ends_of_move(scene: Scene, wheels: int, from_edges: float) -> tuple[float, ...]:
-    """Return how far the wheels go in a move; some are held for a moment as soon as the left one
-    has gone so far."""
+    """Return the distances of the wheels in a move; some are blocked briefly at a distance of the
+    left one.
+    """
     robot = scene.robot
-    before = robot.wheel_edges()
+    wheel_edges_before = robot.wheel_edges()
     robot.did.clear()
     uploads(scene, "F(12 CM, 60)")
     held_ms = 0
     while not robot.did[-1].endswith("FINISHED"):
-        if robot.wheel_edges()[0] - before[0] > from_edges:
+        if robot.wheel_edges()[0] - wheel_edges_before[0] > from_edges:
             held_ms += 1
         robot.hold(wheels if 0 < held_ms < 200 else 0)
         robot.talk(scene.session, 1)
         assert robot.now_ms < 60_000
     robot.hold(0)
     robot.talk(scene.session, 700)
-    return tuple(now - then for now, then in zip(robot.wheel_edges(), before, strict=True))
+    return tuple(
+        now - then for now, then in zip(robot.wheel_edges(), wheel_edges_before, strict=True)
+    )
 
 
 @pytest.mark.parametrize("wheels", [1, 2, 3])
@@ -518,7 +532,7 @@ def test_what_goes_on_alone_does_so_after_what_does_not(first: str, is_typed: bo
     uploads(scene, first)
     robot.talk(scene.session, 300)
     if is_typed:
-        robot.wait(4200)  # nobody is heard any more
+        robot.wait(4200)  # until no client counts as heard
         robot.wait(300, b"SI|F(5, 50)\r\n")
     else:
         image = image_of("SI|F(5, 50)", KIT)
@@ -535,4 +549,4 @@ def check_all(seed: int) -> str:
 
 
 if __name__ == "__main__":
-    each_seed(check_all, wanted(2000, 10_000))
+    each_seed(check_all, make_options(2000, 10_000))

@@ -29,8 +29,10 @@ def waiting(robot: HostFirmware, session: Session) -> None:
     robot.did.clear()
 
 
-def ran(robot: HostFirmware, session: Session, text: str, last: str, milliseconds: int) -> None:
-    """Let a line run to an end, without a computer where that is a lost link."""
+def run_to_end(
+    robot: HostFirmware, session: Session, text: str, last: str, milliseconds: int
+) -> None:
+    """Run a line to its end, without a computer if that end is a lost link."""
     live(robot, session, text)
     if text == AWAY:
         robot.wait(milliseconds)
@@ -48,9 +50,11 @@ STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
 BETWEENS: dict[str, Callable[[HostFirmware, Session], object]] = {
     "stopped by zeros": lambda robot, session: robot.step(bytes(4)),
     "stopped by a message": lambda robot, session: robot.wait(20, STOP_MESSAGE),
-    "ended": lambda robot, session: ran(robot, session, "SI|F(0.1, 80)", "FINISHED", 300),
-    "faulted": lambda robot, session: ran(robot, session, "SI|X = 0; SHOW(5 / X)", "FAULTED", 300),
-    "lost": lambda robot, session: ran(robot, session, AWAY, "FAULTED", 1500),
+    "ended": lambda robot, session: run_to_end(robot, session, "SI|F(0.1, 80)", "FINISHED", 300),
+    "faulted": lambda robot, session: run_to_end(
+        robot, session, "SI|X = 0; SHOW(5 / X)", "FAULTED", 300
+    ),
+    "lost": lambda robot, session: run_to_end(robot, session, AWAY, "FAULTED", 1500),
     "still running": lambda robot, session: live(robot, session, "SI|F(0.3, 80)"),
     "left": leave,
 }
@@ -101,11 +105,11 @@ def test_a_push_that_stops_starts_nothing_and_the_next_one_does_after_a_stop() -
 
 @pytest.mark.parametrize("how", ["zeros", "STOP"])
 def test_a_stop_works_every_time(how: str) -> None:
-    """Stop, button, stop, button: whoever stops goes on sending, as where nothing comes back."""
+    """Stop, button, stop, button: the sender repeats the stop as if no answer came back."""
     robot, session = switched_on(), computer()
     waiting(robot, session)
     stop = bytes(8) if how == "zeros" else b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 7, 0))
-    for _ in range(300):  # more often than a number of 8 bits can tell
+    for _ in range(300):  # more often than an 8-bit counter can count
         robot.push(2)
         assert actions_of(robot)[-1] == "MOTORS 80 80"
         robot.wait(20, stop)
@@ -123,9 +127,9 @@ def test_who_stops_with_zeros_is_answered_with_a_frame_whatever_was_typed_before
     if stops == 2:
         robot.wait(4000, bytes(8))
     robot.wait(1500, line)
-    sent = robot.wait(60, bytes(8))
-    assert b"//" not in sent
-    frames = [decode_frame(part) for part in sent.split(b"\0") if part]
+    sent_bytes = robot.wait(60, bytes(8))
+    assert b"//" not in sent_bytes
+    frames = [decode_frame(part) for part in sent_bytes.split(b"\0") if part]
     assert [frame and frame.number for frame in frames] == [BY_NAME["STOPPED"].number]
 
 
@@ -142,7 +146,7 @@ WAYS: dict[str, Callable[[HostFirmware], bytes]] = {
     "a message and zeros": lambda robot: robot.wait(3, STOP_MESSAGE) + robot.step(ZEROS),
     "a line": lambda robot: robot.wait(3, b"\0S\n"),
 }
-# The push that follows means nothing where the button is down from the reset on; in an open block
+# The push that follows means nothing if the button is down from the reset on; in an open block
 # a line S belongs to the program.
 NOT_HERE = (("was reset with the button down", None), ("has an open block of text", "a line"))
 PAIRS = [
@@ -161,9 +165,9 @@ def table_in_state(state: str) -> Table:
 
 
 def after_power_off(table: Table) -> HostFirmware:
-    restarted = HostFirmware(KIT, table.robot.memory())
-    restarted.wait(100)
-    return restarted
+    restarted_robot = HostFirmware(KIT, table.robot.memory())
+    restarted_robot.wait(100)
+    return restarted_robot
 
 
 @pytest.mark.parametrize(("state", "way"), PAIRS)
@@ -175,15 +179,15 @@ def test_a_stop_in_every_state(state: str, way: str) -> None:
     moves = [line for line in actions_of(robot) if line.startswith("MOTORS")]
     assert set(moves) <= {"MOTORS 0 0"} and (moves or not was_running)
     assert robot.is_latched
-    before = len(robot.did)
+    count_before = len(robot.did)
     table.talk(1500)
-    later = [line for line in actions_of(robot)[before:] if line.startswith("MOTORS")]
+    later = [line for line in actions_of(robot)[count_before:] if line.startswith("MOTORS")]
     assert set(later) <= {"MOTORS 0 0"}, "nothing begins by itself"
     if state == "is saving its program":
-        restarted = after_power_off(table)
-        restarted.push()
-        restarted.wait(50)
-        assert actions_of(restarted)[-1] == f"MOTORS {table.program} {table.program}"
+        restarted_robot = after_power_off(table)
+        restarted_robot.push()
+        restarted_robot.wait(50)
+        assert actions_of(restarted_robot)[-1] == f"MOTORS {table.program} {table.program}"
     robot.push()
     table.talk(50)
     if table.program:
@@ -220,7 +224,7 @@ def drives(robot: HostFirmware) -> bool:
 def test_a_robot_that_is_not_heard_any_more_is_not_kept_driving_by_who_looks_for_it(
     is_asked: str,
 ) -> None:
-    """It hears all: its program ends by itself, as is said of one that is lost."""
+    """The robot hears everything, so its program ends by itself, like that of a lost robot."""
     robot, session = switched_on(), computer()
     live(robot, session, "SI|F(60, 80)")
     robot.talk(session, 300)

@@ -18,8 +18,8 @@ from zlib import crc32
 
 import pytest
 
-from tests.machines.host import FLAGS, ROOT, SOURCES, compiled
-from tests.support.campaign import wanted
+from tests.machines.host import FLAGS, ROOT, SOURCES, compile_program
+from tests.support.campaign import make_options
 from tiniscript.bytecode.image import HEADER_BYTES, pack
 from tools.bench import avr_bench
 
@@ -37,12 +37,12 @@ SAVED, SAVING = 3, 2  # StoreState
 
 
 class Found(NamedTuple):
-    """What a run of the program has looked at."""
+    """The findings of a run of the checker."""
 
     cases: int
     saves: int
-    most_erases: int  # of one byte, in one save
-    most_writes: int  # of one save
+    most_erases: int  # most erases of one byte in one save
+    most_writes: int  # most writes of one save
 
 
 CHECKSUM = ("crc32.cpp", "crc32.h", "image.h", "bytecode.h")
@@ -69,16 +69,16 @@ def run(program: Path, seed: int, sample: tuple[str, ...]) -> Found:
 @pytest.mark.sampled(of="layouts of the store", keep=2)
 @pytest.mark.parametrize("sample", SAMPLES)
 def test_old_or_new(sample: tuple[str, ...]) -> None:
-    assert run(compiled(parts(SOURCES), FLAGS), 1, sample).cases > 10_000
+    assert run(compile_program(parts(SOURCES), FLAGS), 1, sample).cases > 10_000
 
 
 def test_with_the_plug_in() -> None:
-    assert run(compiled(parts(SOURCES), FLAGS), 1, ()).cases == 0
+    assert run(compile_program(parts(SOURCES), FLAGS), 1, ()).cases == 0
 
 
 def test_no_byte_is_erased_twice_by_a_save() -> None:
     """Each of the image once, the generation and three marks; that these go away takes no erase."""
-    wear = run(compiled(parts(SOURCES), FLAGS), 2, (str(CODE_BYTES), "400"))
+    wear = run(compile_program(parts(SOURCES), FLAGS), 2, (str(CODE_BYTES), "400"))
     assert wear.saves == 16
     assert wear.most_erases == 1
     assert wear.most_writes == CODE_BYTES + HEADER_BYTES + 1 + 3 + 3
@@ -86,7 +86,7 @@ def test_no_byte_is_erased_twice_by_a_save() -> None:
 
 @pytest.mark.sampled(of="layouts of the store", keep=2)
 def test_the_layout_of_a_mega() -> None:
-    assert run(compiled(parts(SOURCES), (*FLAGS, MEGA)), 1, ("3", "9")).cases > 10_000
+    assert run(compile_program(parts(SOURCES), (*FLAGS, MEGA)), 1, ("3", "9")).cases > 10_000
 
 
 # -- the document -------------------------------------------------------------------------------
@@ -130,12 +130,12 @@ def test_on_a_chip(size: int, ticks: int) -> None:
     for image in (first, second):
         request += struct_pack("<H", len(image)) + image
     *lines, start, save = avr_bench.run(avr_bench.build("store"), request)
-    saved, saving = f"STATE {SAVED}", f"STATE {SAVING}"
+    saved_text, saving = f"STATE {SAVED}", f"STATE {SAVING}"
     assert lines == [
         *expected_lines(b""),
-        *(saved, *expected_lines(first)),
+        *(saved_text, *expected_lines(first)),
         *(saving, *expected_lines(first)),
-        *(saved, *expected_lines(second)),
+        *(saved_text, *expected_lines(second)),
     ]
     assert int(start.split()[1]) < 16_000 * 8  # cycles: 8 ms, the checksum of a program
     assert int(save.split()[1]) < 16 * 25  # 25 microseconds
@@ -145,11 +145,11 @@ def test_on_a_chip(size: int, ticks: int) -> None:
 
 
 if __name__ == "__main__":
-    given = wanted(10_000_000, 1)
+    options = make_options(10_000_000, 1)
     cases = 0
-    for number in count(given.seed):
+    for number in count(options.seed):
         for which in CAMPAIGN:
-            cases += run(compiled(parts(SOURCES), FLAGS), number, which).cases
+            cases += run(compile_program(parts(SOURCES), FLAGS), number, which).cases
         print(f"{cases:,} cases to seed {number}: nothing wrong", flush=True)
-        if cases >= given.count:
+        if cases >= options.count:
             break

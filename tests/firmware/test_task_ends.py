@@ -1,4 +1,4 @@
-"""What ends a program ends all of its tasks, whatever each of them does: on a simulated ESP32."""
+"""The end of a program ends all its tasks, whatever each of them does: on a simulated ESP32."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.robots.reader import read
 
-LIGHT_L = 35  # its pin
+LIGHT_L = 35  # pin of LIGHT_L
 MAX_RUN = TEXTS["tinibot32"].replace("max_run_seconds = 600", "max_run_seconds = 1")
-# What ends a run, and the fault that the robot keeps of it.
+# Ways to end a run, and the fault that the robot stores.
 ENDS: dict[str, tuple[Callable[[Esp32Robot, Session], object], int]] = {
     "a stop": (lambda robot, session: robot.step(bytes(4)), 0),
     "the button": (lambda robot, session: robot.talk(session, 50, flags=1), 0),
@@ -30,7 +30,7 @@ ENDS: dict[str, tuple[Callable[[Esp32Robot, Session], object], int]] = {
 
 
 def shows(session: Session) -> int:
-    """Return how many the robot has sent since this was asked last."""
+    """Return the number of values that the robot has sent since the last call."""
     return sum(event.name == "SHOW" for event in session.events())
 
 
@@ -38,7 +38,7 @@ def shows(session: Session) -> int:
 @pytest.mark.parametrize("end", ENDS)
 @pytest.mark.parametrize("state", STATES)
 def test_all_tasks_end(state: str, end: str) -> None:
-    """None goes on afterwards, nor in the tasks of the next program."""
+    """No task continues, even in the next program."""
     robot = Esp32Robot(read(MAX_RUN, "mine"))
     robot.wait(200)
     session = Session(1, 9600, robot.robot.kit.fingerprint)
@@ -53,7 +53,7 @@ def test_all_tasks_end(state: str, end: str) -> None:
     driven = {"a task waits": [], "the body of a WHEN moves": ["MOTORS -40 -40"]}
     begun = driven.get(state, ["MOTORS 80 80"])
     assert actions_of(robot) == begun
-    assert (0 < shows(session) < 300) == (state == "a SHOW finds no room")  # of 400
+    assert (0 < shows(session) < 300) == (state == "a SHOW finds no room")  # fewer than all 400
     robot.did.clear()
 
     ended, fault = ENDS[end]

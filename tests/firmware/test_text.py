@@ -1,4 +1,4 @@
-"""The whole robot and lines of text: what they start, what they stop, and what they leave alone.
+"""The whole robot with lines of text: those that start, stop, or change nothing.
 
 How much text it takes, in which pieces, and that no part of a program is run alone.
 
@@ -13,7 +13,7 @@ import re
 import pytest
 
 from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.command import OBSTACLE
 from tests.support.images import image_of
 from tests.support.robot_on_host import (
@@ -22,20 +22,20 @@ from tests.support.robot_on_host import (
     actions_of,
     computer,
     outcome,
-    pushed,
+    push_button,
     send,
-    stored,
     switched_on,
+    wait_until_saved,
 )
 from tests.support.text_robot import (
     LINE,
     SAVED_BACK,
     SAVED_MEMORY,
-    fetched,
+    fetch_image,
     holding,
     read_back,
     status,
-    typed,
+    type_text,
 )
 from tiniscript import robots
 from tiniscript.base.kit import NUMBER, REMOTE, Device, Kit
@@ -46,7 +46,7 @@ from tiniscript.link.requests import OK
 STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
 
 
-# What a person types at a robot that stands, and what it answers in English and in Spanish.
+# Lines typed at a robot at rest, and its answers in English and in Spanish.
 ANSWERS = (
     ("S~00000000", "1: Line damaged. Send it again", "1: Linea danada. Enviala de nuevo"),
     ("F(2,80)#", "8: Unknown sign", "8: Signo desconocido"),
@@ -98,9 +98,9 @@ ANSWERS = (
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_every_sentence_in_its_language(language: str) -> None:
     robot = HostFirmware(robots.load("tinibot").kit, language=language)
-    robot.wait(1000)  # a new robot saves who it is
+    robot.wait(1000)  # a new robot stores its identity
     for line, english, spanish in ANSWERS:
-        answers = typed(robot, line + "\n", 1100)
+        answers = type_text(robot, line + "\n", 1100)
         assert answers[0] == f"// {spanish if language == 'es' else english}", line
         robot.wait(4000)
 
@@ -116,7 +116,7 @@ STOPS = {
 
 @pytest.mark.parametrize("stop", STOPS)
 def test_what_is_said_after_a_stop_is_no_rest_of_what_was_said_before(stop: str) -> None:
-    """At whatever moment of an answer it comes."""
+    """The stop comes at any moment of an answer."""
     robot, fresh = switched_on(), switched_on()
     rng = random.Random(stop)
     for line in SAID_AGAIN:
@@ -127,23 +127,25 @@ def test_what_is_said_after_a_stop_is_no_rest_of_what_was_said_before(stop: str)
         for host_firmware in (robot, fresh):
             STOPS[stop](host_firmware)
             host_firmware.wait(2500)
-            answers.append(typed(host_firmware, line + "\n", 1500))
+            answers.append(type_text(host_firmware, line + "\n", 1500))
             host_firmware.wait(2500)
         assert answers[0] == answers[1] != [], line
 
 
-@pytest.mark.parametrize("ignored", ["LOOP(2)", "SI|IF(TRUE)", "DEF A", "F(1,", "FOO(1)", "HELP"])
-def test_a_line_that_is_ignored_after_a_stop_leaves_nothing(ignored: str) -> None:
+@pytest.mark.parametrize(
+    "ignored_text", ["LOOP(2)", "SI|IF(TRUE)", "DEF A", "F(1,", "FOO(1)", "HELP"]
+)
+def test_a_line_that_is_ignored_after_a_stop_leaves_nothing(ignored_text: str) -> None:
     robot, fresh = switched_on(), switched_on()
     for line in ("F(0.1,50)", "END_LOOP", "SI|F(0.1,50)", "F(0.1,50)", *SAID_AGAIN):
         answers = []
         for host_firmware in (robot, fresh):
-            typed(host_firmware, "S\n", 20)
+            type_text(host_firmware, "S\n", 20)
             if host_firmware is robot:
-                typed(host_firmware, ignored + "\n", 20)
+                type_text(host_firmware, ignored_text + "\n", 20)
             host_firmware.wait(2500)
             host_firmware.did.clear()
-            answers.append((typed(host_firmware, line + "\n", 1200), actions_of(host_firmware)))
+            answers.append((type_text(host_firmware, line + "\n", 1200), actions_of(host_firmware)))
             host_firmware.wait(2500)
         assert answers[0] == answers[1], line
 
@@ -164,17 +166,17 @@ def test_an_uno_says_what_tasks_ways_and_defs_need(language: str, says: str) -> 
     lines = {"F(20 CM, 60)": 6, "r(90 deg, 60)": 6, "TASK": 1, "SI|WHEN(TRUE)": 4, "S;END_TASK": 3,
              "EndWhen": 1, "ENDTASK = 5": 1, "DEF A": 1}  # fmt: skip
     for line, column in lines.items():
-        assert typed(robot, line + "\n", 1100) == [f"// {column}: {says}"], line
+        assert type_text(robot, line + "\n", 1100) == [f"// {column}: {says}"], line
         robot.wait(4000)
 
 
 def test_typed_tasks_and_ways_run() -> None:
-    """Their image says what they need, so that whoever holds it can run it."""
+    """Their image states its needs, so that another robot can check them."""
     robot = switched_on()
     text = "SI|F(FOREVER, 60); WHEN(TRUE); B(9 cm, 60); W(1); END_WHEN"
-    assert typed(robot, text + "\n", 500) == ["// OK"]
+    assert type_text(robot, text + "\n", 500) == ["// OK"]
     assert actions_of(robot) == ["MOTORS 60 60", "MOTORS -60 -60", "MOTORS 0 0"]
-    assert typed(robot, "S\n", 500) == ["// STOPPED"]
+    assert type_text(robot, "S\n", 500) == ["// STOPPED"]
 
 
 @pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
@@ -192,53 +194,53 @@ def test_a_line_that_is_open_goes_on_with_any_sign(
 ) -> None:
     """Digits and signs begin frames, too, but not where a line waits for its end."""
     robot = switched_on()
-    typed(robot, "W(0)\n", 100)
+    type_text(robot, "W(0)\n", 100)
     *before, last = lines
     for line in before:
-        assert set(typed(robot, line + end, pause_ms)) <= {
+        assert set(type_text(robot, line + end, pause_ms)) <= {
             "// Waiting for )", "// Waiting for END_LOOP",
         }  # fmt: skip
-    assert typed(robot, last + end, 400)[-2:] == ["// OK", "// DONE"]
+    assert type_text(robot, last + end, 400)[-2:] == ["// OK", "// DONE"]
     assert actions_of(robot)[1:] == LINE
 
 
 def test_backspace_edits_what_is_typed() -> None:
     robot = switched_on()
-    assert typed(robot, "SO\b\bSI|G\bFO\x7f(0.2,50)\n", 400) == ["// OK", "// DONE"]
+    assert type_text(robot, "SO\b\bSI|G\bFO\x7f(0.2,50)\n", 400) == ["// OK", "// DONE"]
     assert actions_of(robot) == LINE
-    assert typed(robot, "F(0.2,50)\b\n", 400) == ["// 10: Unknown sign"]
+    assert type_text(robot, "F(0.2,50)\b\n", 400) == ["// 10: Unknown sign"]
 
 
-@pytest.mark.parametrize("begun", ["\x1b", "\x1b[", "\x1bO", "\x1b[1", "\x1b[1;", "\x1b[1;5"])
+@pytest.mark.parametrize("begun_text", ["\x1b", "\x1b[", "\x1bO", "\x1b[1", "\x1b[1;", "\x1b[1;5"])
 @pytest.mark.parametrize("stop", ["S", "STOP", "s;", "ALTO"])
-def test_after_a_second_nothing_belongs_to_a_key_that_has_begun(begun: str, stop: str) -> None:
+def test_after_a_second_nothing_belongs_to_a_key_that_has_begun(begun_text: str, stop: str) -> None:
     """A terminal has sent a part of a cursor key; who then stops the robot is heard."""
     robot = switched_on()
-    assert typed(robot, "F(60, 80)\n", 100) == ["// OK"]
-    typed(robot, begun, 1100)
-    typed(robot, f"{stop}\n", 300)
+    assert type_text(robot, "F(60, 80)\n", 100) == ["// OK"]
+    type_text(robot, begun_text, 1100)
+    type_text(robot, f"{stop}\n", 300)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_who_makes_many_mistakes_is_told_that_once(language: str) -> None:
-    """And is answered again after a pause."""
+    """After a pause they are answered again."""
     robot = HostFirmware(robots.load("tinibot").kit, language=language)
     robot.wait(1000)
     mute = ["// Son muchos. Espera 5 s." if language == "es" else "// Too many. Wait 5 s."]
     for _ in range(2):
-        answers = [typed(robot, "FOO\n", 1100) for _ in range(30)]
+        answers = [type_text(robot, "FOO\n", 1100) for _ in range(30)]
         assert answers[0] and answers[:16] == [answers[0]] * 16
         assert answers[16:] == [mute] + [[]] * 13
         robot.wait(3800)
-        assert typed(robot, "FOO\n", 1100) == []
+        assert type_text(robot, "FOO\n", 1100) == []
         robot.wait(4000)
 
 
 def done_after(robot: HostFirmware, text: str | bytes, milliseconds: int = 1200) -> list[str]:
-    """Return what the robot does after a line."""
+    """Return the robot's actions after a line."""
     robot.did.clear()
-    typed(robot, text, milliseconds)
+    type_text(robot, text, milliseconds)
     return actions_of(robot)
 
 
@@ -247,7 +249,7 @@ def done_after(robot: HostFirmware, text: str | bytes, milliseconds: int = 1200)
 
 def test_a_line_moves_and_its_end_is_told() -> None:
     robot = switched_on()
-    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+    assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
     assert actions_of(robot) == LINE
     first, last = (int(line.split()[0]) for line in robot.did[:2])
     assert last - first == 200
@@ -261,53 +263,53 @@ def test_a_line_moves_and_its_end_is_told() -> None:
     "abcdefghijklmnopqrst", "9" * 300,
 ])  # fmt: skip
 def test_a_wrong_line_changes_nothing(line: str) -> None:
-    """What runs goes on, and a program that is in memory only stays there; a second time, too."""
+    """The running program goes on, and one in memory stays there; a second time, too."""
     robot, session = holding("SB|B(30, 60)", saves=False)
-    before = fetched(robot, session)
+    bytes_before = fetch_image(robot, session)
     robot.wait(4000)
-    assert pushed(robot) == ["MOTORS -60 -60"]
+    assert push_button(robot) == ["MOTORS -60 -60"]
     robot.did.clear()
     for _ in range(2):
-        (answer,) = typed(robot, line + "\n", 1500)
+        (answer,) = type_text(robot, line + "\n", 1500)
         assert re.match(r"// \d+: ", answer)
         assert robot.did == []
-    held = status(robot, session)
-    assert (held.saved, held.state) == (SAVED_MEMORY, STATE_RUNNING)
-    assert fetched(robot, session) == before
+    held_status_reply = status(robot, session)
+    assert (held_status_reply.saved, held_status_reply.state) == (SAVED_MEMORY, STATE_RUNNING)
+    assert fetch_image(robot, session) == bytes_before
 
 
 @pytest.mark.parametrize("saves", [True, False])
 def test_the_program_that_it_holds_is_untouched(saves: bool) -> None:
     """Also one that is in memory only: there is room for two programs."""
-    robot, session, before = read_back(saves)
-    assert typed(robot, "SI|F(0.2,50);SHOW(1.5)\r\n", 400) == ["// OK", "// 1.5", "// DONE"]
-    assert fetched(robot, session) == before
+    robot, session, bytes_before = read_back(saves)
+    assert type_text(robot, "SI|F(0.2,50);SHOW(1.5)\r\n", 400) == ["// OK", "// 1.5", "// DONE"]
+    assert fetch_image(robot, session) == bytes_before
     assert status(robot, session).saved == (SAVED_STORED if saves else SAVED_MEMORY)
     robot.wait(4000)
-    assert pushed(robot) == SAVED_BACK
+    assert push_button(robot) == SAVED_BACK
 
 
 def test_sb_waits_for_the_button_and_is_gone_with_the_power() -> None:
-    robot, session, before = read_back()
-    assert typed(robot, "SB|F(0.2,50)\n", 2000) == ["// OK. The button starts it."]
+    robot, session, bytes_before = read_back()
+    assert type_text(robot, "SB|F(0.2,50)\n", 2000) == ["// OK. The button starts it."]
     assert robot.did == [] and robot.is_lit
     for _ in range(2):
         robot.push()
         robot.wait(400)
     assert actions_of(robot) == LINE * 2
     assert done_after(robot, "SI|R(0.1,40)\n")[0] == "MOTORS 40 -40"
-    assert pushed(robot) == LINE, "a line that runs at once leaves the button's program"
+    assert push_button(robot) == LINE, "a line that runs at once leaves the button's program"
     assert status(robot, session).saved == SAVED_MEMORY
-    restarted = switched_on(robot.memory())
-    assert pushed(restarted) == SAVED_BACK
-    assert fetched(restarted, computer(2)) == before
+    restarted_robot = switched_on(robot.memory())
+    assert push_button(restarted_robot) == SAVED_BACK
+    assert fetch_image(restarted_robot, computer(2)) == bytes_before
 
 
 def test_a_program_of_frames_replaces_sb() -> None:
     robot, session = holding()
-    typed(robot, "SB|F(0.2,50)\n")
+    type_text(robot, "SB|F(0.2,50)\n")
     send(robot, session, "SB|L(0.1, 40)")
-    assert pushed(robot)[0] == "MOTORS -40 40"
+    assert push_button(robot)[0] == "MOTORS -40 40"
 
 
 # -- what ends a run that text has started --------------------------------------------------------
@@ -315,26 +317,27 @@ def test_a_program_of_frames_replaces_sb() -> None:
 
 @pytest.mark.parametrize("how", ["s\n", "STOP", "zeros", "button"])
 def test_what_stops_it_latches(how: str) -> None:
-    """What arrives less than a second after it may have been under way, also where the line was
-    silent before the stop."""
+    """Text within a second after it may have been under way, even if the line was silent before the
+    stop.
+    """
     robot, _ = holding()
-    typed(robot, "SI|F(30,50)\n", 3000)
+    type_text(robot, "SI|F(30,50)\n", 3000)
     assert actions_of(robot) == ["MOTORS 50 50"]
     if how == "button":
         robot.push()
     elif how == "zeros":
         robot.wait(50, bytes(8))
     else:
-        assert typed(robot, how, 1100 if how == "STOP" else 60) == ["// STOPPED"]
+        assert type_text(robot, how, 1100 if how == "STOP" else 60) == ["// STOPPED"]
     robot.wait(100)
     for _ in range({"STOP": 0, "s\n": 1}.get(how, 4)):  # typed here: lines soon count again
-        typed(robot, "SI|F(1,50)\n", 700)
+        type_text(robot, "SI|F(1,50)\n", 700)
     assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
     robot.wait(1500)
-    assert typed(robot, "F(1,50)\n", 1100) == ["// It was stopped. Begin with SI|"]
+    assert type_text(robot, "F(1,50)\n", 1100) == ["// It was stopped. Begin with SI|"]
     assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
-    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
-    assert pushed(robot) == SAVED_BACK
+    assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+    assert push_button(robot) == SAVED_BACK
 
 
 @pytest.mark.parametrize("is_stopped_before", [False, True])
@@ -346,30 +349,30 @@ def test_a_stop_ends_a_block_that_is_open_also_where_the_robot_stands(
     robot = switched_on()
     if is_stopped_before:
         robot.wait(1500, bytes(4))
-    assert typed(robot, "SI|LOOP(2)\n", 1500) == ["// Waiting for END_LOOP"]
+    assert type_text(robot, "SI|LOOP(2)\n", 1500) == ["// Waiting for END_LOOP"]
     robot.wait(1500, stop)
-    typed(robot, "F(1,50)\nEND_LOOP\n", 1500)
+    type_text(robot, "F(1,50)\nEND_LOOP\n", 1500)
     assert actions_of(robot) == []
-    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+    assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
 
 
 @pytest.mark.parametrize("noise", [b"\n", b" ", b"\x05\x06", b"\0", b"\xff"])
 def test_a_line_is_silent_after_a_stop_when_nothing_at_all_arrives(noise: bytes) -> None:
     robot = switched_on()
-    typed(robot, "SI|F(30,50)\n")
+    type_text(robot, "SI|F(30,50)\n")
     robot.wait(50, bytes(8))
     for _ in range(5):
-        typed(robot, noise, 500)
-    typed(robot, b"\0SI|F(1,50)\n", 1500)
+        type_text(robot, noise, 500)
+    type_text(robot, b"\0SI|F(1,50)\n", 1500)
     assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
-    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+    assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
 
 
 def test_it_has_no_dead_man_timer_and_a_longest_time() -> None:
     robot = switched_on(max_run_ms=5000)
-    typed(robot, "SI|F(30,50)\n", 4900)
+    type_text(robot, "SI|F(30,50)\n", 4900)
     assert actions_of(robot) == ["MOTORS 50 50"]
-    robot.step(flags=8)  # nobody is connected
+    robot.step(flags=8)  # no computer is connected
     assert actions_of(robot) == ["MOTORS 50 50"]
     assert robot.wait(300) == b"// FAULT MAX_RUN\r\n"
     assert actions_of(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
@@ -379,19 +382,19 @@ def test_a_fault_is_told_recorded_and_kept() -> None:
     robot, session = holding()
     held = status(robot, session).program
     robot.wait(4000)
-    assert typed(robot, "SI|X=0;F(0.1,50);X=1/X\n", 300) == ["// OK", "// FAULT DIVIDE_BY_ZERO"]
+    assert type_text(robot, "SI|X=0;F(0.1,50);X=1/X\n", 300) == ["// OK", "// FAULT DIVIDE_BY_ZERO"]
     assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FAULTED"]
     values = status(robot, session)
-    # nothing is fused in a robot's own code: its checksum is that of no image of the compiler
+    # A robot's own code is not fused, so no compiled image has its checksum.
     assert values.fault == 2 and values.program == held
     assert values.fault_program not in (0, held)
     robot.wait(3000)
     kept_status = status(switched_on(robot.memory()), computer(2))
     assert (kept_status.fault, kept_status.fault_at) == (2, values.fault_at)
     assert kept_status.fault_program == values.fault_program
-    assert typed(robot, "F(0.2,50)\n") == ["// It had a fault. Begin with SI|"]
-    # where the plain code and the compiler's are the same, so are the checksums
-    typed(robot, "SI|W(TIME/(TIME-TIME))\n")
+    assert type_text(robot, "F(0.2,50)\n") == ["// It had a fault. Begin with SI|"]
+    # Checksums agree where plain code equals compiled code.
+    type_text(robot, "SI|W(TIME/(TIME-TIME))\n")
     image = image_of("SI|W(TIME / (TIME - TIME))")
     assert status(robot, session).fault_program == image.checksum
 
@@ -401,15 +404,15 @@ RUNS_ON = "SI|LOOP(FOREVER);M(50,50);W(9);END_LOOP\n"
 
 @pytest.mark.parametrize("text", ["S", "stop", "S;", "\t STOP ;"])
 def test_s_in_an_open_block_ends_what_runs_also_without_the_end_of_its_line(text: str) -> None:
-    """It does not latch, and is part of the program, whose line may go on."""
+    """It does not latch, and belongs to the program, whose line may continue."""
     robot = switched_on()
-    typed(robot, RUNS_ON, 300)
-    typed(robot, "LOOP(2)\n", 300)
-    assert typed(robot, text, 900) == []
+    type_text(robot, RUNS_ON, 300)
+    type_text(robot, "LOOP(2)\n", 300)
+    assert type_text(robot, text, 900) == []
     assert actions_of(robot) == ["MOTORS 50 50"]
     assert robot.wait(200) == b"// Waiting for END_LOOP\r\n"
     assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
-    assert typed(robot, "\nF(0.1,30)\nEND_LOOP\n", 400) == ["// OK", "// DONE"]
+    assert type_text(robot, "\nF(0.1,30)\nEND_LOOP\n", 400) == ["// OK", "// DONE"]
     assert actions_of(robot)[2:] == ["MOTORS 30 30", "MOTORS 0 0"] * 2 + ["FINISHED"]
 
 
@@ -418,21 +421,21 @@ def test_a_word_that_begins_like_s_in_an_open_block_may_be_typed_slowly(
     parts: tuple[str, str],
 ) -> None:
     robot = switched_on()
-    typed(robot, RUNS_ON, 300)
-    typed(robot, "LOOP(2)\n", 300)
+    type_text(robot, RUNS_ON, 300)
+    type_text(robot, "LOOP(2)\n", 300)
     for part in parts:
-        typed(robot, part, 1500)
-    assert typed(robot, "\nEND_LOOP\n", 300)[-1] == "// DONE"
+        type_text(robot, part, 1500)
+    assert type_text(robot, "\nEND_LOOP\n", 300)[-1] == "// DONE"
 
 
 def test_a_program_that_is_cut_or_comes_late_is_told() -> None:
     robot = switched_on()
     for how in (b"\0", b"\x01\x02\0"):
-        typed(robot, "SI|LOOP(2)\n")
-        typed(robot, "F(0.1")
-        assert typed(robot, how, 600) == ["// Lines end with Enter, not with 0"], how
+        type_text(robot, "SI|LOOP(2)\n")
+        type_text(robot, "F(0.1")
+        assert type_text(robot, how, 600) == ["// Lines end with Enter, not with 0"], how
         robot.wait(1500)
-    typed(robot, "SI|LOOP(2)\n", 1100)
+    type_text(robot, "SI|LOOP(2)\n", 1100)
     assert robot.wait(60_000) == b"// Too late. Begin again.\r\n"
 
 
@@ -441,20 +444,20 @@ def test_a_program_that_is_cut_or_comes_late_is_told() -> None:
 
 def test_frames_during_and_after_text() -> None:
     robot, session = switched_on(), computer()
-    typed(robot, "SI|F(30,50)\n", 100)
+    type_text(robot, "SI|F(30,50)\n", 100)
     assert status(robot, session).state == 1
     assert robot.until(session, session.live(image_of("SI|F(0.1, 80)").code)) == OK
     robot.talk(session, 300)
     assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0", "MOTORS 80 80", "MOTORS 0 0",
                                "FINISHED"]  # fmt: skip
     robot.did.clear()
-    typed(robot, "SI|F(30,50)\n", 20)
+    type_text(robot, "SI|F(30,50)\n", 20)
     send(robot, session, "SI|F(0.1, 80)")
     robot.talk(session, 300)
     assert actions_of(robot)[-2:] == ["MOTORS 0 0", "FINISHED"]
     assert "MOTORS 80 80" in actions_of(robot)
     robot.did.clear()
-    typed(robot, "SI|F(0.2,50)\n", 300)
+    type_text(robot, "SI|F(0.2,50)\n", 300)
     assert actions_of(robot) == LINE
 
 
@@ -469,8 +472,8 @@ def test_a_live_line_right_after_text_is_what_its_frame_says(less: int, burst: b
     frame = session.poll(robot.now_ms)
     text = b"SI|M(50,50);W(5)\n\0"
     robot.step(text + frame[:-less], flags=16 if burst else 0, ticks=0 if burst else 1)
-    sent = robot.step(b"", ticks=4) + robot.step(frame[-less:]) + robot.wait(20)
-    session.receive(sent, robot.now_ms)
+    sent_bytes = robot.step(b"", ticks=4) + robot.step(frame[-less:]) + robot.wait(20)
+    session.receive(sent_bytes, robot.now_ms)
     robot.talk(session, 300)
     assert robot.until(session, request) == OK
     assert outcome(request).values.program == image.checksum
@@ -479,7 +482,7 @@ def test_a_live_line_right_after_text_is_what_its_frame_says(less: int, burst: b
 
 @pytest.mark.parametrize("text", [b"", b"W(9)\n\0", b"FOO\nW(9)\n\0"])
 def test_a_program_in_the_same_turn_as_text_has_its_checksum(text: bytes) -> None:
-    """Where the robot was slow, both wait: the image must be sealed before the next one is."""
+    """If the robot is slow, both wait: the image must be sealed before the next one is."""
     robot, session = switched_on(), computer()
     robot.until(session, session.hello())
     image = image_of("SB|F(0.1, 80)")
@@ -489,30 +492,30 @@ def test_a_program_in_the_same_turn_as_text_has_its_checksum(text: bytes) -> Non
     session.receive(robot.step(text + frame, flags=16, ticks=1), robot.now_ms)
     assert robot.until(session, request) == OK
     assert outcome(request).values.program == image.checksum
-    typed(robot, "W(0)\n")
-    stored(robot, session)
-    restarted = switched_on(robot.memory())
-    assert pushed(restarted, 300) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    type_text(robot, "W(0)\n")
+    wait_until_saved(robot, session)
+    restarted_robot = switched_on(robot.memory())
+    assert push_button(restarted_robot, 300) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 @pytest.mark.parametrize("line", ["FOO\n", "SI|F(0.2,50)\n", "SB|F(0.2,50)\n", "S\n"])
 def test_an_upload_while_text_arrives(line: str) -> None:
-    """It is whole, or it is refused and the one before is there."""
+    """It is complete, or refused without replacing the previous program."""
     robot, session = holding()
-    before = fetched(robot, session)
+    bytes_before = fetch_image(robot, session)
     request = session.upload(image_of(LONG))
     robot.talk(session, 10)
     for byte in line.encode():
         session.receive(robot.step(bytes((byte,))), robot.now_ms)
     outcome = robot.until(session, request)
-    # in one frame's place it may start, and an S that comes later stops it
+    # A single frame may start it, and a later S stops it.
     assert outcome in (OK, STATUSES["NOT_BEGUN"], STATUSES["STALE"], STATUSES["LATCHED"])
     robot.talk(session, 6000)
-    image = fetched(robot, session)
+    image = fetch_image(robot, session)
     if outcome == OK:
         assert image.endswith(image_of(LONG).code)
     elif not line.startswith("SB"):
-        assert image == before
+        assert image == bytes_before
 
 
 @pytest.mark.parametrize("start", ["SI", "SB"])
@@ -523,20 +526,20 @@ def test_text_while_a_program_is_being_saved(start: str) -> None:
     answers = []
     for _ in range(40):
         robot.step(b"\0")
-        answers += typed(robot, f"{start}|F(0.1,50)\n", 150)
+        answers += type_text(robot, f"{start}|F(0.1,50)\n", 150)
         if answers[-1:] == ["// OK. The button starts it."]:
             break
     assert answers[-1] in ("// DONE", "// OK. The button starts it."), answers
-    stored(switched_on(robot.memory()), computer(3), 12_000)
+    wait_until_saved(switched_on(robot.memory()), computer(3), 12_000)
     robot.wait(12_000)
-    restarted = switched_on(robot.memory())
-    image = fetched(restarted, computer(2))
+    restarted_robot = switched_on(robot.memory())
+    image = fetch_image(restarted_robot, computer(2))
     assert image.endswith(image_of(LONG).code)
 
 
 def test_values_wait_for_room_and_none_is_lost() -> None:
     robot = switched_on()
-    answers = typed(robot, "SI|X=0;LOOP(50);X=X+1.001;SHOW(X);END_LOOP;SHOW(X>1)\n", 3000)
+    answers = type_text(robot, "SI|X=0;LOOP(50);X=X+1.001;SHOW(X);END_LOOP;SHOW(X>1)\n", 3000)
     values = [f"// {(k + 1) * 1.001:.3f}" for k in range(50)]
     assert answers == [
         "// OK",
@@ -546,7 +549,7 @@ def test_values_wait_for_room_and_none_is_lost() -> None:
     ]
 
 
-LINE_LETTERS = 63  # of an answer, without its end
+LINE_LETTERS = 63  # most letters of an answer, without its end
 
 CODE_BYTES = 255
 
@@ -556,9 +559,9 @@ CODE_BYTES = 255
 def test_a_program_of_255_bytes_and_one_more() -> None:
     robot = switched_on()
     text = "SI|F(0.1,50)" + ";S" * (CODE_BYTES - 4)
-    assert typed(robot, text + "\n", 300) == ["// OK", "// DONE"]
+    assert type_text(robot, text + "\n", 300) == ["// OK", "// DONE"]
     robot.did.clear()
-    (answer,) = typed(robot, text + ";S\n", 1100)
+    (answer,) = type_text(robot, text + ";S\n", 1100)
     assert answer == "// 255: Too long. Make it shorter"
     assert robot.did == []
     assert done_after(robot, "F(0.2,50)\n") == LINE
@@ -570,7 +573,7 @@ def test_many_long_names_until_it_is_full() -> None:
     answers = []
     for count in range(1, 12):
         text = "SI|" + "".join(f"{name}=0;" for name in names[:count]) + "SHOW(1)\n"
-        answers.append(typed(robot, text, 1100))
+        answers.append(type_text(robot, text, 1100))
     fits = [answer == ["// OK", "// 1", "// DONE"] for answer in answers]
     assert fits == sorted(fits, reverse=True) and True in fits and False in fits
     assert {len(answer) for answer in answers if answer[0] != "// OK"} == {1}
@@ -581,12 +584,12 @@ def test_many_long_names_until_it_is_full() -> None:
 def test_a_line_of_10000_bytes(what: str) -> None:
     robot = switched_on()
     data = (what * 10_000).encode()[:10_000]
-    for at in range(0, len(data), 20):  # as many as there are turns
+    for at in range(0, len(data), 20):  # one step for each turn
         robot.step(data[at : at + 20])
     robot.step(b"\n")
     assert robot.did == []
     robot.wait(1100)
-    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+    assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
 
 
 @pytest.mark.parametrize("letters", [1, 24, 25, 59, 60, 61, 255, 1000])
@@ -596,7 +599,7 @@ def test_help_with_a_device_of_a_long_name(letters: int) -> None:
     kit = Kit((distance, Device("A" * letters, NUMBER, "", 0, 1)), ())
     robot = HostFirmware(kit, EMPTY)
     robot.wait(200)
-    answers = typed(robot, "HELP\n", 2000)
+    answers = type_text(robot, "HELP\n", 2000)
     assert max(map(len, answers)) <= LINE_LETTERS
     words = [word for answer in answers for word in answer.removeprefix("// ").split()]
     own = ["DISTANCE", "A" * min(letters, LINE_LETTERS - len("// "))]
@@ -611,11 +614,11 @@ def test_a_robot_says_its_number_or_a_name_which_cannot_end_its_line(seed: int) 
     robot.until(session, session.hello())
     assert session.robot and not session.robot.name
     robot.wait(4000)
-    (answer,) = typed(robot, "PING|CHECK_CONNECTION\n")
+    (answer,) = type_text(robot, "PING|CHECK_CONNECTION\n")
     assert answer.startswith(f"// {session.robot.id:08x}, kit {KIT.fingerprint:04x}, ")
     robot.until(session, session.name(b"\r\nS;\x1b[2J\xc3\xb1\x00\x7f"))
     robot.wait(4000)
-    (answer,) = typed(robot, "PING|CHECK_CONNECTION\n")
+    (answer,) = type_text(robot, "PING|CHECK_CONNECTION\n")
     assert answer.encode("latin-1").startswith(b"// ??S;?[2J\xc3\xb1??, kit ")
 
 
@@ -625,12 +628,12 @@ def test_the_obstacle_program_in_lines(end: str) -> None:
     lines = ["SI|LOOP(FOREVER);", "  F(1, 80);", "  DISTANCE;", "  IF(DISTANCE < 10);",
              "    STOP;", "    R(1, 60);", "  ENDIF;", "END_LOOP"]  # fmt: skip
     robot.sense(0, 0, 50_000)
-    assert typed(robot, end.join(lines) + end) == ["// OK"]
+    assert type_text(robot, end.join(lines) + end) == ["// OK"]
     robot.wait(2500)
     robot.sense(0, 0, 9_000)
     robot.wait(1000)
     assert actions_of(robot)[-1] == "MOTORS 60 -60"
-    assert typed(robot, OBSTACLE.rstrip("\n").replace("\n", end) + end)[-1] == "// OK"
+    assert type_text(robot, OBSTACLE.rstrip("\n").replace("\n", end) + end)[-1] == "// OK"
 
 
 # -- answers that are cut -------------------------------------------------------------------------
@@ -653,8 +656,8 @@ def on_a_slow_line() -> HostFirmware:
     return robot
 
 
-def answered(robot: HostFirmware, line: str) -> bytes:
-    """Return what the robot says to a line, to its end."""
+def answer_to(robot: HostFirmware, line: str) -> bytes:
+    """Return the robot's complete answer to a line."""
     answer = robot.wait(1, f"{line}\n".encode())
     while part := robot.wait(2500):
         answer += part
@@ -665,19 +668,20 @@ def answered(robot: HostFirmware, line: str) -> bytes:
 @pytest.mark.parametrize("cut", CUTS)
 @pytest.mark.parametrize("line", ASKED)
 def test_an_answer_that_was_cut_begins_anew(line: str, cut: str) -> None:
-    """At any moment of it: nothing more of it is said, and the next time it is what a fresh robot
-    says."""
-    wanted_answer = answered(on_a_slow_line(), line)
+    """At any moment of the answer: nothing more of it is sent, and the next answer is that of a
+    fresh robot.
+    """
+    wanted_answer = answer_to(on_a_slow_line(), line)
     assert wanted_answer.startswith(b"//")
     robot = on_a_slow_line()
     lasts_ms = 1 + len(wanted_answer) * PACE // TICKS
     for begun_ms in range(1, lasts_ms + STEP_MS, STEP_MS):
         robot.wait(begun_ms, f"{line}\n".encode())
-        rest = robot.wait(8000, CUTS[cut]).split(b"\n")[1:]  # of the line that was under way
-        if cut != "another question":  # which waits for the answer before it
+        rest = robot.wait(8000, CUTS[cut]).split(b"\n")[1:]  # lines after the interrupted one
+        if cut != "another question":  # another question waits for the previous answer
             assert not {*rest} & {*wanted_answer.split(b"\n")[:-1]}, (begun_ms, rest)
         robot.wait(2500, b"\n")
-        assert answered(robot, line) == wanted_answer, begun_ms
+        assert answer_to(robot, line) == wanted_answer, begun_ms
 
 
 def test_text_at_once_after_power_on() -> None:
@@ -686,7 +690,7 @@ def test_text_at_once_after_power_on() -> None:
     assert robot.step(ticks=3) == b"// Still saving. Send it again.\r\n"
     robot.wait(300)
     assert done_after(robot, "SI|F(0.2,50)\n") == LINE
-    (hello,) = typed(HostFirmware(KIT, EMPTY), "PING|CHECK_CONNECTION\n")
+    (hello,) = type_text(HostFirmware(KIT, EMPTY), "PING|CHECK_CONNECTION\n")
     assert hello.endswith(", text uno")
 
 
@@ -698,7 +702,7 @@ def test_of_a_program_whose_bytes_found_no_room_nothing_is_run(seed: int) -> Non
     """Wherever they were: in a line that opens a block, before it, or after it."""
     rng = random.Random(seed)
     robot = switched_on()
-    typed(robot, "SI|W(0)\n", 200)  # from now on a line needs no SETUP word
+    type_text(robot, "SI|W(0)\n", 200)  # from here on a line needs no SETUP word
     times_lost = 0
     for _ in range(12):
         robot.wait(1500)
@@ -708,7 +712,7 @@ def test_of_a_program_whose_bytes_found_no_room_nothing_is_run(seed: int) -> Non
         text = "\n".join([*rows, "END_LOOP", ""]).encode()
         at_once = rng.randrange(len(text))
         answer = robot.step(text[:at_once], flags=16)
-        answer += "\n".join(typed(robot, text[at_once:], 300)).encode()
+        answer += "\n".join(type_text(robot, text[at_once:], 300)).encode()
         is_lost = b"// Bytes were lost. Begin again." in answer
         times_lost += is_lost
         assert not is_lost or not robot.did, text
@@ -719,18 +723,18 @@ def test_of_a_program_whose_bytes_found_no_room_nothing_is_run(seed: int) -> Non
 def test_the_rest_of_a_program_that_was_lost_is_not_run(between: str) -> None:
     """Its lines are whole ones, and mean something else alone."""
     robot, session = switched_on(), computer()
-    typed(robot, "SI|LOOP(2)\n")
+    type_text(robot, "SI|LOOP(2)\n")
     if between == "zero":
-        typed(robot, b"R(0.1,\0")
+        type_text(robot, b"R(0.1,\0")
     elif between == "frame":
         assert robot.until(session, session.clear()) == OK
     elif between == "button":
         robot.step(flags=2)
         robot.push()
     else:
-        typed(robot, "BAD\n")
-    typed(robot, "F(0.2,50)\nF(0.2,50)\n", 400)
-    typed(robot, "END_LOOP\n", 400)
+        type_text(robot, "BAD\n")
+    type_text(robot, "F(0.2,50)\nF(0.2,50)\n", 400)
+    type_text(robot, "END_LOOP\n", 400)
     assert robot.did == []
     robot.wait(1100)
     assert done_after(robot, "SI|F(0.2,50)\n") == LINE
@@ -739,14 +743,14 @@ def test_the_rest_of_a_program_that_was_lost_is_not_run(between: str) -> None:
 @pytest.mark.parametrize("blanks", ["\t\t", "\t", "  ", "\t \t"])
 def test_a_line_of_a_program_may_come_late_and_indented(blanks: str) -> None:
     robot = switched_on()
-    typed(robot, "SI|LOOP(2)\n", 1500)
-    typed(robot, f"{blanks}F(0.2,50)\n", 1500)
-    assert typed(robot, "END_LOOP\n", 700) == ["// OK", "// DONE"]
+    type_text(robot, "SI|LOOP(2)\n", 1500)
+    type_text(robot, f"{blanks}F(0.2,50)\n", 1500)
+    assert type_text(robot, "END_LOOP\n", 700) == ["// OK", "// DONE"]
     assert actions_of(robot) == LINE[:2] * 2 + LINE[2:]
 
 
 @pytest.mark.parametrize(
-    ("text", "awaited"),
+    ("text", "awaited_text"),
     [
         ("LOOP(2)\n", "END_LOOP"), ("LOOP(FOREVER)\n", "END_LOOP"), ("IF(TRUE)\n", "ENDIF"),
         ("IF(TRUE);ELSE\n", "ENDIF"), ("WHILE(TRUE)\n", "END_WHILE"), ("DEF A\n", "END_DEF"),
@@ -756,12 +760,12 @@ def test_a_line_of_a_program_may_come_late_and_indented(blanks: str) -> None:
         ("DEF A\nF(1,", "END_DEF"),
     ],
 )  # fmt: skip
-def test_what_an_open_block_waits_for_is_told(text: str, awaited: str) -> None:
-    """Also in the middle of a line: what the reader keeps of that is no block."""
-    assert typed(switched_on(), text, 1100) == [f"// Waiting for {awaited}"]
+def test_what_an_open_block_waits_for_is_told(text: str, awaited_text: str) -> None:
+    """Also in the middle of a line, whose stored beginning is no block."""
+    assert type_text(switched_on(), text, 1100) == [f"// Waiting for {awaited_text}"]
 
 
 if __name__ == "__main__":
     from tests.support.text_fuzz import run
 
-    each_seed(run, wanted(1000, 1_000_000))
+    each_seed(run, make_options(1000, 1_000_000))

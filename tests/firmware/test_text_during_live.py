@@ -1,4 +1,4 @@
-"""What somebody types while `tsc live` runs a line on the same robot.
+"""Lines typed while `tsc live` runs a line on the same robot.
 
 A robot with room for two programs drives what was typed. An Uno and a Nano have none for it: they
 read only stops, and the live line goes on to its end.
@@ -41,8 +41,8 @@ def types(robot: HostFirmware, session: Session, text: str, milliseconds: int) -
 @pytest.mark.parametrize("text", TYPED)
 def test_what_is_typed_drives_a_robot_with_room_for_it(text: str, after_ms: int) -> None:
     robot, session = running(HostFirmware, after_ms)
-    did = types(robot, session, text, 1500)
-    assert did == ["MOTORS 0 0", "MOTORS 30 30", "MOTORS 0 0", "FINISHED"]
+    actions = types(robot, session, text, 1500)
+    assert actions == ["MOTORS 0 0", "MOTORS 30 30", "MOTORS 0 0", "FINISHED"]
     assert [event.name for event in session.events()] == ["STARTED", "DONE"]
 
 
@@ -52,9 +52,9 @@ def test_a_robot_without_that_room_goes_on_with_its_live_line(text: str, after_m
     robot, session = running(SmallRobot, after_ms)
     assert types(robot, session, text, 1500) == ["MOTORS 0 0", "FINISHED"]
     assert [event.name for event in session.events()] == ["DONE"]
-    robot.did.clear()  # then it reads text again
-    did = types(robot, session, text, 1500)
-    assert did == ["MOTORS 30 30", "MOTORS 0 0", "FINISHED"]
+    robot.did.clear()  # after this the robot reads text again
+    actions = types(robot, session, text, 1500)
+    assert actions == ["MOTORS 30 30", "MOTORS 0 0", "FINISHED"]
 
 
 @pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
@@ -70,7 +70,7 @@ def test_a_stop_that_is_typed_stops_either(kind: type[HostFirmware], text: str) 
 def test_a_program_shows_values_while_an_answer_in_text_waits(
     kind: type[HostFirmware], text: bytes
 ) -> None:
-    """It waits for as long as a client is heard, which may be for ever."""
+    """The text waits as long as a client is heard, which may be forever."""
     robot, session = kind(KIT), computer()
     robot.wait(100)
     assert robot.until(session, session.ping()) == OK

@@ -10,7 +10,7 @@ import pytest
 
 from tests.support.text_fuzz import run
 
-SEEDS = 24  # in the tests; a campaign runs more
+SEEDS = 24  # seeds of the tests; a campaign runs more
 
 
 @pytest.mark.parametrize("seed", range(SEEDS))

@@ -12,16 +12,23 @@ import pytest
 from tests.firmware import test_text, test_text_fuzz
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
-from tests.support.robot_on_host import actions_of, computer, pushed, send, stored, switched_on
+from tests.support.robot_on_host import (
+    actions_of,
+    computer,
+    push_button,
+    send,
+    switched_on,
+    wait_until_saved,
+)
 from tests.support.text_robot import (
     LINE,
     SAVED_BACK,
     SAVED_MEMORY,
-    fetched,
+    fetch_image,
     holding,
     read_back,
     status,
-    typed,
+    type_text,
 )
 from tiniscript.link.messages import SAVED_NOTHING, SAVED_STORED, STATE_STOPPED
 from tiniscript.link.requests import OK
@@ -47,12 +54,12 @@ def _without_draft(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_stored_program_comes_back_with_the_button() -> None:
-    robot, session, before = read_back()
-    assert typed(robot, "SI|F(0.2,50);SHOW(1.5)\r\n", 400) == ["// OK", "// 1.5", "// DONE"]
-    assert fetched(robot, session) == before
+    robot, session, bytes_before = read_back()
+    assert type_text(robot, "SI|F(0.2,50);SHOW(1.5)\r\n", 400) == ["// OK", "// 1.5", "// DONE"]
+    assert fetch_image(robot, session) == bytes_before
     assert status(robot, session).saved == SAVED_STORED
     robot.wait(4000)
-    assert pushed(robot) == SAVED_BACK
+    assert push_button(robot) == SAVED_BACK
 
 
 @pytest.mark.parametrize("has_stored", [True, False])
@@ -61,24 +68,24 @@ def test_a_program_in_memory_only_is_lost_and_that_is_said(has_stored: bool) -> 
     send(robot, session, "SB|L(0.1, 40)", saves=False)
     assert status(robot, session).saved == SAVED_MEMORY
     robot.wait(4000)
-    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", LOST, "// DONE"]
-    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
-    assert pushed(robot) == (SAVED_BACK if has_stored else [])
+    assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", LOST, "// DONE"]
+    assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+    assert push_button(robot) == (SAVED_BACK if has_stored else [])
     assert robot.is_lit == has_stored
 
 
 def test_sb_keeps_the_button_until_the_next_line() -> None:
-    robot, session, before = read_back()
-    assert typed(robot, "SB|F(0.2,50)\n", 2000) == ["// OK. The button starts it."]
+    robot, session, bytes_before = read_back()
+    assert type_text(robot, "SB|F(0.2,50)\n", 2000) == ["// OK. The button starts it."]
     assert robot.did == [] and robot.is_lit
     for _ in range(2):
         robot.push()
         robot.wait(400)
     assert actions_of(robot) == LINE * 2
     robot.did.clear()
-    assert typed(robot, "SI|R(0.1,40)\n", 300) == ["// OK", LOST, "// DONE"]
-    assert pushed(robot) == SAVED_BACK
-    assert fetched(robot, session) == before
+    assert type_text(robot, "SI|R(0.1,40)\n", 300) == ["// OK", LOST, "// DONE"]
+    assert push_button(robot) == SAVED_BACK
+    assert fetch_image(robot, session) == bytes_before
 
 
 # -- what runs, and a new line --------------------------------------------------------------------
@@ -89,14 +96,14 @@ def test_a_new_line_ends_what_runs_when_it_is_whole() -> None:
     robot, session = holding()
     send(robot, session, "SI|F(30, 60)", saves=False, is_detached=True)
     robot.wait(4000)
-    typed(robot, "SI|R(0.2, 40);W(0.1)")
+    type_text(robot, "SI|R(0.2, 40);W(0.1)")
     assert actions_of(robot)[-1] == "MOTORS 60 60"
-    assert typed(robot, "\n", 600) == ["// OK", LOST, "// DONE"]
+    assert type_text(robot, "\n", 600) == ["// OK", LOST, "// DONE"]
     assert actions_of(robot)[-4:] == ["MOTORS 0 0", "MOTORS 40 -40", "MOTORS 0 0", "FINISHED"]
-    typed(robot, "SI|F(30,50)\n", 300)
-    typed(robot, "SI|X = " + "1.2345 + " * 12)
+    type_text(robot, "SI|F(30,50)\n", 300)
+    type_text(robot, "SI|X = " + "1.2345 + " * 12)
     assert actions_of(robot)[-2:] == ["MOTORS 50 50", "MOTORS 0 0"]
-    assert typed(robot, "0; SHOW(X)\n", 100) == ["// OK", "// 14.82", "// DONE"]
+    assert type_text(robot, "0; SHOW(X)\n", 100) == ["// OK", "// 14.82", "// DONE"]
 
 
 @pytest.mark.parametrize("line", [
@@ -105,20 +112,20 @@ def test_a_new_line_ends_what_runs_when_it_is_whole() -> None:
 ])  # fmt: skip
 def test_a_wrong_line_that_needed_the_room_tells_what_is_lost(line: str) -> None:
     robot, session = holding("SB|B(30, 60)", saves=False)
-    first, *more = typed(robot, line + "\n", 1500)
+    first, *more = type_text(robot, line + "\n", 1500)
     assert first.startswith("// ") and more.count(LOST) == 1
     assert status(robot, session).saved == SAVED_NOTHING
     robot.wait(4000)
-    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+    assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
 
 
 # -- what comes in between ------------------------------------------------------------------------
 
 
 def test_a_request_while_a_block_is_open_finds_the_stored_program() -> None:
-    robot, session, before = read_back()
-    typed(robot, "SI|LOOP(3)\n F(0.1,50)\n", 1500)
-    assert fetched(robot, session) == before
+    robot, session, bytes_before = read_back()
+    type_text(robot, "SI|LOOP(3)\n F(0.1,50)\n", 1500)
+    assert fetch_image(robot, session) == bytes_before
     assert robot.until(session, session.start()) == OK
     robot.talk(session, 400)
     assert actions_of(robot) == SAVED_BACK
@@ -127,11 +134,11 @@ def test_a_request_while_a_block_is_open_finds_the_stored_program() -> None:
 @pytest.mark.sampled("at_ms", keep=3)
 @pytest.mark.parametrize("at_ms", range(0, 60, 7))
 def test_power_that_goes_while_text_is_read_takes_nothing_that_is_stored(at_ms: int) -> None:
-    robot, _, before = read_back()
-    typed(robot, "SI|LOOP(3);F(0.01,50);END_LOOP;SHOW(1)\n"[: at_ms + 1], at_ms)
-    restarted = switched_on(robot.memory())
-    assert pushed(restarted) == SAVED_BACK
-    assert fetched(restarted, computer(2)) == before
+    robot, _, bytes_before = read_back()
+    type_text(robot, "SI|LOOP(3);F(0.01,50);END_LOOP;SHOW(1)\n"[: at_ms + 1], at_ms)
+    restarted_robot = switched_on(robot.memory())
+    assert push_button(restarted_robot) == SAVED_BACK
+    assert fetch_image(restarted_robot, computer(2)) == bytes_before
 
 
 @pytest.mark.parametrize("has_draft", [True, False])
@@ -144,11 +151,11 @@ def test_a_line_while_a_program_is_saved_leaves_what_runs(
     send(robot, session, "SI|F(5, 60)", saves=True, is_detached=True)
     robot.wait(3500)
     assert actions_of(robot) == ["MOTORS 60 60"]
-    assert typed(robot, "SB|F(0.1,50); S\n", 100) == ["// Still saving. Send it again."]
+    assert type_text(robot, "SB|F(0.1,50); S\n", 100) == ["// Still saving. Send it again."]
     assert actions_of(robot) == ["MOTORS 60 60"]
     robot.wait(3000)
-    stored(robot, session)
-    image = fetched(robot, session)
+    wait_until_saved(robot, session)
+    image = fetch_image(robot, session)
     assert image.endswith(image_of("SI|F(5, 60)").code)
 
 
@@ -156,9 +163,9 @@ def test_a_line_while_a_program_is_saved_says_so_also_after_a_stop() -> None:
     robot, session = switched_on(write_ms=12.0), computer()
     send(robot, session, "SB|" + "X=RANDOM(1,1000)/7;" * 40, saves=True)
     robot.wait(1900)
-    typed(robot, "S\n", 1200)
-    assert typed(robot, "SI|F(0.1,50)\n", 300) == ["// Still saving. Send it again."]
-    assert typed(robot, "F(0.1,50)\n", 300) == ["// It was stopped. Begin with SI|"]
+    type_text(robot, "S\n", 1200)
+    assert type_text(robot, "SI|F(0.1,50)\n", 300) == ["// Still saving. Send it again."]
+    assert type_text(robot, "F(0.1,50)\n", 300) == ["// It was stopped. Begin with SI|"]
 
 
 @pytest.mark.parametrize(
@@ -174,7 +181,7 @@ def test_s_alone_stops_what_tsc_live_runs(line: str, stops: bool) -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.live(image_of("SI|F(5, 60)").code)) == OK
     assert actions_of(robot) == ["MOTORS 60 60"]
-    typed(robot, line, 0)
+    type_text(robot, line, 0)
     for _ in range(600):  # a heartbeat after a line is text, and repeated
         robot.talk(session, 1)
     assert actions_of(robot)[:2] == ["MOTORS 60 60"] + ["MOTORS 0 0"] * stops
@@ -184,15 +191,15 @@ def test_s_alone_stops_what_tsc_live_runs(line: str, stops: bool) -> None:
 def test_texts_and_frames_in_any_order() -> None:
     """Whatever was typed, the stored program stays what it is."""
     robot, session = holding()
-    before = fetched(robot, session)
+    bytes_before = fetch_image(robot, session)
     rng = random.Random(7)
     for _ in range(40):
         robot.wait(3500)
-        typed(robot, rng.choice(["SI|F(0.1,50)\n", "SB|R(0.1,20)\n", "LOOP(2)\n", "S\n"]), 50)
+        type_text(robot, rng.choice(["SI|F(0.1,50)\n", "SB|R(0.1,20)\n", "LOOP(2)\n", "S\n"]), 50)
         if rng.random() < 0.5:
             robot.push()
     robot.step(flags=2)
     robot.wait(1500)
-    typed(robot, "SI|W(0)\n")
+    type_text(robot, "SI|W(0)\n")
     robot.wait(3500)
-    assert fetched(robot, session) == before
+    assert fetch_image(robot, session) == bytes_before

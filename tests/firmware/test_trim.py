@@ -10,7 +10,7 @@ from tests.machines.host_firmware import HostFirmware
 from tiniscript import robots
 from tiniscript.link.messages import EXCHANGED, LEFT_REVERSED, RIGHT_REVERSED
 
-MOST = 40  # percent, of the balance and of what a wheel needs to move
+MOST = 40  # percent of the balance, and of the least power for moving
 POWERS = range(-128, 128)
 
 

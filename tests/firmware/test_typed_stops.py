@@ -18,11 +18,11 @@ from pathlib import Path
 import pytest
 
 from tests.machines.host import once
-from tests.machines.uno import needed
+from tests.machines.uno import skip_unless_available
 from tests.machines.wired import Wired
-from tests.support.campaign import wanted
+from tests.support.campaign import make_options
 from tests.support.images import image_of
-from tests.support.platformio import firmware, shared
+from tests.support.platformio import firmware, shared_folder
 from tests.support.robot_on_uno import FORWARD, KIT, NAMES, OBSTACLE_LINES, OFF, states
 from tests.support.stop_spellings import (
     ALL,
@@ -41,18 +41,18 @@ from tools.uno import CYCLES_PER_MS, Uno
 
 BAUDS = (9600, 115_200)
 TURN_MS = 2.1  # the clock counts one or two milliseconds each 1.024 ms
-BUSY_TURN_MS = 5.0  # and the main loop comes late that has lines to read and answers to write
+BUSY_TURN_MS = 5.0  # lateness of a main loop that reads lines and writes answers
 
-FROM_ONE_STATE = 25  # random stops; what follows happens to a robot that has seen the last of them
+FROM_ONE_STATE = 25  # random stops, after which the last one applies
 
 
 @pytest.fixture(scope="session", params=BAUDS)
 def sketch(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, int]:
-    needed()
+    skip_unless_available()
     baud: int = request.param
-    folder, run = tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory)
+    folder, run = tmp_path_factory.mktemp("sketch"), shared_folder(tmp_path_factory)
     if baud == BAUDS[0]:
         return firmware("uno", folder, run), baud
     return once(run / f"uno_{baud}.elf", lambda path: shutil.copy(build(baud, folder), path)), baud
@@ -83,7 +83,7 @@ def answer_lines(uno: Uno, since: int) -> str:
 
 
 def drive(uno: Uno) -> None:
-    """Have the robot drive by a line, and be silent for a second."""
+    """Make the robot drive by a line, followed by a second of silence."""
     uno.run_ms(SILENCE_MS + 50)
     uno.send(RUNS)
     uno.run_ms(SILENCE_MS + 100)
@@ -106,7 +106,7 @@ def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: boo
         for k in reversed(range(len(uno.received_bytes)))
         if uno.received_bytes[k].value not in b"\r\n\0"
     )
-    line_end = uno.received_bytes[end + 1]  # of CR LF the first one
+    line_end = uno.received_bytes[end + 1]  # the CR of a CR LF
     off = max(uno.pins[name].cycle for name in ("left", "right"))
     what = f"{prefix!r} {spelling!r}"
     assert states(uno) == OFF, what
@@ -117,7 +117,7 @@ def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: boo
         is_held = is_held and behind_ms > HELD_MS - TURN_MS
     assert late_ms < MOST_MS or is_held, f"{what}: {late_ms} ms"
     changes = len(uno.pins.history("left"))
-    uno.send(b"F(1,80)\n")  # not before a second of silence
+    uno.send(b"F(1,80)\n")  # before a second of silence
     uno.run_ms(150)
     assert states(uno) == OFF and len(uno.pins.history("left")) == changes, what
     return late_ms
@@ -255,13 +255,13 @@ def test_a_remote_that_repeats_is_heard_again_after_a_second(
 ) -> None:
     uno, _ = driving_at
     with uno.try_out():
-        before = len(uno.sent_bytes)
+        count_before = len(uno.sent_bytes)
         uno.send(stop)
         uno.run_ms(50)
         assert states(uno) == OFF
         again_ms = repeat_until_it_drives(uno, 3000)
         assert SILENCE_MS - 100 < again_ms <= SILENCE_MS + 2 * EACH_MS
-        assert answer_lines(uno, before).count(PAUSE) == 1, "what is dropped is told once"
+        assert answer_lines(uno, count_before).count(PAUSE) == 1, "what is dropped is told once"
 
 
 def test_after_the_stop_sequence_a_second_of_silence_is_needed(
@@ -269,12 +269,12 @@ def test_after_the_stop_sequence_a_second_of_silence_is_needed(
 ) -> None:
     uno, _ = driving_at
     with uno.try_out():
-        before = len(uno.sent_bytes)
+        count_before = len(uno.sent_bytes)
         uno.send(bytes(8))
         uno.run_ms(50)
         assert states(uno) == OFF
         assert repeat_until_it_drives(uno, 3000) == 3000
-        assert answer_lines(uno, before).count(PAUSE) == 1
+        assert answer_lines(uno, count_before).count(PAUSE) == 1
         uno.run_ms(SILENCE_MS)
         assert repeat_until_it_drives(uno, 3000) == EACH_MS
 
@@ -282,7 +282,7 @@ def test_after_the_stop_sequence_a_second_of_silence_is_needed(
 def test_in_an_open_block_a_spelling_belongs_to_the_program(
     driving_at: tuple[Uno, int],
 ) -> None:
-    """What runs ends; the robot is stopped for good only if the line is wrong there."""
+    """The running program ends; the robot is latched only if the line is wrong there."""
     uno, _ = driving_at
     for line, is_stopped in ((b"S", False), (b"STOP;STOP", False), (b"STOP NOW", True)):
         with uno.try_out():
@@ -290,11 +290,11 @@ def test_in_an_open_block_a_spelling_belongs_to_the_program(
                 uno.send(data + b"\r\n")
                 uno.run_ms(100)
             assert states(uno) == OFF, line
-            before = len(uno.sent_bytes)
+            count_before = len(uno.sent_bytes)
             uno.send(b"F(0.1,80)\r\nEND_LOOP\r\n")
             uno.run_ms(200)
-            assert ("// OK" in answer_lines(uno, before)) is not is_stopped, answer_lines(
-                uno, before
+            assert ("// OK" in answer_lines(uno, count_before)) is not is_stopped, answer_lines(
+                uno, count_before
             )
 
 
@@ -303,10 +303,12 @@ def test_in_an_open_block_a_spelling_belongs_to_the_program(
 
 def check_latched(uno: Uno) -> None:
     uno.run_ms(SILENCE_MS + 100)
-    before = len(uno.sent_bytes)
+    count_before = len(uno.sent_bytes)
     uno.send(b"F(1,80)\n")
     uno.run_ms(200)
-    assert states(uno) == OFF and "// It was stopped." in answer_lines(uno, before), "it is latched"
+    assert states(uno) == OFF and "// It was stopped." in answer_lines(uno, count_before), (
+        "it is latched"
+    )
 
 
 def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> None:
@@ -318,10 +320,10 @@ def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> No
         uno.send(line.encode() + b"\r\n")
         uno.run_ms(60)
     assert states(uno) == OFF
-    before = len(uno.sent_bytes)
+    count_before = len(uno.sent_bytes)
     uno.send(OBSTACLE_LINES[-1].encode() + b"\r\n")
     uno.run_ms(60)
-    assert states(uno) == FORWARD and answer_lines(uno, before) == "// OK\r\n"
+    assert states(uno) == FORWARD and answer_lines(uno, count_before) == "// OK\r\n"
 
 
 def test_a_mistake_that_waits_to_be_said_is_forgotten_by_the_next_line(
@@ -330,10 +332,10 @@ def test_a_mistake_that_waits_to_be_said_is_forgotten_by_the_next_line(
     """A stop after them is looked for before the wire is free; here it belongs to a block."""
     uno, _ = uno_at
     uno.run_ms(SILENCE_MS + 50)
-    before = len(uno.sent_bytes)
+    count_before = len(uno.sent_bytes)
     uno.send(b"FOO\nFOO\nIF(TRUE)\nS\n")
     uno.run_ms(SILENCE_MS + 500)
-    first, *others = answer_lines(uno, before).splitlines()
+    first, *others = answer_lines(uno, count_before).splitlines()
     assert first == "// 1: Unknown word"
     assert set(others) <= {first, "// Waiting for ENDIF"} and others[-1] != first
 
@@ -343,20 +345,22 @@ def test_a_mistake_that_waits_to_be_said_is_forgotten_by_the_next_line(
 def test_code_that_holds_a_typed_stop_runs(uno_at: tuple[Uno, int], way: str) -> None:
     """A frame that arrives whole is not stopped by a line of S among its bytes."""
     uno, baud = uno_at
-    before = "SHOW(1); " * 20 if way == "long upload" else ""
-    image = image_of(f"SI|{before}M(10, 10); W(FOREVER) UNTIL(TIME > 3)")
-    wired = Wired(uno, Session(1, baud, KIT.fingerprint))
-    request = wired.session.live(image.code) if way == "live" else wired.session.upload(image)
-    assert wired.until(request) == OK
+    text_before = "SHOW(1); " * 20 if way == "long upload" else ""
+    image = image_of(f"SI|{text_before}M(10, 10); W(FOREVER) UNTIL(TIME > 3)")
+    wired_uno = Wired(uno, Session(1, baud, KIT.fingerprint))
+    request = (
+        wired_uno.session.live(image.code) if way == "live" else wired_uno.session.upload(image)
+    )
+    assert wired_uno.until(request) == OK
     assert b"\nS\n" in bytes(byte.value for byte in uno.received_bytes)
-    begun_ms = wired.now_ms
-    wired.run(SILENCE_MS + HELD_MS)
+    begun_ms = wired_uno.now_ms
+    wired_uno.run(SILENCE_MS + HELD_MS)
     assert states(uno) == FORWARD
     while states(uno) == FORWARD:
-        wired.run(10)
-    assert 2900 < wired.now_ms - begun_ms < 3200
-    wired.run(50)
-    assert wired.session.events()[-1].name == "DONE"
+        wired_uno.run(10)
+    assert 2900 < wired_uno.now_ms - begun_ms < 3200
+    wired_uno.run(50)
+    assert wired_uno.session.events()[-1].name == "DONE"
 
 
 def random_prefix(draw: random.Random) -> bytes:
@@ -388,7 +392,7 @@ def stop_after_random_bytes(sketch: Path, baud: int, draw: random.Random, count:
 
 BAUD = 115_200
 LOST = "// Bytes were lost. Begin again."
-MUTE = "// Too many. Wait 5 s."  # of mistakes
+MUTE = "// Too many. Wait 5 s."  # answer after too many mistakes
 LINES = (
     "F(0.1,80)", "SI|F(0.1,80)", "SB|F(0.1,80)", "SHOW(1)", "X=1", "HELP", "FOO", "(1)", "1=2",
     "E(", "PING|CHECK_CONNECTION", "ñandú", "F(0.1,80);" * 6,
@@ -400,7 +404,7 @@ QUIET_MS = 700  # longer than a program of these lines
 @pytest.fixture(scope="module")
 def quick_uno(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Uno]:
     """A robot that has heard nothing for a second: tests go aside from there."""
-    needed()
+    skip_unless_available()
     with switched_on(build(BAUD, tmp_path_factory.mktemp("sketch")), BAUD) as uno:
         uno.run_ms(SILENCE_MS)
         yield uno
@@ -431,10 +435,10 @@ def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
                 is_told = LOST in many or MUTE in many
                 assert is_told or answers == len(one) * count, many
                 assert is_told or count < TWENTY, "as twenty lines are, some are lost"
-                before = len(uno.sent_bytes)
+                count_before = len(uno.sent_bytes)
                 uno.send(b"SI|SHOW(7)\n")
                 uno.run_ms(100)
-                assert answer_lines(uno, before).endswith("// 7\r\n// DONE\r\n")
+                assert answer_lines(uno, count_before).endswith("// 7\r\n// DONE\r\n")
 
 
 def test_a_line_of_227_bytes_is_pasted_whole(quick_uno: Uno) -> None:
@@ -443,12 +447,12 @@ def test_a_line_of_227_bytes_is_pasted_whole(quick_uno: Uno) -> None:
 
 
 if __name__ == "__main__":
-    given = wanted(10_000, 1)
-    drawn = random.Random(given.seed)
+    options = make_options(10_000, 1)
+    drawn_random = random.Random(options.seed)
     with tempfile.TemporaryDirectory() as folder:
         for rate in BAUDS:
             simulator = build(rate, Path(folder))
-            for first in range(0, given.count // 2, 500):
-                some = min(500, given.count // 2 - first)
-                slowest = stop_after_random_bytes(simulator, rate, drawn, some)
+            for first in range(0, options.count // 2, 500):
+                some = min(500, options.count // 2 - first)
+                slowest = stop_after_random_bytes(simulator, rate, drawn_random, some)
                 print(f"{some} stops at {rate} baud, the slowest {slowest:.1f} ms", flush=True)

@@ -23,7 +23,7 @@ from tests.support.kept_programs import (
     eeprom_with,
     name_after_power_off,
     program_after_power_off,
-    saved,
+    read_saved_state,
 )
 from tests.support.robot_on_host import (
     KIT,
@@ -31,11 +31,11 @@ from tests.support.robot_on_host import (
     actions_of,
     broken_upload,
     computer,
-    held,
+    fetch_image,
     outcome,
     send,
-    stored,
     switched_on,
+    wait_until_saved,
 )
 from tiniscript.bytecode.image import with_checksum
 from tiniscript.bytecode.opcodes import ISA_MINOR
@@ -53,7 +53,7 @@ def with_two(first: str = A, second: str = B) -> tuple[HostFirmware, Session]:
     robot, session = switched_on(), computer()
     for text in (first, second):
         send(robot, session, text, runs=False)
-        stored(robot, session)
+        wait_until_saved(robot, session)
     return robot, session
 
 
@@ -70,7 +70,8 @@ def with_byte(text: str, at: int, value: int) -> bytes:
     return bytes(image)
 
 
-OF_ANOTHER_KIT = with_checksum(with_byte("SI|SHOW(DISTANCE)", 6, 0x11))  # a byte of what it needs
+# One of the bytes that it needs.
+OF_ANOTHER_KIT = with_checksum(with_byte("SI|SHOW(DISTANCE)", 6, 0x11))
 THAT_NO_VERIFIER_TAKES = with_checksum(with_byte(A, -1, 0xFE))
 CANNOT_RUN = {
     "version": LATER_VERSION,
@@ -91,17 +92,17 @@ def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> 
     robot.wait(400)
     for _ in range(2):
         assert undo(robot, session) == NO_PREVIOUS
-        assert saved(robot, session) == "STORED"
-        assert held(robot, session) == good
+        assert read_saved_state(robot, session) == "STORED"
+        assert fetch_image(robot, session) == good
     robot.push()
     robot.talk(session, 400)
     assert "MOTORS 50 50" in actions_of(robot)
     assert program_after_power_off(robot) == good
-    # the next program goes beside the one that it can run
+    # The next program is stored beside the one that can run.
     send(robot, session, C)
-    stored(robot, session)
+    wait_until_saved(robot, session)
     assert undo(robot, session) == OK
-    assert held(robot, session) == good
+    assert fetch_image(robot, session) == good
 
 
 @pytest.mark.parametrize("image", [OF_ANOTHER_KIT, THAT_NO_VERIFIER_TAKES], ids=["kit", "verifier"])
@@ -114,13 +115,13 @@ def test_a_robot_begins_with_the_newest_program_that_it_can_run(
     before = [(SECOND, 6, good)] if has_good else []
     robot, session = HostFirmware(KIT, eeprom_with(*before, (FIRST, 7, image))), computer()
     robot.wait(400)
-    assert saved(robot, session) == ("STORED" if has_good else "NOTHING")
+    assert read_saved_state(robot, session) == ("STORED" if has_good else "NOTHING")
     assert robot.is_lit == has_good
     robot.push()
     robot.talk(session, 400)
     assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"] * has_good
     send(robot, session, C, runs=False)
-    stored(robot, session)
+    wait_until_saved(robot, session)
     assert program_after_power_off(robot) == bytes_of(C)
 
 
@@ -133,20 +134,20 @@ def test_a_program_that_is_not_saved_makes_way_for_the_saved_one() -> None:
     robot.talk(session, 500)
     memory = robot.memory()
     assert robot.complete(session, session.undo()).saved == SAVED_STORED
-    assert held(robot, session) == bytes_of(B)
+    assert fetch_image(robot, session) == bytes_of(B)
     robot.talk(session, 500)
     assert robot.memory() == memory, "nothing is written"
     assert undo(robot, session) == OK
-    assert held(robot, session) == bytes_of(A)
+    assert fetch_image(robot, session) == bytes_of(A)
 
 
 def test_a_program_that_is_not_saved_stays_where_nothing_is() -> None:
     robot, session = switched_on(), computer()
     assert undo(robot, session) == NO_PREVIOUS
-    assert saved(robot, session) == "NOTHING"
+    assert read_saved_state(robot, session) == "NOTHING"
     send(robot, session, A, saves=False)
     assert undo(robot, session) == NO_PREVIOUS
-    assert held(robot, session) == bytes_of(A)
+    assert fetch_image(robot, session) == bytes_of(A)
     robot.push()
     robot.talk(session, 400)
     assert "MOTORS 50 50" in actions_of(robot)
@@ -180,18 +181,18 @@ def test_what_a_low_supply_has_kept_waiting_is_done_as_it_was_asked_for_last(
             session = computer(90 + count)
         else:
             send(robot, session, text, saves=step == SAVED_ONE)
-            robot.talk(session, 800)  # so that it waits for the supply
+            robot.talk(session, 800)  # makes it wait for the supply
         if step != NAMED:
             waits, is_tried = text if step == SAVED_ONE else "", step == TRIED
     robot.supply(is_low=False)
     robot.talk(session, 5000)
-    assert saved(robot, session) == ("MEMORY" if is_tried else "STORED")
+    assert read_saved_state(robot, session) == ("MEMORY" if is_tried else "STORED")
     assert program_after_power_off(robot) == bytes_of(waits or B)
     assert name_after_power_off(robot) == name
-    if waits or SAVED_ONE not in steps:  # else what was given up has taken the place of A
-        restarted, session = switched_on(robot.memory()), computer(80)
-        assert undo(restarted, session) == OK
-        assert held(restarted, session) == bytes_of(B if waits else A)
+    if waits or SAVED_ONE not in steps:  # otherwise the abandoned program has replaced A
+        restarted_robot, session = switched_on(robot.memory()), computer(80)
+        assert undo(restarted_robot, session) == OK
+        assert fetch_image(restarted_robot, session) == bytes_of(B if waits else A)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
@@ -202,29 +203,29 @@ def test_with_a_low_supply_nothing_is_touched_and_nothing_is_lost(count: int) ->
     for text in (A, B, A)[:count]:
         assert undo(robot, session) == OK
         robot.talk(session, 1500)
-        assert held(robot, session) == bytes_of(text)
+        assert fetch_image(robot, session) == bytes_of(text)
         assert robot.memory() == memory
         assert program_after_power_off(robot) == bytes_of(B)
-    assert saved(robot, session) == ("STORED" if text == B else "LOW_SUPPLY")
+    assert read_saved_state(robot, session) == ("STORED" if text == B else "LOW_SUPPLY")
     robot.supply(is_low=False)
     robot.talk(session, 1500)
-    assert saved(robot, session) == "STORED"
+    assert read_saved_state(robot, session) == "STORED"
     for now in (text, B if text == A else A):
-        assert held(robot, session) == bytes_of(now)
+        assert fetch_image(robot, session) == bytes_of(now)
         assert program_after_power_off(robot) == bytes_of(now)
         if now == text:
             assert undo(robot, session) == OK
-            stored(robot, session)
+            wait_until_saved(robot, session)
 
 
 def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
-    """It waits for the motors before its first byte."""
+    """The restore waits until the motors stand before its first byte."""
     robot, session = with_two(DRIVES, A)
     memory = robot.memory()
     assert undo(robot, session) == OK
     assert robot.until(session, session.start()) == OK
     robot.talk(session, 3000)
-    assert saved(robot, session) == "SAVING"
+    assert read_saved_state(robot, session) == "SAVING"
     changed = sum(a != b for a, b in zip(memory, robot.memory(), strict=True))
     assert changed <= 3, "at most what it wrote before the start"
     session.stop(robot.now_ms)
@@ -241,9 +242,9 @@ def test_pulled_out_at_any_moment_it_has_one_of_the_two(cut_ms: int) -> None:
     memory = robot.memory()
     programs = []
     for nonce in (5, 6):
-        restarted, other = switched_on(memory), computer(nonce)
-        programs.append(held(restarted, other))
-        memory = restarted.memory()
+        restarted_robot, other = switched_on(memory), computer(nonce)
+        programs.append(fetch_image(restarted_robot, other))
+        memory = restarted_robot.memory()
     assert programs[0] == programs[1]
     assert programs[0] in (bytes_of(A), bytes_of(B))
     is_answered = request.outcome is not None
@@ -262,7 +263,7 @@ def test_a_request_that_comes_twice_is_done_once() -> None:
     programs = {answer.payload[:5] for answer in answers if answer}
     assert None not in answers
     assert programs == {bytes([OK]) + image_of(A).checksum.to_bytes(4, "little")}
-    assert held(robot, computer(9)) == bytes_of(A)
+    assert fetch_image(robot, computer(9)) == bytes_of(A)
 
 
 def test_any_order_of_programs_undos_and_power_offs() -> None:
@@ -270,24 +271,24 @@ def test_any_order_of_programs_undos_and_power_offs() -> None:
     draw = random.Random(11)
     texts = [f"SB|F(0.1, {power})" for power in range(40, 46)] + [B]
     robot, session = switched_on(), computer()
-    now, before = "", ""
+    now, text_before = "", ""
     for step in range(120):
         what = draw.choice(("send", "undo", "undo", "off"))
         if what == "send":
             text = draw.choice(texts)
             send(robot, session, text)
-            stored(robot, session)
+            wait_until_saved(robot, session)
             if text != now:
-                now, before = text, now
+                now, text_before = text, now
         elif what == "undo":
-            assert undo(robot, session) == (OK if before else NO_PREVIOUS), step
-            if before:
-                stored(robot, session, 500)  # eight bytes, and not the program
-                now, before = before, now
+            assert undo(robot, session) == (OK if text_before else NO_PREVIOUS), step
+            if text_before:
+                wait_until_saved(robot, session, 500)  # eight bytes, and not the program
+                now, text_before = text_before, now
         else:
             robot, session = switched_on(robot.memory()), computer(step)
         if now:
-            assert held(robot, session) == bytes_of(now), step
+            assert fetch_image(robot, session) == bytes_of(now), step
 
 
 # -- in every state of the firmware ---------------------------------------------------------------
@@ -318,7 +319,7 @@ def after_power_off(table: Table) -> bytes:
     for nonce in (31, 32):
         robot = switched_on(memory, seed=nonce)
         asks = Session(nonce, 9600, KIT.fingerprint, keys=table.keys)
-        programs.append(held(robot, asks))
+        programs.append(fetch_image(robot, asks))
         memory = robot.memory()
     assert programs[0] == programs[1]
     return programs[0]
@@ -349,16 +350,16 @@ def test_undo_in_every_state(state: str, has_draft: bool) -> None:
     status = undo(robot, session)
     assert status == (OK if previous else NO_PREVIOUS)
     now = program_of(previous or EARLIER)
-    assert held(robot, session) == now
+    assert fetch_image(robot, session) == now
     assert robot.is_latched, "what runs ends"
     robot.talk(session, 1500)
     moves = {line for line in actions_of(robot) if line.startswith("MOTORS")}
     assert moves == ({"MOTORS 0 0"} if was_running else set()), "nothing starts"
-    stored(robot, session)
+    wait_until_saved(robot, session)
     assert after_power_off(table) == now
     assert undo(robot, session) == (OK if previous else NO_PREVIOUS)
-    stored(robot, session)
-    other = held(robot, session)
+    wait_until_saved(robot, session)
+    other = fetch_image(robot, session)
     assert after_power_off(table) == other
     assert (other != now) == bool(previous), "a second one brings another"
 
@@ -373,8 +374,8 @@ def test_two_at_once_are_two(state: str) -> None:
     assert outcomes == [OK if previous else NO_PREVIOUS] * 2
     programs = [outcome(pending_request).values.program for pending_request in requests if previous]
     assert len(set(programs)) == len(programs)
-    stored(robot, session)
-    assert after_power_off(table) == held(robot, session)
+    wait_until_saved(robot, session)
+    assert after_power_off(table) == fetch_image(robot, session)
 
 
 @pytest.mark.sampled("cut_ms", keep=1)
@@ -394,8 +395,8 @@ def test_a_plug_that_is_pulled_leaves_a_program_that_was_there(state: str, cut_m
 
 def test_a_stranger_brings_nothing_back() -> None:
     table, _ = robot_in_state("has an owner")
-    before = after_power_off(table)
+    bytes_before = after_power_off(table)
     stranger = computer(9)
     assert undo(table.robot, stranger) == NOT_OWNER
     table.robot.wait(2000)
-    assert after_power_off(table) == before
+    assert after_power_off(table) == bytes_before

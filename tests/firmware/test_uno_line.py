@@ -16,98 +16,98 @@ from tests.support.robot_on_uno import (
     NAMES,
     OFF,
     computer,
-    saved,
+    read_saved_state,
     send,
     states,
     switched_on,
 )
-from tests.support.uno_watchdog import built
+from tests.support.uno_watchdog import build_hanging_firmware
 from tiniscript.link.frames import Frame, decode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
-PHASES = 160  # the quickest turn of the main loop takes some 110 cycles
+PHASES = 160  # the fastest turn of the main loop takes some 110 cycles
 BUSY = "{ cli(); __builtin_avr_delay_cycles(170000); sei(); }"  # over 10 ms
 
 
-def counted(wired: Wired) -> tuple[int, ...]:
+def read_counters(wired_uno: Wired) -> tuple[int, ...]:
     """Return the damaged and dropped messages, framing errors and overruns that the robot tells."""
-    values = wired.complete(wired.session.status())
+    values = wired_uno.complete(wired_uno.session.status())
     return values.damaged, values.dropped, values.framing, values.overrun
 
 
 def test_a_byte_without_its_stop_bit_damages_a_message(uno: Uno) -> None:
-    wired = computer(uno)
-    assert counted(wired) == (0, 0, 0, 0)
-    ping = wired.session.ping()
-    frame = wired.session.poll(wired.now_ms)
+    wired_uno = computer(uno)
+    assert read_counters(wired_uno) == (0, 0, 0, 0)
+    ping = wired_uno.session.ping()
+    frame = wired_uno.session.poll(wired_uno.now_ms)
     assert len(frame) > 4
     uno.send(frame[:3])
     uno.send(frame[3:4], stop_bits_fail=True)
     uno.send(frame[4:])
-    wired.run(30)
-    assert wired.until(ping) == OK  # sent again
-    damaged, dropped, framing, overrun = counted(wired)
-    assert damaged >= 1
-    assert (dropped, framing, overrun) == (0, 1, 0)
+    wired_uno.run(30)
+    assert wired_uno.until(ping) == OK  # sent again
+    damaged_count, dropped_count, framing, overrun = read_counters(wired_uno)
+    assert damaged_count >= 1
+    assert (dropped_count, framing, overrun) == (0, 1, 0)
 
 
 def test_bytes_that_nobody_fetches_damage_a_message(tmp_path: Path) -> None:
     """Interrupts are off for 10 ms: nothing in the firmware does that."""
-    elf = built(tmp_path, BUSY)
+    elf = build_hanging_firmware(tmp_path, BUSY)
     with Uno(elf, names=NAMES, baud=BAUD) as uno:
         uno.run_ms(300)
-        wired = computer(uno)
-        assert wired.until(wired.session.hello()) == OK
-        assert counted(wired) == (0, 0, 0, 0)
-        ping = wired.session.ping()
+        wired_uno = computer(uno)
+        assert wired_uno.until(wired_uno.session.hello()) == OK
+        assert read_counters(wired_uno) == (0, 0, 0, 0)
+        ping = wired_uno.session.ping()
         uno.press("button", at=uno.cycle + 2 * CYCLES_PER_MS)
-        assert wired.until(ping) == OK  # sent again
+        assert wired_uno.until(ping) == OK  # sent again
         assert len(uno.lost_bytes) >= 3
-        assert counted(wired) == (1, 0, 0, 1)
+        assert read_counters(wired_uno) == (1, 0, 0, 1)
 
 
 def driving(uno: Uno) -> Wired:
-    """Let a program run that needs no computer."""
-    wired = computer(uno)
-    send(wired, AWAY, is_detached=True)
+    """Run a program that needs no computer."""
+    wired_uno = computer(uno)
+    send(wired_uno, AWAY, is_detached=True)
     uno.run_ms(1500)
     assert states(uno) == FORWARD
-    return wired
+    return wired_uno
 
 
 def frames_since(uno: Uno, since: int) -> list[Frame]:
     """Return the frames that the robot has sent since a cycle."""
-    sent = bytes(byte.value for byte in uno.sent_bytes if byte.cycle > since)
-    return [frame for part in sent.split(b"\0") if (frame := decode_frame(part)) is not None]
+    sent_bytes = bytes(byte.value for byte in uno.sent_bytes if byte.cycle > since)
+    return [frame for part in sent_bytes.split(b"\0") if (frame := decode_frame(part)) is not None]
 
 
 def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(uno: Uno) -> None:
-    wired = driving(uno)
-    began = uno.cycle
+    wired_uno = driving(uno)
+    start_cycle = uno.cycle
     uno.hold(False, 2 * BAUD)
     uno.run_ms(20)
     assert states(uno) == OFF
     off = max(uno.pins[name].cycle for name in MOTORS)
-    assert off - began < 10 * CYCLES_PER_MS
-    # the chip has told it once, and so does the robot
+    assert off - start_cycle < 10 * CYCLES_PER_MS
+    # The chip has reported it once, and so does the robot.
     uno.run_ms(980)
-    assert [byte.cycle > began for byte in uno.received_bytes].count(True) == 1
-    assert [frame.number for frame in frames_since(uno, began)] == [BY_NAME["STOPPED"].number]
+    assert [byte.cycle > start_cycle for byte in uno.received_bytes].count(True) == 1
+    assert [frame.number for frame in frames_since(uno, start_cycle)] == [BY_NAME["STOPPED"].number]
     # a cable that was pulled out stays as it is, and the robot has its button
     uno.press("button", ms=100)
     uno.run_ms(300)
     assert states(uno) == FORWARD
     uno.run_ms(1000)
-    wired.run(100)
+    wired_uno.run(100)
     uno.press("button", ms=100)
     uno.run_ms(100)
     assert states(uno) == OFF
-    wired.run(100)
-    send(wired, AWAY)
+    wired_uno.run(100)
+    send(wired_uno, AWAY)
     assert states(uno) == FORWARD
-    assert counted(wired)[2] == 1
+    assert read_counters(wired_uno)[2] == 1
     uno.send(bytes(4))
     uno.run_ms(10)
     assert states(uno) == OFF
@@ -119,7 +119,7 @@ def test_a_short_disturbance_stops_no_robot(uno: Uno) -> None:
     uno.hold(False, 25)  # longer than two bytes
     uno.run_ms(50)
     assert states(uno) == FORWARD
-    uno.send(b"\x55")  # what came before does not count any more
+    uno.send(b"\x55")  # earlier bytes no longer matter
     for _ in range(3):
         uno.send(b"\0", stop_bits_fail=True)
     uno.run_ms(50)
@@ -144,10 +144,10 @@ def test_a_line_that_nobody_has_ever_pulled_up_keeps_no_button_from_starting(
 ) -> None:
     """A Nano on batteries: its USB chip has no power, and holds the line low from the beginning."""
     with switched_on(sketch, memory) as first:
-        wired = computer(first)
-        send(wired, "SB|F(60, 80)")
-        while saved(wired) != 3:
-            wired.run(50)
+        wired_uno = computer(first)
+        send(wired_uno, "SB|F(60, 80)")
+        while read_saved_state(wired_uno) != 3:
+            wired_uno.run(50)
     with Uno(sketch, names=NAMES, eeprom=memory, baud=BAUD) as uno:
         uno.hold(False, 60 * BAUD, at=0)
         uno.run_ms(500)
@@ -157,11 +157,12 @@ def test_a_line_that_nobody_has_ever_pulled_up_keeps_no_button_from_starting(
 
 
 def test_a_message_is_heard_wherever_the_main_loop_is(uno: Uno) -> None:
-    wired = computer(uno)
-    assert wired.until(wired.session.hello()) == OK
-    wired.run(100)
+    wired_uno = computer(uno)
+    assert wired_uno.until(wired_uno.session.hello()) == OK
+    wired_uno.run(100)
     for turn in range(PHASES):
         uno.run_to(uno.cycle + turn % 2 + 1)
-        other = wired.session.hello if turn % 2 else wired.session.ping  # of another length
-        assert wired.until(other()) == OK
-    assert counted(wired) == (0, 0, 0, 0)
+        # A request of another length.
+        other = wired_uno.session.hello if turn % 2 else wired_uno.session.ping
+        assert wired_uno.until(other()) == OK
+    assert read_counters(wired_uno) == (0, 0, 0, 0)

@@ -17,7 +17,7 @@ from tests.support.robot_on_uno import (
     MOTORS,
     OFF,
     computer,
-    saved,
+    read_saved_state,
     send,
     states,
     switched_on,
@@ -38,36 +38,36 @@ SHOWS = """SI|ONE = 1; TWO = 2; THREE = 3; LOOP(8); SHOW(THREE); END_LOOP
 TASK; LOOP(8); SHOW(ONE); END_LOOP; END_TASK
 TASK; LOOP(8); W(0.001); SHOW(TWO); END_LOOP; END_TASK"""
 CABLE = 4  # a cause in docs/develop/link.md
-LIVE_CYCLES = 2160  # from the last byte of a frame to the pins: 135 us in three of four
-HASH_MS = 12  # from a tag to its answer, beside the bytes: a stop is in the interrupt
+LIVE_CYCLES = 2160  # cycles from the last byte of a frame to the pins: 135 us in three of four
+HASH_MS = 12  # time from a tag to its answer, without the bytes; stops use the interrupt
 LATE_CYCLES = 2640  # 165 us: the work for a millisecond has just begun
 
 
 def test_a_program_drives(uno: Uno) -> None:
-    wired = computer(uno)
-    begun_ms = wired.now_ms
-    send(wired, "SI|F(1, 80)")
+    wired_uno = computer(uno)
+    begun_ms = wired_uno.now_ms
+    send(wired_uno, "SI|F(1, 80)")
     assert states(uno) == FORWARD
-    assert wired.now_ms - begun_ms < 500
+    assert wired_uno.now_ms - begun_ms < 500
     assert uno.pins["left"].duty == pytest.approx(0.8, abs=0.02)
-    wired.run(1100)
+    wired_uno.run(1100)
     assert states(uno) == OFF
-    assert [event.name for event in wired.session.events()] == ["DONE"]
+    assert [event.name for event in wired_uno.session.events()] == ["DONE"]
     assert not uno.lost_bytes
 
 
 def test_an_undo_writes_eight_bytes(uno: Uno) -> None:
     """Five of them are erased first."""
-    wired = computer(uno)
+    wired_uno = computer(uno)
     for text in ("SB|F(0.2, 80); " + "SHOW(1); " * 20, "SB|B(0.2, 60); " + "SHOW(2); " * 30):
-        send(wired, text)
-        wired.run(2500)
-        assert saved(wired) == SAVED_STORED
-    begun = uno.cycle
-    assert wired.until(wired.session.undo()) == OK
-    wired.run(500)
+        send(wired_uno, text)
+        wired_uno.run(2500)
+        assert read_saved_state(wired_uno) == SAVED_STORED
+    start_cycle = uno.cycle
+    assert wired_uno.until(wired_uno.session.undo()) == OK
+    wired_uno.run(500)
     written = [
-        event.cycle for event in uno.events if event.kind == "eeprom" and event.cycle > begun
+        event.cycle for event in uno.events if event.kind == "eeprom" and event.cycle > start_cycle
     ]
     assert len(written) == 13
     assert written[-1] - written[0] < 60 * CYCLES_PER_MS
@@ -79,37 +79,37 @@ def test_an_undo_writes_eight_bytes(uno: Uno) -> None:
 def test_a_measured_robot_keeps_how_fast_it_is(sketch: Path, memory: Path) -> None:
     uno = switched_on(sketch, memory)
     assert drive_ms(uno, "SI|F(20 CM, 60)") == pytest.approx(741, abs=2)
-    wired = computer(uno)  # now: answers to the session of that run are none to this one
+    wired_uno = computer(uno)  # current ones: this session ignores answers to the earlier one
     pace = Pace(16.5, 33.25, 144, 288)  # 24.875 cm in a second at 60 %
-    assert wired.until(wired.session.trim(Trim(pace=pace).data())) == OK
+    assert wired_uno.until(wired_uno.session.trim(Trim(pace=pace).data())) == OK
     assert drive_ms(uno, "SI|F(20 CM, 60)") == pytest.approx(804, abs=2)
     uno.kill()
-    with switched_on(sketch, memory) as restarted:
-        wired = computer(restarted, 2)
-        assert trim_from_reply(wired.complete(wired.session.trim())) == Trim(pace=pace)
-        assert drive_ms(restarted, "SI|F(20 CM, 60)") == pytest.approx(804, abs=2)
-        assert drive_ms(restarted, "SI|R(90 DEG, 60)") == pytest.approx(417, abs=2)
+    with switched_on(sketch, memory) as restarted_robot:
+        wired_uno = computer(restarted_robot, 2)
+        assert trim_from_reply(wired_uno.complete(wired_uno.session.trim())) == Trim(pace=pace)
+        assert drive_ms(restarted_robot, "SI|F(20 CM, 60)") == pytest.approx(804, abs=2)
+        assert drive_ms(restarted_robot, "SI|R(90 DEG, 60)") == pytest.approx(417, abs=2)
 
 
 def drive_ms(uno: Uno, text: str) -> float:
-    """Return for how long a program drives."""
-    wired = computer(uno, uno.cycle)
-    send(wired, text, saves=False)
+    """Return the time that a program drives."""
+    wired_uno = computer(uno, uno.cycle)
+    send(wired_uno, text, saves=False)
     assert states(uno) != OFF
-    begun = uno.pins["left"].cycle
+    start_cycle = uno.pins["left"].cycle
     while states(uno) != OFF:
-        wired.run(1)
-    return (uno.pins["left"].cycle - begun) / CYCLES_PER_MS
+        wired_uno.run(1)
+    return (uno.pins["left"].cycle - start_cycle) / CYCLES_PER_MS
 
 
 def test_a_stop_silences_the_buzzer(uno: Uno) -> None:
-    wired = computer(uno)
+    wired_uno = computer(uno)
     buzzer = f"D{robots.load('tinibot').board.buzzer}"
-    send(wired, "SI|BEEP(10, 440); W(20)")
-    wired.run(300)
-    begun = uno.cycle
-    wired.run(100)
-    assert sum(change.cycle > begun for change in uno.pins.history(buzzer)) > 20, "it sounds"
+    send(wired_uno, "SI|BEEP(10, 440); W(20)")
+    wired_uno.run(300)
+    start_cycle = uno.cycle
+    wired_uno.run(100)
+    assert sum(change.cycle > start_cycle for change in uno.pins.history(buzzer)) > 20, "it sounds"
     uno.send(bytes(8))
     uno.run_ms(50)
     silent = uno.cycle
@@ -119,14 +119,14 @@ def test_a_stop_silences_the_buzzer(uno: Uno) -> None:
 
 def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
     """Wherever the main loop is when its frame ends; and no frame is taken for a damaged one."""
-    wired = computer(uno)
-    assert wired.until(wired.session.hello()) == OK
-    wired.run(1000)  # a new robot saves who it is
+    wired_uno = computer(uno)
+    assert wired_uno.until(wired_uno.session.hello()) == OK
+    wired_uno.run(1000)  # a new robot stores its identity
     code = image_of("SI|F(0.1, 80)").code
     taken = []
     for turn in range(25):
         uno.run_to(uno.cycle + 7 * turn)
-        assert wired.until(wired.session.live(code)) == OK
+        assert wired_uno.until(wired_uno.session.live(code)) == OK
         on = max(
             next(
                 pin_change.cycle
@@ -137,14 +137,14 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
         )
         zero = max(byte.cycle for byte in uno.received_bytes if byte.cycle < on)
         taken.append(on - zero)
-        wired.run(140)
+        wired_uno.run(140)
     assert sorted(taken)[len(taken) * 3 // 4] <= LIVE_CYCLES
     assert max(taken) <= LATE_CYCLES
-    assert wired.complete(wired.session.status()).damaged == 0
+    assert wired_uno.complete(wired_uno.session.status()).damaged == 0
 
 
 def low_for(uno: Uno, ms: float) -> None:
-    """Nobody is connected for so long, as the HC-05's STATE pin says."""
+    """Disconnect for so long, according to the HC-05's STATE pin."""
     at = uno.cycle + CYCLES_PER_MS
     uno.drive("radio", False, at=at)
     uno.drive("radio", True, at=at + round(ms * CYCLES_PER_MS))
@@ -153,51 +153,51 @@ def low_for(uno: Uno, ms: float) -> None:
 def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: Uno) -> None:
     """Not a glitch, neither one alone nor one after the other: high or low for 50 ms counts."""
     uno.drive("radio", True)
-    wired = computer(uno)
-    send(wired, AWAY)
+    wired_uno = computer(uno)
+    send(wired_uno, AWAY)
     low_for(uno, 49)
-    wired.run(150)
+    wired_uno.run(150)
     assert states(uno) == FORWARD
     for pause_ms in (1, 5, 30, 49, 60):
         for _ in range(4):
             low_for(uno, 0.3)
-            wired.run(pause_ms)
+            wired_uno.run(pause_ms)
     assert states(uno) == FORWARD
     uno.drive("radio", False)
-    wired.run(40)
+    wired_uno.run(40)
     uno.drive("radio", True)
-    wired.run(1)
+    wired_uno.run(1)
     uno.drive("radio", False)
-    wired.run(40)
+    wired_uno.run(40)
     assert states(uno) == FORWARD
     uno.drive("radio", True)
-    wired.run(60)
+    wired_uno.run(60)
     left_cycle = uno.cycle + CYCLES_PER_MS
     low_for(uno, 51)
-    wired.run(100)
+    wired_uno.run(100)
     assert states(uno) == OFF
     off = max(uno.pins[name].cycle for name in MOTORS)
     assert 49.5 * CYCLES_PER_MS <= off - left_cycle < 53 * CYCLES_PER_MS
-    wired.run(300)
-    stops = [event.cause for event in wired.session.events() if event.name == "STOPPED"]
+    wired_uno.run(300)
+    stops = [event.cause for event in wired_uno.session.events() if event.name == "STOPPED"]
     assert stops == [CABLE]
     assert states(uno) == OFF
 
 
 def test_a_radio_that_is_not_there_ends_nothing_and_a_second_of_silence_does(uno: Uno) -> None:
-    """Nothing is wired to the pin, or a radio that nobody has been connected to."""
+    """The pin is unconnected, or belongs to a radio without a client."""
     assert uno.pins["radio"].state == "pullup"
-    wired = computer(uno)
-    send(wired, AWAY)
-    wired.run(300)
+    wired_uno = computer(uno)
+    send(wired_uno, AWAY)
+    wired_uno.run(300)
     assert states(uno) == FORWARD
     uno.press("button")
-    wired.run(100)
+    wired_uno.run(100)
     uno.drive("radio", False)
-    wired.run(100)
-    assert wired.until(wired.session.clear()) == OK
-    send(wired, AWAY)
-    wired.run(300)
+    wired_uno.run(100)
+    assert wired_uno.until(wired_uno.session.clear()) == OK
+    send(wired_uno, AWAY)
+    wired_uno.run(300)
     assert states(uno) == FORWARD
     last = max(byte.cycle for byte in uno.received_bytes)
     uno.run_ms(1500)
@@ -208,12 +208,12 @@ def test_a_radio_that_is_not_there_ends_nothing_and_a_second_of_silence_does(uno
 @pytest.mark.parametrize("starts", ["detached", "button"])
 def test_a_run_without_a_dead_man_timer_needs_nobody(uno: Uno, starts: str) -> None:
     uno.drive("radio", True)
-    wired = computer(uno)
+    wired_uno = computer(uno)
     if starts == "detached":
-        send(wired, AWAY, is_detached=True)
+        send(wired_uno, AWAY, is_detached=True)
     else:
-        send(wired, AWAY.replace("SI", "SB"))
-        wired.run(100)
+        send(wired_uno, AWAY.replace("SI", "SB"))
+        wired_uno.run(100)
         uno.press("button")
         uno.run_ms(150)
     assert states(uno) == FORWARD
@@ -229,40 +229,44 @@ def test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset(uno: Uno) -> None
     """A key that is shown takes the main loop some milliseconds, and no more."""
     keys = Keys()
 
-    def greeted(shown: Keys | None, nonce: int) -> str:
-        wired.session = Session(nonce, BAUD, KIT.fingerprint, keys=shown)
-        assert wired.until(wired.session.hello()) == OK
-        assert wired.session.robot
-        return ownership_of(wired.session.robot)
+    def read_ownership(shown_keys: Keys | None, nonce: int) -> str:
+        wired_uno.session = Session(nonce, BAUD, KIT.fingerprint, keys=shown_keys)
+        assert wired_uno.until(wired_uno.session.hello()) == OK
+        assert wired_uno.session.robot
+        return ownership_of(wired_uno.session.robot)
 
-    wired = Wired(uno, Session(1, BAUD, KIT.fingerprint, keys=keys))
-    request = wired.session.claim(KEY_OWNER)
-    wired.run(300)
+    wired_uno = Wired(uno, Session(1, BAUD, KIT.fingerprint, keys=keys))
+    request = wired_uno.session.claim(KEY_OWNER)
+    wired_uno.run(300)
     uno.press("button", 2100)
-    assert wired.until(request) == OK
-    begun_ms = wired.now_ms
-    assert greeted(keys, 2) == OWNED_BY_YOU
+    assert wired_uno.until(request) == OK
+    begun_ms = wired_uno.now_ms
+    assert read_ownership(keys, 2) == OWNED_BY_YOU
     # HELLO and its answer, a challenge, a tag: about 150 bytes on the line
-    assert wired.now_ms - begun_ms <= 150 * 10 * 1000 / BAUD + 2 * HASH_MS + 8
+    assert wired_uno.now_ms - begun_ms <= 150 * 10 * 1000 / BAUD + 2 * HASH_MS + 8
     uno.reset("external")
     uno.run_ms(300)
-    assert greeted(keys, 3) == OWNED_BY_YOU
-    assert greeted(None, 4) == OWNED_BY_OTHER
+    assert read_ownership(keys, 3) == OWNED_BY_YOU
+    assert read_ownership(None, 4) == OWNED_BY_OTHER
 
 
 def test_what_tasks_show_is_of_their_own_shows(uno: Uno) -> None:
     """All of them wait for the wire, which takes 18 ms for each value."""
     compilation = compile_text(SHOWS, KIT)
-    places, wired = source_map.map_of_compiled(compilation), computer(uno)
+    places, wired_uno = source_map.map_of_compiled(compilation), computer(uno)
     finder = ShowFinder({checksum(compilation.image): places})
-    assert wired.until(wired.session.upload(unpack(compilation.image))) == OK
+    assert wired_uno.until(wired_uno.session.upload(unpack(compilation.image))) == OK
     events: list[Event] = []
     while not any(event.name == "DONE" for event in events):
-        wired.run(20)
-        events += wired.session.events()
-    shown = [shown_event for shown_event in events if isinstance(shown_event, ShownEvent)]
+        wired_uno.run(20)
+        events += wired_uno.session.events()
+    shown_events = [shown_event for shown_event in events if isinstance(shown_event, ShownEvent)]
     names = {1: "ONE", 2: "TWO", 3: "THREE"}
-    for event in shown:
+    for event in shown_events:
         show = finder.show_of(event)
         assert show and show.text == names[event.value // 1000], event
-    assert [sum(shown_event.value == 1000 * k for shown_event in shown) for k in names] == [8, 8, 8]
+    assert [sum(shown_event.value == 1000 * k for shown_event in shown_events) for k in names] == [
+        8,
+        8,
+        8,
+    ]

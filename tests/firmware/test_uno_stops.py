@@ -1,5 +1,5 @@
-"""How long a stop takes on a simulated chip, whatever else the robot does: to the motor pins.
-And how much of the RAM the whole sketch leaves to the stack at its heaviest.
+"""The time from a stop to the motor pins on a simulated chip, whatever else the robot does; and the
+RAM left to the stack at the sketch's deepest point.
 
 A busy robot is stopped at some places of the sweep of `python -m tools.bench.link`. And what may
 come before a stop is bounded: all that keeps interrupts off, each at its longest and all at once.
@@ -27,7 +27,7 @@ SEED = 12
 @pytest.mark.parametrize(("environment", "name", "more_cycles"), [
     ("uno", "tinibot", 0),
     ("nano_liner", "liner", 0),
-    ("uno_tinibot2", "tinibot2", 0),  # with an edge of each disc, too
+    ("uno_tinibot2", "tinibot2", 0),  # includes an edge of each disc
     # Addresses of three bytes, ports far away, and the pulses of a servo
     ("mega_grabber", "grabber", 60),
     ("mega_tinibot2", "tinibot2", 60),
@@ -42,17 +42,18 @@ def test_a_stop_is_at_the_pins_in_12_us(
     robot = robots.load(name)
     with BusyRobot(
         sketches(environment), robot, environment.partition("_")[0], robot.board.baud
-    ) as stopped:
-        places = sample(stopped, COUNT, SEED)
-        if stopped.has_echo:
+    ) as stopped_busy_robot:
+        places = sample(stopped_busy_robot, COUNT, SEED)
+        if stopped_busy_robot.has_echo:
             places += [Place(places[0].cycle, echo, True) for echo in ECHO_AT_BEST]
         for place in places:
-            cycles = stopped.stop(place)
+            cycles = stopped_busy_robot.stop(place)
             assert 0 < cycles <= MOST_CYCLES, place
-        together = stopped.worst_case_cycles()
+        together = stopped_busy_robot.worst_case_cycles()
     with capsys.disabled():
         slowest_us, together_us = (
-            cycles / CYCLES_PER_MS * 1000 for cycles in (max(stopped.stop_cycles), together)
+            cycles / CYCLES_PER_MS * 1000
+            for cycles in (max(stopped_busy_robot.stop_cycles), together)
         )
         print(f"\n  {slowest_us:.1f} us; all at once {together_us:.1f} us", end=" ")
     assert together <= MOST_CYCLES + more_cycles

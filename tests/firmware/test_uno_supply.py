@@ -10,7 +10,7 @@ import pytest
 
 from tests.machines.wired import Wired
 from tests.support.board_builds import BOARDS
-from tests.support.robot_on_uno import NAMES, computer, saved, send
+from tests.support.robot_on_uno import NAMES, computer, read_saved_state, send
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
@@ -19,14 +19,14 @@ LOW, STORED = SAVED_LOW_SUPPLY, SAVED_STORED
 SAVES = "SI|SHOW(1)"
 
 
-def until_saved(wired: Wired, limit_ms: int = 4000) -> int:
-    """Return how the program is kept, when that is decided."""
-    end_ms = wired.now_ms + limit_ms
-    while wired.now_ms < end_ms:
-        saved_count = saved(wired)
+def until_saved(wired_uno: Wired, limit_ms: int = 4000) -> int:
+    """Return the storage state of the program, once it is decided."""
+    end_ms = wired_uno.now_ms + limit_ms
+    while wired_uno.now_ms < end_ms:
+        saved_count = read_saved_state(wired_uno)
         if saved_count in (LOW, STORED):
             return saved_count
-        wired.run(20)
+        wired_uno.run(20)
     raise AssertionError("still saving")
 
 
@@ -35,14 +35,14 @@ def until_saved(wired: Wired, limit_ms: int = 4000) -> int:
     ("volts", "millivolts"), [(5, STORED), (4.05, STORED), (3.95, LOW), (3, LOW)]
 )
 def test_it_saves_from_four_volts_on(robot: Uno, volts: float, millivolts: int) -> None:
-    wired = computer(robot)
+    wired_uno = computer(robot)
     robot.supply(volts)
-    send(wired, SAVES)
-    assert until_saved(wired) == millivolts
+    send(wired_uno, SAVES)
+    assert until_saved(wired_uno) == millivolts
 
 
 def marks(uno: Uno, since: int) -> list[int]:
-    """Return when bytes of the program's first slots were written that make it count."""
+    """Return the times at which validating bytes of the program's first slots were written."""
     places = (129, 130, 131, 577, 578, 579)
     return [
         event.cycle
@@ -53,20 +53,20 @@ def marks(uno: Uno, since: int) -> list[int]:
 
 
 def test_a_supply_that_falls_between_two_marks_is_noticed(uno: Uno) -> None:
-    """It is measured before each of the three."""
-    wired = computer(uno)
-    begun = uno.cycle
-    send(wired, SAVES)
-    while len(marks(uno, begun)) < 1:
-        wired.run(1)
+    """The voltage is measured before each of the three."""
+    wired_uno = computer(uno)
+    start_cycle = uno.cycle
+    send(wired_uno, SAVES)
+    while len(marks(uno, start_cycle)) < 1:
+        wired_uno.run(1)
     uno.supply(3.5)
-    assert until_saved(wired) == LOW
-    wired.run(1500)
-    assert len(marks(uno, begun)) == 1
+    assert until_saved(wired_uno) == LOW
+    wired_uno.run(1500)
+    assert len(marks(uno, start_cycle)) == 1
     uno.supply(4.5)
-    wired.run(1500)
-    assert saved(wired) == STORED
-    assert len(marks(uno, begun)) == 3
+    wired_uno.run(1500)
+    assert read_saved_state(wired_uno) == STORED
+    assert len(marks(uno, start_cycle)) == 3
 
 
 LIGHT = "SI|LOOP(FOREVER);SHOW(LIGHT_L);SHOW(LIGHT_R);END_LOOP"
@@ -77,46 +77,46 @@ def test_sensors_and_the_supply_take_turns(uno: Uno, volts: float) -> None:
     """A program that reads two analog sensors all the time reads them right, and is saved."""
     uno.analog("A0", 200)
     uno.analog("A1", 800)
-    wired = computer(uno)
+    wired_uno = computer(uno)
     uno.supply(volts)
-    send(wired, LIGHT)
-    shown: list[int] = []
+    send(wired_uno, LIGHT)
+    shown_values: list[int] = []
     for _ in range(150):
-        wired.run(10)
-        shown += [event.value for event in wired.session.events()
+        wired_uno.run(10)
+        shown_values += [event.value for event in wired_uno.session.events()
                   if event.name == "SHOW"]  # fmt: skip
-    assert len(shown) > 50
-    assert set(shown) == {200_000, 800_000}
-    assert all(one != other for one, other in pairwise(shown))
-    assert until_saved(wired) == (STORED if volts > 4 else LOW)
+    assert len(shown_values) > 50
+    assert set(shown_values) == {200_000, 800_000}
+    assert all(one != other for one, other in pairwise(shown_values))
+    assert until_saved(wired_uno) == (STORED if volts > 4 else LOW)
 
 
 def test_a_measurement_that_a_motor_ends_leaves_the_converter_to_the_sensors(uno: Uno) -> None:
     """The pauses are shorter than a measurement: each of them is given up, and nothing is saved."""
     uno.analog("A1", 800)
-    wired = computer(uno)
-    begun = uno.cycle
+    wired_uno = computer(uno)
+    start_cycle = uno.cycle
     pushes = "W(0.001); M(50, 50); SHOW(LIGHT_L); W(0.02); M(0, 0);"
-    send(wired, f"SI|LOOP(FOREVER); {pushes} END_LOOP")
-    wired.run(2000)
-    shown = [event.value for event in wired.session.events() if event.name == "SHOW"]
-    assert len(shown) > 50 and set(shown) == {800_000}
-    assert marks(uno, begun) == []
+    send(wired_uno, f"SI|LOOP(FOREVER); {pushes} END_LOOP")
+    wired_uno.run(2000)
+    shown_values = [event.value for event in wired_uno.session.events() if event.name == "SHOW"]
+    assert len(shown_values) > 50 and set(shown_values) == {800_000}
+    assert marks(uno, start_cycle) == []
 
 
 def test_a_program_that_drives_in_short_pushes_is_saved_in_between(uno: Uno) -> None:
-    wired = computer(uno)
-    begun = uno.cycle
-    send(wired, "SI|LOOP(FOREVER);F(0.1, 80);W(0.05);END_LOOP")
-    assert until_saved(wired) == STORED
+    wired_uno = computer(uno)
+    start_cycle = uno.cycle
+    send(wired_uno, "SI|LOOP(FOREVER);F(0.1, 80);W(0.05);END_LOOP")
+    assert until_saved(wired_uno) == STORED
     driving = uno.pins.history("left forward")
-    for cycle in marks(uno, begun):
-        before = [change for change in driving if change.cycle <= cycle]
-        assert before[-1].state == "low"
-        # 3.4 ms from its beginning, of which the event comes in the middle
+    for cycle in marks(uno, start_cycle):
+        pin_changes_before = [change for change in driving if change.cycle <= cycle]
+        assert pin_changes_before[-1].state == "low"
+        # 3.4 ms from the beginning of the write, with the event in the middle.
         after = [change.cycle for change in driving if change.cycle > cycle]
         assert not after or after[0] - cycle >= 1.5 * CYCLES_PER_MS
-    assert wired.session.is_running
+    assert wired_uno.session.is_running
 
 
 LOOKS = "SI|LOOP(FOREVER);SHOW(DISTANCE);SHOW(LIGHT_L);SHOW(LIGHT_R);END_LOOP"
@@ -135,19 +135,21 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
         uno.analog("A0", 200)
         uno.analog("A1", 800)
         uno.sonar("trigger", "echo", distance_cm)
-        wired = computer(uno)
-        send(wired, LOOKS, is_detached=True)
-        begun, shown = uno.cycle, []
+        wired_uno = computer(uno)
+        send(wired_uno, LOOKS, is_detached=True)
+        start_cycle, shown = uno.cycle, []
         for turn in range(20):
-            assert wired.until(wired.session.name(b"TINI%d" % turn)) == OK
-            wired.session.name(b"TINIBOT")
-            wired.run(30)
+            assert wired_uno.until(wired_uno.session.name(b"TINI%d" % turn)) == OK
+            wired_uno.session.name(b"TINIBOT")
+            wired_uno.run(30)
             uno.send(b"\x55", stop_bits_fail=True)
-            wired.run(20)
-            shown += [event.value for event in wired.session.events()
+            wired_uno.run(20)
+            shown += [event.value for event in wired_uno.session.events()
                       if event.name == "SHOW"]  # fmt: skip
-        assert wired.session.is_running
-        writes = [event for event in uno.events if event.kind == "eeprom" and event.cycle > begun]
+        assert wired_uno.session.is_running
+        writes = [
+            event for event in uno.events if event.kind == "eeprom" and event.cycle > start_cycle
+        ]
         outputs = [
             pin_change.cycle
             for pin_change in uno.pins.history("trigger")
@@ -161,4 +163,4 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
     wrong = [value for value in distances if abs(value - 1000 * distance_cm) > 6 * STEP]
     assert not wrong
     assert {200_000, 800_000} < set(shown)
-    assert min(b - a for a, b in pairwise(outputs) if a > begun) >= 30 * CYCLES_PER_MS
+    assert min(b - a for a, b in pairwise(outputs) if a > start_cycle) >= 30 * CYCLES_PER_MS

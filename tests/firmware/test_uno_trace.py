@@ -1,4 +1,4 @@
-"""What the pins of a simulated Uno do is what `tsc run` prints: in its order, at its times."""
+"""The pins of a simulated Uno follow the trace of `tsc run`, in order and time."""
 
 from __future__ import annotations
 
@@ -33,16 +33,16 @@ def test_the_pins_follow_the_trace(case: Case, sketch: Path, tmp_path: Path) -> 
 def test_a_thousand_short_waits_take_a_minute(sketch: Path, tmp_path: Path) -> None:
     """A wait begins where the one before has ended, not when the machine comes to it."""
     with switched_on(sketch, tmp_path / "eeprom") as uno:
-        heard = len(uno.received_bytes)
+        heard_count = len(uno.received_bytes)
         send(computer(uno), "SI|LOOP(500); F(0.06, 50); W(0.06); END_LOOP; M(90, 90)",
              is_detached=True)  # fmt: skip
-        began = last_zero(uno, heard)
+        began = last_zero(uno, heard_count)
         uno.run_ms(60_000)
         changes = [
             pin_change.cycle for pin_change in uno.pins.history("left") if pin_change.cycle > began
         ]
     times = [(cycle - began) / CYCLES_PER_MS for cycle in changes]
-    assert len(times) == 1002  # on and off 500 times, and once more at the end
+    assert len(times) == 1002  # 500 changes on and off, and one at the end
     assert all(abs(after - before - 60) < 2 for before, after in pairwise(times[:-1]))
     assert max(abs(time_ms - 60 * k) for k, time_ms in enumerate(times[:-1])) < OFF_MS
     assert abs(times[-2] - 60_000) < OFF_MS

@@ -16,7 +16,7 @@ from tests.support.uno_watchdog import (
     TIMER_MS,
     WATCHDOG,
     WATCHDOG_MS,
-    built,
+    build_hanging_firmware,
     is_on,
 )
 from tiniscript.link.payloads import HelloReply
@@ -24,13 +24,13 @@ from tiniscript.link.trim import Pace, Trim, trim_from_reply
 from tools.uno import CYCLES_PER_MS, Uno
 
 LATER = "SI|W(0.1); F(70, 80)"
-MOVE_AT = {AWAY: 2, LATER: 4}  # the offset of the move, after what it takes
+MOVE_AT = {AWAY: 2, LATER: 4}  # the offset of the move, after its values
 PACED = Trim(is_exchanged=True, least=3, pace=Pace(10, 20, 30, 40))
 
 
-def hello_of(wired: Wired) -> HelloReply:
-    """Return what HELLO says of the robot."""
-    return wired.complete(wired.session.hello())
+def hello_of(wired_uno: Wired) -> HelloReply:
+    """Return the robot's answer to HELLO."""
+    return wired_uno.complete(wired_uno.session.hello())
 
 
 @pytest.mark.sampled("board")
@@ -43,26 +43,27 @@ def hello_of(wired: Wired) -> HelloReply:
     ],
 )
 def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: Path) -> None:
-    """What ran is the last fault of the robot, also after it was without power. A second hang is as
-    the first one, and nothing else that the robot keeps is lost."""
-    elf = built(tmp_path, hang, board)
-    kept = tmp_path / "eeprom"
+    """The program becomes the last fault, even after a power-off. A second hang has the same
+    effect, and no other data is lost.
+    """
+    elf = build_hanging_firmware(tmp_path, hang, board)
+    kept_path = tmp_path / "eeprom"
     chip = "mega" if board == "mega" else "uno"
-    with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept) as uno:
+    with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept_path) as uno:
         uno.run_ms(300)
-        wired = computer(uno)
-        assert wired.complete(wired.session.trim(PACED.data()))
+        wired_uno = computer(uno)
+        assert wired_uno.complete(wired_uno.session.trim(PACED.data()))
         for number, text in enumerate((AWAY, LATER)):
-            wired = computer(uno, 2 + 2 * number)
-            send(wired, text)
-            wired.run(400)
+            wired_uno = computer(uno, 2 + 2 * number)
+            send(wired_uno, text)
+            wired_uno.run(400)
             assert states(uno) == FORWARD
-            began = uno.cycle
+            start_cycle = uno.cycle
             uno.drive("button", False)
             uno.run_ms(limit_ms)
             assert not is_on(uno)
             changes = (change for name in ("left", "right") for change in uno.pins.history(name))
-            assert max(change.cycle for change in changes) - began <= limit_ms * CYCLES_PER_MS
+            assert max(change.cycle for change in changes) - start_cycle <= limit_ms * CYCLES_PER_MS
             uno.drive("button", None)
             uno.run_ms(1000)
             assert states(uno) == OFF
@@ -75,19 +76,19 @@ def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: 
             uno.reset()
             uno.run_ms(300)
             assert hello_of(computer(uno, 8 + number)).reset != WATCHDOG
-    with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept) as restarted:
-        restarted.run_ms(300)
-        wired = computer(restarted, 7)
-        hello_reply = hello_of(wired)
+    with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept_path) as restarted_robot:
+        restarted_robot.run_ms(300)
+        wired_uno = computer(restarted_robot, 7)
+        hello_reply = hello_of(wired_uno)
         assert (hello_reply.reset, hello_reply.fault) == (1, STALL)
         assert hello_reply.fault_program == image_of(text).checksum
-        assert trim_from_reply(wired.complete(wired.session.trim())) == PACED
+        assert trim_from_reply(wired_uno.complete(wired_uno.session.trim())) == PACED
 
 
 @pytest.mark.sampled(of="hangs of an Uno")
 def test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program(tmp_path: Path) -> None:
     pauses = "for (uint8_t k = 0; k < 112; k++) {\n __builtin_avr_delay_cycles(16000);\n }"
-    with Uno(built(tmp_path, pauses), names=NAMES, baud=BAUD) as uno:
+    with Uno(build_hanging_firmware(tmp_path, pauses), names=NAMES, baud=BAUD) as uno:
         uno.run_ms(300)
         send(computer(uno), AWAY)
         uno.drive("button", False)
@@ -95,17 +96,17 @@ def test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program(tmp_pat
         uno.drive("button", None)
         uno.run_ms(100)
         assert states(uno) == OFF
-        wired = computer(uno, 2)
-        hello_reply = hello_of(wired)
+        wired_uno = computer(uno, 2)
+        hello_reply = hello_of(wired_uno)
         assert (hello_reply.reset, hello_reply.fault) == (1, STALL)
-        send(wired, AWAY)
-        wired.run(300)
+        send(wired_uno, AWAY)
+        wired_uno.run(300)
         assert states(uno) == FORWARD
 
 
 @pytest.mark.sampled(of="hangs of an Uno")
 def test_a_hang_without_a_program_is_a_fault_of_none(tmp_path: Path) -> None:
-    with Uno(built(tmp_path, HANGS), names=NAMES, baud=BAUD) as uno:
+    with Uno(build_hanging_firmware(tmp_path, HANGS), names=NAMES, baud=BAUD) as uno:
         uno.run_ms(300)
         uno.press("button")
         uno.run_ms(600)
@@ -121,14 +122,14 @@ def test_a_hang_without_a_program_is_a_fault_of_none(tmp_path: Path) -> None:
 
 def test_a_reset_that_is_no_hang_is_no_fault(uno: Uno) -> None:
     """Not in the middle of a program either; and the next nonce is another one each time, also
-    where nothing happens in between and each reset takes the same number of cycles."""
+    if nothing happens in between and each reset takes the same number of cycles."""
     nonces = []
     for number in range(5):
-        wired = computer(uno, number + 1)
-        hello_reply = hello_of(wired)
+        wired_uno = computer(uno, number + 1)
+        hello_reply = hello_of(wired_uno)
         assert hello_reply.fault == 0
         nonces.append(hello_reply.nonce)
-        send(wired, AWAY)
+        send(wired_uno, AWAY)
         assert states(uno) == FORWARD
         uno.reset()
         uno.run_ms(300)

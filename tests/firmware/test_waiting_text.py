@@ -1,4 +1,4 @@
-"""Text that waits in front of a program of frames, or behind it: what runs is what was verified.
+"""Text that waits before or after a program of frames: only verified code runs.
 
 And it runs as often as it was sent: a frame that is said again was sent once.
 
@@ -15,7 +15,7 @@ import pytest
 
 from tests.machines.host_firmware import HostFirmware
 from tests.support.button_states import SmallRobot
-from tests.support.campaign import wanted
+from tests.support.campaign import make_options
 from tests.support.images import image_of
 from tests.support.robot_on_host import KIT, actions_of, computer
 from tiniscript import compile_text
@@ -24,10 +24,10 @@ from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, RUN, SAVE
 from tiniscript.link.requests import OK
 
-TRIALS = 1000  # in the tests; a campaign runs more
+TRIALS = 1000  # trials of the tests; a campaign runs more
 LIVES = 100  # trials of one robot
-AGAIN, QUIET = 0.3, 0.3  # how often a frame is said again, and a second of silence is before one
-CHECKSUM_AT, BODY_AT = 10, 14  # in an image
+AGAIN, QUIET = 0.3, 0.3  # probability of a repeated frame, and of a second of silence before one
+CHECKSUM_AT, BODY_AT = 10, 14  # offsets in an image
 # A number whose bytes are instructions: one letter in front of them makes a move of them.
 DRIVES = "SI|SHOW(-1337933.387)"
 WHOLE = ("F(0.01,30)", "SI|R(0.02,40)", "SI|M(20,20);W(0.01)", "SB|F(0.01,30)", DRIVES,
@@ -79,11 +79,11 @@ class Trials:
         return encode_frame(Frame(BY_NAME[name].number, self.seq, self.epoch, payload))
 
     def put(self, data: bytes, milliseconds: int) -> None:
-        """Let bytes arrive in one burst, as where a turn was long; hear what the robot says."""
-        sent = self.robot.step(data, flags=16, ticks=self.rng.choice((0, 1, 1, 2, 20)))
+        """Deliver bytes in one burst, as after a long turn, and note the answers."""
+        sent_bytes = self.robot.step(data, flags=16, ticks=self.rng.choice((0, 1, 1, 2, 20)))
         if milliseconds:
-            sent += self.robot.wait(milliseconds)
-        *packets, self.heard = (self.heard + sent).split(b"\0")
+            sent_bytes += self.robot.wait(milliseconds)
+        *packets, self.heard = (self.heard + sent_bytes).split(b"\0")
         for frame in map(decode_frame, packets):
             self.epoch = frame.epoch if frame else self.epoch
 
@@ -141,13 +141,13 @@ class Trials:
         may_run = Counter([image[HEADER_BYTES:]])
         for frame in self.frames(image):
             is_quiet = rng.random() < QUIET
-            before, codes = self.text(is_quiet)
+            bytes_before, codes = self.text(is_quiet)
             later_text, more = self.text()
             may_run.update(codes + more)
-            data = before + frame
+            data = bytes_before + frame
             most = rng.choice((3, min(12, len(frame))))  # a LIVE is made before its last ones
             if is_quiet:
-                self.put(b"", 1100)  # text comes again
+                self.put(b"", 1100)  # from here on the robot reads text again
             cut = len(data) - rng.choice((rng.randrange(1, most), rng.randrange(len(frame))))
             self.put(data[:cut], rng.choice((0, 0, 1, 20 * is_quiet)))
             self.put(data[cut:] + rng.choice((b"", later_text)), rng.choice((1, 4, 20)))
@@ -157,9 +157,9 @@ class Trials:
         self.put(b"", rng.choice((5, 30, 1100)))
         for line in self.robot.did:
             assert "UNVERIFIED" not in line and "CHANGED" not in line, self.robot.did
-        ran = Counter(self.robot.codes())
-        assert not ran - may_run, (ran, may_run)
-        self.ran += image[HEADER_BYTES:] in ran
+        ran_counter = Counter(self.robot.codes())
+        assert not ran_counter - may_run, (ran_counter, may_run)
+        self.ran += image[HEADER_BYTES:] in ran_counter
 
 
 def test_what_runs_is_what_was_verified() -> None:
@@ -184,8 +184,8 @@ def test_one_letter_makes_no_move_of_a_number(text: bytes) -> None:
 
 
 if __name__ == "__main__":
-    given = wanted(1000, 1_000_000)
-    many = Trials(given.seed)
-    for _ in range(given.count):
+    options = make_options(1000, 1_000_000)
+    many = Trials(options.seed)
+    for _ in range(options.count):
         many.trial()
-    print(f"{given.count} trials: {many.ran} programs have run, each as it was verified")
+    print(f"{options.count} trials: {many.ran} programs have run, each as it was verified")

@@ -1,5 +1,5 @@
-"""A memory that is ten years old: whatever bytes of it no longer change, what a robot says of what
-it keeps is true, and who needs none of them notices nothing.
+"""A memory that is ten years old: whichever bytes no longer change, the robot's statements about
+its data are true, and users of other bytes notice nothing.
 
 `python -m tests.firmware.test_worn_memory 2000` tries more.
 """
@@ -13,11 +13,11 @@ from struct import pack
 
 import pytest
 
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.images import image_of
 from tests.support.kept_programs import bytes_of
 from tests.support.owners import Keys, Owned, owner_of
-from tests.support.robot_on_host import held
+from tests.support.robot_on_host import fetch_image
 from tiniscript.link.authority import FREE, OWNED_BY_YOU
 from tiniscript.link.messages import SAVED_STORED
 
@@ -31,25 +31,25 @@ SLOTS = (*IDENTITY, *FAULT, *PROGRAM, *KEYS)
 
 
 class Known:
-    """What a robot has said to keep of one thing, and what it may keep instead."""
+    """The stored value that a robot has confirmed, and the values it may store instead."""
 
     def __init__(self, first: object) -> None:
         self.may_be = [first]
 
-    def asked(self, what: object, is_kept: bool) -> None:
+    def note_request(self, what: object, is_kept: bool) -> None:
         self.may_be = [what] if is_kept else [*self.may_be, what]
 
 
-def worn_of(worn: set[int], slots: Sequence[tuple[int, int]]) -> int:
-    """Return how many of the slots have worn bytes."""
-    return sum(any(low <= place < high for place in worn) for low, high in slots)
+def worn_of(worn_bytes: set[int], slots: Sequence[tuple[int, int]]) -> int:
+    """Return the number of slots with worn bytes."""
+    return sum(any(low <= place < high for place in worn_bytes) for low, high in slots)
 
 
 def check(seed: int) -> str:
     rng = random.Random(seed)
     table, keys = Owned(seed=seed | 1), Keys()
     robot, session = table.robot, table.session(keys)
-    worn: set[int] = set()
+    worn_bytes: set[int] = set()
     name, program = Known(b""), Known(b"")
     trim, pace = Known(TRIMS[0][:3]), Known(TRIMS[0][3:])
     owner = Known(FREE)
@@ -60,7 +60,7 @@ def check(seed: int) -> str:
             low, high = rng.choice(SLOTS)
             place = low + rng.randrange(4) if rng.random() < 0.5 else rng.randrange(low, high)
             robot.wear_out(place)
-            worn.add(place)
+            worn_bytes.add(place)
             continue
         if what == "program":
             text = f"SB|F(1, {rng.randint(10, 99)})" + ";B(0.1, 60)" * rng.choice((0, 30))
@@ -69,44 +69,46 @@ def check(seed: int) -> str:
             robot.talk(session, 3500)
             saved = robot.complete(session, session.status()).saved
             is_kept = saved == SAVED_STORED
-            program.asked(bytes_of(text), is_kept)
+            program.note_request(bytes_of(text), is_kept)
         elif what == "claim":
             if owner.may_be != [FREE]:
                 continue
             status = table.claim(session)
             is_kept = status == "OK"
-            owner.asked(OWNED_BY_YOU, is_kept)
+            owner.note_request(OWNED_BY_YOU, is_kept)
         elif what == "fault":
             robot.until(session, session.upload(image_of("SI|X = 0;SHOW(1 / X)"), saves=False))
             robot.talk(session, 600)
             continue
         else:
-            asked = rng.choice(NAMES if what == "name" else TRIMS)
-            request = session.name(asked) if what == "name" else session.trim(asked)
+            asked_bytes = rng.choice(NAMES if what == "name" else TRIMS)
+            request = session.name(asked_bytes) if what == "name" else session.trim(asked_bytes)
             status = table.outcome(session, request)
             is_kept = status == "OK"
             if what == "name":
-                name.asked(asked, is_kept)
+                name.note_request(asked_bytes, is_kept)
             else:
-                trim.asked(asked[:3], is_kept)
-                pace.asked(asked[3:], is_kept)
+                trim.note_request(asked_bytes[:3], is_kept)
+                pace.note_request(asked_bytes[3:], is_kept)
         slots = {"program": PROGRAM, "claim": KEYS}.get(what, (*IDENTITY, *FAULT))
         if not is_kept:
             outcome = "it says what is not kept"
-            assert worn_of(worn, slots), f"{seed} {what} {worn}"
+            assert worn_of(worn_bytes, slots), f"{seed} {what} {worn_bytes}"
     robot.talk(session, 1000)
-    restarted = Owned(robot.memory())
-    later = restarted.session(keys, nonce=9)
-    whose = owner_of(restarted, later)
-    # A robot that cannot keep who it is has no key of anybody.
-    assert whose in owner.may_be or worn_of(worn, IDENTITY) == 2, f"{seed} {worn}"
-    assert later.robot and later.robot.name.encode() in name.may_be, f"{seed} {worn} {later.robot}"
-    trim_reply = restarted.robot.complete(later, later.trim())
-    assert trim_reply.pace in pace.may_be, f"{seed} {worn}"
-    assert pack("<BbB", *trim_reply[:3]) in trim.may_be, f"{seed} {worn}"
-    has_program = restarted.robot.complete(later, later.status()).length != 0
-    image = held(restarted.robot, later) if has_program else b""
-    assert image in program.may_be, f"{seed} {worn}"
+    restarted_robot = Owned(robot.memory())
+    later = restarted_robot.session(keys, nonce=9)
+    whose = owner_of(restarted_robot, later)
+    # A robot that cannot store its identity has nobody's key.
+    assert whose in owner.may_be or worn_of(worn_bytes, IDENTITY) == 2, f"{seed} {worn_bytes}"
+    assert later.robot and later.robot.name.encode() in name.may_be, (
+        f"{seed} {worn_bytes} {later.robot}"
+    )
+    trim_reply = restarted_robot.robot.complete(later, later.trim())
+    assert trim_reply.pace in pace.may_be, f"{seed} {worn_bytes}"
+    assert pack("<BbB", *trim_reply[:3]) in trim.may_be, f"{seed} {worn_bytes}"
+    has_program = restarted_robot.robot.complete(later, later.status()).length != 0
+    image = fetch_image(restarted_robot.robot, later) if has_program else b""
+    assert image in program.may_be, f"{seed} {worn_bytes}"
     return outcome
 
 
@@ -118,4 +120,4 @@ def test_what_is_said_of_what_is_kept_is_true(part: int) -> None:
 
 
 if __name__ == "__main__":
-    each_seed(check, wanted(2000, 10_000))
+    each_seed(check, make_options(2000, 10_000))

@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from tests.machines.bootloaders import Bootloader, bootloader
-from tests.machines.uno import built as nothing_but
-from tests.machines.uno import needed
+from tests.machines.uno import build_uno as nothing_but
+from tests.machines.uno import skip_unless_available
 from tests.support import arduino_builder
 from tests.support.command import process
 from tests.support.images import image_of
 from tests.support.needs import need
-from tests.support.platformio import firmware, shared
+from tests.support.platformio import firmware, shared_folder
 from tests.support.robot_on_uno import AWAY, BAUD, FORWARD, NAMES, OFF, computer, send, states
 from tests.support.uno_watchdog import (
     HANGS,
@@ -23,7 +23,7 @@ from tests.support.uno_watchdog import (
     STALL,
     TIMER_MS,
     WATCHDOG_MS,
-    built,
+    build_hanging_firmware,
     is_on,
 )
 from tiniscript.link.requests import OK
@@ -33,7 +33,7 @@ TRIES = 20  # a simulated board waits for its bootloader as long as a real one, 
 
 DRIVES = "SI|F(0.3, 80)"
 UNKNOWN, POWER, WATCHDOG = 0, 1, 4  # resets in docs/develop/link.md
-WAIT_MS = 2500  # so long an old Nano waits for a sketch
+WAIT_MS = 2500  # time that an old Nano waits for a sketch
 
 
 pytestmark = pytest.mark.sampled(of="bootloaders", keep=2)
@@ -41,7 +41,7 @@ pytestmark = pytest.mark.sampled(of="bootloaders", keep=2)
 
 @pytest.fixture(autouse=True)
 def needs_a_chip() -> None:
-    needed()
+    skip_unless_available()
 
 
 def avrdude(uno: Uno, of: Bootloader, file: Path) -> str:
@@ -67,7 +67,7 @@ def avrdude(uno: Uno, of: Bootloader, file: Path) -> str:
 def test_avrdude_writes_the_sketch_and_the_robot_drives(
     board: str, builder: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    common = shared(tmp_path_factory)
+    common = shared_folder(tmp_path_factory)
     if builder == "PlatformIO":
         elf = firmware(board, tmp_path, common)
         sketch = tmp_path / "firmware.hex"
@@ -95,59 +95,61 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
 
 
 def test_optiboot_lets_a_robot_go_on_that_has_hung(tmp_path: Path) -> None:
-    """It knows the watchdog's reset, does not wait for a sketch, and hides the cause.
+    """Optiboot recognizes the watchdog's reset, does not wait for a sketch, and hides the cause.
 
     With interrupts off nothing but the cause would tell: that is not known then.
     """
-    elf = built(tmp_path, HANGS_ALONE)
+    elf = build_hanging_firmware(tmp_path, HANGS_ALONE)
     with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
-        hung(uno, limit_ms=WATCHDOG_MS)
+        hang(uno, limit_ms=WATCHDOG_MS)
         uno.run_ms(500)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on", "watchdog"]
-        assert answered(uno) == (UNKNOWN, 0, 0)
+        assert read_reset_report(uno) == (UNKNOWN, 0, 0)
         assert states(uno) == OFF
 
 
 def test_optiboot_does_not_hide_a_hang_that_was_noted(tmp_path: Path) -> None:
-    elf = built(tmp_path, HANGS)
+    elf = build_hanging_firmware(tmp_path, HANGS)
     with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
-        hung(uno, limit_ms=TIMER_MS)
+        hang(uno, limit_ms=TIMER_MS)
         uno.run_ms(700)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on", "watchdog"]
-        assert answered(uno) == (WATCHDOG, STALL, image_of(AWAY).checksum)
+        assert read_reset_report(uno) == (WATCHDOG, STALL, image_of(AWAY).checksum)
         assert states(uno) == OFF
 
 
 def test_an_old_nano_goes_on_without_its_bootloader(tmp_path: Path) -> None:
-    """That one would leave the watchdog on, so the robot begins anew by itself."""
-    elf = built(tmp_path, HANGS, "nano")
+    """The old bootloader would leave the watchdog on, so the robot restarts without it."""
+    elf = build_hanging_firmware(tmp_path, HANGS, "nano")
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
-        hung(uno, limit_ms=TIMER_MS)
+        hang(uno, limit_ms=TIMER_MS)
         uno.run_ms(1000)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on"]
-        assert answered(uno) == (WATCHDOG, STALL, image_of(AWAY).checksum)
+        assert read_reset_report(uno) == (WATCHDOG, STALL, image_of(AWAY).checksum)
         assert states(uno) == OFF
 
 
 def test_an_old_nano_that_has_hung_for_good_stays_off_until_it_has_no_power(tmp_path: Path) -> None:
-    elf = built(tmp_path, HANGS_ALONE, "nano")
+    elf = build_hanging_firmware(tmp_path, HANGS_ALONE, "nano")
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
-        hung(uno, limit_ms=WATCHDOG_MS)
-        began = len(uno.events)
+        hang(uno, limit_ms=WATCHDOG_MS)
+        event_count_before = len(uno.events)
         uno.run_ms(300)
-        causes = {event["cause"] for event in uno.events[began:] if event.kind == "reset"}
+        causes = {
+            event["cause"] for event in uno.events[event_count_before:] if event.kind == "reset"
+        }
         assert causes == {"watchdog"}
         assert not is_on(uno)
         uno.reset("power-on")
         uno.run_ms(WAIT_MS)
-        assert answered(uno) == (POWER, 0, 0)
+        assert read_reset_report(uno) == (POWER, 0, 0)
 
 
-def hung(uno: Uno, limit_ms: int) -> None:
-    """Let the robot drive and then hang: its motors must go off."""
+def hang(uno: Uno, limit_ms: int) -> None:
+    """Make a driving robot hang: its motors must go off."""
     uno.run_ms(WAIT_MS)
     send(computer(uno), AWAY)
     assert states(uno) == FORWARD
@@ -157,11 +159,13 @@ def hung(uno: Uno, limit_ms: int) -> None:
     uno.drive("button", None)
 
 
-def answered(uno: Uno) -> tuple[object, ...]:
-    """Return why the robot was reset last, its last fault and in which program, as it says."""
-    wired = computer(uno, 2)
-    assert wired.until(wired.session.hello()) == OK
-    robot = wired.session.robot
+def read_reset_report(uno: Uno) -> tuple[object, ...]:
+    """Return the reason of the last reset, the last fault and its program, as reported by the
+    robot.
+    """
+    wired_uno = computer(uno, 2)
+    assert wired_uno.until(wired_uno.session.hello()) == OK
+    robot = wired_uno.session.robot
     assert robot is not None
     return robot.values.reset, robot.values.fault, robot.values.fault_program
 
@@ -169,13 +173,13 @@ def answered(uno: Uno) -> tuple[object, ...]:
 def test_a_mega_that_was_reset_is_waited_for(
     tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """What it hears too early keeps it in its bootloader, and its profile is that of an Uno."""
-    elf = firmware("mega", tmp_path, shared(tmp_path_factory))
+    """Early bytes keep it in its bootloader, and its profile is that of an Uno."""
+    elf = firmware("mega", tmp_path, shared_folder(tmp_path_factory))
     file = bootloader("mega").file
     with Uno(elf, board="mega", bootloader=file, baud=BAUD, tells_sleep=False) as mega:
         mega.go(speed=3.0)
         for words in (["doctor", "--identify"], ["doctor", "--ports", "--ask"]):
-            for _ in range(TRIES):  # on a busy computer it is late; each try resets it
+            for _ in range(TRIES):  # a busy computer may be late; each try resets the board
                 result = process(*words, "--port", mega.pty)
                 if "tinibot" in result.out:
                     break

@@ -1,4 +1,6 @@
-"""`tsc firmware` builds what is not ready, never writes what is old, and says why it cannot."""
+"""`tsc firmware` builds missing firmware, never writes old ones, and names the reason if it
+cannot.
+"""
 
 from __future__ import annotations
 
@@ -15,14 +17,21 @@ from pathlib import Path
 import pytest
 
 from tests.machines.bootloaders import bootloader
-from tests.machines.uno import needed
+from tests.machines.uno import skip_unless_available
 from tests.support.casefile import ROOT
 from tests.support.command import CommandResult, Tsc, process
-from tests.support.copies import linked
+from tests.support.copies import link_copy
 from tests.support.edited_robots import TEXTS
-from tests.support.flashed_boards import ENDS, command, copied, interrupted, new_board, tsc
+from tests.support.flashed_boards import (
+    ENDS,
+    command,
+    copy_package,
+    new_board,
+    run_interrupted,
+    tsc,
+)
 from tests.support.needs import need
-from tests.support.platformio import prepared
+from tests.support.platformio import prepare
 from tests.support.waiting import has_ended, until
 from tiniscript import robots
 from tiniscript.cli import firmware_build
@@ -36,8 +45,8 @@ from tiniscript.library import install_advice
 def clone(tmp_path: Path) -> Path:
     """A copy of what a clone has of the package and the firmware's sources: its `compiler`."""
     folder = tmp_path / "clone"
-    linked(ROOT / "vm_arduino", folder / "vm_arduino", ".pio", "own.h", "__pycache__")
-    return copied(folder)
+    link_copy(ROOT / "vm_arduino", folder / "vm_arduino", ".pio", "own.h", "__pycache__")
+    return copy_package(folder)
 
 
 @pytest.fixture
@@ -54,8 +63,8 @@ def own(tmp_path: Path) -> Path:
 @pytest.mark.sampled(of="builds of PlatformIO")
 def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> None:
     """Once: then it is ready, until anything that it is made from is another."""
-    needed()
-    variables, why = prepared()
+    skip_unless_available()
+    variables, why = prepare()
     need(why or ("" if shutil.which("avrdude") else "no avrdude on this computer"))
     with new_board(bootloader("uno")) as uno:
         result = tsc(clone, "--port", uno.pty, "--robot", str(own), **variables)
@@ -73,10 +82,10 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
     source = clone.parent / "vm_arduino" / "src" / "main.cpp"
     source.unlink()
     source.write_text("?", encoding="utf-8")
-    broken = tsc(clone, "--build", "--robot", str(own), **variables)
-    assert broken.code == 2
-    assert "could not be built" in broken.err and "error" in broken.err
-    log = broken.err.split()[-1]
+    broken_result = tsc(clone, "--build", "--robot", str(own), **variables)
+    assert broken_result.code == 2
+    assert "could not be built" in broken_result.err and "error" in broken_result.err
+    log = broken_result.err.split()[-1]
     assert "main.cpp" in Path(log).read_text(encoding="utf-8")
 
 
@@ -95,8 +104,8 @@ def test_sources_robot_and_board_make_the_digest(clone: Path, own: Path) -> None
     assert sources.digest(spanish) not in digests and ready.title_of(spanish) == "tinibot_es"
     assert ready.title_of(spanish.with_language("en")) == "tinibot_es"
     for name in sources.files:
-        changed = building.Sources({**sources.files, name: sources.files[name] + b"\n"})
-        digests.add(changed.digest(robots.load("tinibot")))
+        changed_sources = building.Sources({**sources.files, name: sources.files[name] + b"\n"})
+        digests.add(changed_sources.digest(robots.load("tinibot")))
         fewer = {value: data for value, data in sources.files.items() if value != name}
         digests.add(building.Sources(fewer).digest(robots.load("tinibot")))
     assert len(digests) == 3 + 2 * len(sources.files) > 100
@@ -105,7 +114,7 @@ def test_sources_robot_and_board_make_the_digest(clone: Path, own: Path) -> None
 def test_a_firmware_with_breakpoints_is_another_one_where_it_leaves_something_out(
     clone: Path,
 ) -> None:
-    """For each robot on each board: where it is made, refused, or there anyway."""
+    """For each robot on each board: it is built, refused, or included anyway."""
     sources = building.sources()
     assert sources is not None
     for name in robots.names():
@@ -116,18 +125,20 @@ def test_a_firmware_with_breakpoints_is_another_one_where_it_leaves_something_ou
                 assert ready.title_of(robot, True) != ready.title_of(robot)
                 firmware_build.require_breakpoints(robot)
                 continue
-            with pytest.raises(CommandError) as refused:
+            with pytest.raises(CommandError) as exception_info:
                 firmware_build.require_breakpoints(robot)
             there_anyway = board not in building.ENVIRONMENT_WITH_BREAKPOINTS
             key = "flash_has_breakpoints" if there_anyway else "flash_no_breakpoints"
-            assert refused.value.key == key
+            assert exception_info.value.key == key
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
 def test_a_firmware_with_breakpoints_is_kept_beside_the_other_one(clone: Path) -> None:
-    """What it leaves out is said before, also where it is ready; it is not taken for the other."""
-    needed()
-    variables, why = prepared()
+    """The omitted features are printed before, even if it is ready, and files are never
+    confused.
+    """
+    skip_unless_available()
+    variables, why = prepare()
     need(why)
     for _ in range(2):
         result = tsc(clone, "--build", "--breakpoints", "--chip", "uno", **variables)
@@ -155,9 +166,9 @@ def test_the_header_that_somebody_has_made_is_not_the_robot(
     clone: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(building, "SOURCE_FOLDERS", [clone.parent / "vm_arduino"])
-    before = building.sources()
+    sources_before = building.sources()
     (clone.parent / "vm_arduino" / building.HEADER_FILE).write_text("#error", encoding="utf-8")
-    assert before and building.sources() == before
+    assert sources_before and building.sources() == sources_before
 
 
 def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
@@ -183,13 +194,13 @@ def test_a_package_without_sources_takes_the_file_in_the_language_of_the_robot(
     files = [ready.ReadyFile(title, "nano", "1", Path(title)) for title in titles]
     monkeypatch.setattr(building, "sources", lambda: None)
     monkeypatch.setattr(ready, "files", lambda: files)
-    for language, wanted in (("es", spanish), ("en", english)):
+    for language, wanted_text in (("es", spanish), ("en", english)):
         robot = robots.load("liner", "nano").with_language(language)
-        if wanted is None:
+        if wanted_text is None:
             with pytest.raises(CommandError):
                 firmware_build.firmware(robot, Namespace(yes=True), "en")
         else:
-            assert firmware_build.firmware(robot, Namespace(yes=True), "en").title == wanted
+            assert firmware_build.firmware(robot, Namespace(yes=True), "en").title == wanted_text
 
 
 def source_bytes(clone: Path) -> dict[str, bytes]:
@@ -256,7 +267,7 @@ def make(name, rows):
 """
 
 
-def built(clone: Path, variables: dict[str, str], *words: str) -> CommandResult:
+def build_firmware(clone: Path, variables: dict[str, str], *words: str) -> CommandResult:
     path = variables["PYTHONPATH"] + os.pathsep + str(clone)
     return tsc(clone, "--build", *words, **{**variables, "PYTHONPATH": path})
 
@@ -265,7 +276,7 @@ OFFLINE = 'print("Platform Manager: Installing atmelavr\\nHTTPClientError: "); s
 
 
 def test_offline_it_says_what_to_do(clone: Path, tmp_path: Path) -> None:
-    result = built(clone, pretending(tmp_path, OFFLINE), "--lang", "es")
+    result = build_firmware(clone, pretending(tmp_path, OFFLINE), "--lang", "es")
     result.gives(2, "¿Tiene internet esta computadora?", "(HTTPClientError)", out="")
     log = Path(result.err.split()[-1])
     assert log.parent == ready.firmware_cache() and "Installing atmelavr" in log.read_text()
@@ -275,21 +286,21 @@ def test_offline_it_says_what_to_do(clone: Path, tmp_path: Path) -> None:
 @pytest.mark.sampled("body", "reason", keep=2)
 @pytest.mark.parametrize(("body", "reason"), [
     ('print("Compiling a\\nsrc/a.cpp:3:1: error: no such thing"); sys.exit(1)', "no such thing"),
-    ('print("Compiling a\\nLinking"); sys.exit(0)', "Linking"),  # and there is no file
+    ('print("Compiling a\\nLinking"); sys.exit(0)', "Linking"),  # the build writes no file
     ("sys.exit(7)", "exit code 7"),
     ('os.write(1, b"Compiling \\xff\\x1b[2J error\\n" * 100_000); sys.exit(1)', "error"),
 ])  # fmt: skip
 def test_a_build_that_fails_has_its_reason(
     body: str, reason: str, clone: Path, tmp_path: Path
 ) -> None:
-    result = built(clone, pretending(tmp_path, body)).gives(2, reason, out="")
+    result = build_firmware(clone, pretending(tmp_path, body)).gives(2, reason, out="")
     assert "\x1b" not in result.err
 
 
 def test_a_firmware_that_the_board_does_not_hold_is_refused_before_it_is_written(
     clone: Path, tmp_path: Path
 ) -> None:
-    result = built(clone, pretending(tmp_path, TOO_LARGE))
+    result = build_firmware(clone, pretending(tmp_path, TOO_LARGE))
     result.gives(2, "does not fit on", "33000 > 32256", out="")
     assert "upgrade" not in result.err
     assert not ready.files(ready.firmware_cache())
@@ -309,14 +320,14 @@ if name == "{chip}":
 make(name, ":00000001FF\\n")
 """
     words = ("--chip", chip, "--lang", "es")
-    result = built(clone, pretending(tmp_path, body), *words).gives(0)
+    result = build_firmware(clone, pretending(tmp_path, body), *words).gives(0)
     assert result.err.count(f"queda {lacks}") == 1, result
     assert len(list(ready.firmware_cache().glob("*.hex"))) == 1
 
 
 def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) -> None:
     body = f'{MAKES}\nmake("uno", ":0400")'
-    built(clone, pretending(tmp_path, body)).gives(2, "could not be built")
+    build_firmware(clone, pretending(tmp_path, body)).gives(2, "could not be built")
     assert not list(ready.firmware_cache().glob("*.hex"))
 
 
@@ -327,18 +338,18 @@ def test_a_build_that_does_not_end_well_has_made_nothing(
 ) -> None:
     """Whatever file is there then."""
     body = f'import signal\n{MAKES}\nmake("uno", ":00000001FF\\n")\n{end}'
-    built(clone, pretending(tmp_path, body)).gives(2, "could not be built")
+    build_firmware(clone, pretending(tmp_path, body)).gives(2, "could not be built")
     assert not list(ready.firmware_cache().glob("*.hex"))
 
 
 def test_own_settings_build_nothing_else(clone: Path, tmp_path: Path) -> None:
-    """Settings for a project of the person's own would change what is built, or where."""
+    """Settings for a project of the person's own would change the build or its place."""
     body = 'print("Compiling", *sorted(n for n in os.environ if "PLATFORMIO" in n)); sys.exit(1)'
     variables = pretending(tmp_path, body)
     for name in ("BUILD_FLAGS", "SRC_DIR", "BUILD_DIR", "WORKSPACE_DIR", "DEFAULT_ENVS"):
         variables[f"PLATFORMIO_{name}"] = "other"
     variables["PLATFORMIO_CORE_DIR"] = "kept"
-    built(clone, variables)
+    build_firmware(clone, variables)
     lines = (ready.firmware_cache() / "build.log").read_text().split()[1:]
     assert "PLATFORMIO_CORE_DIR" in lines and "PLATFORMIO_SETTING_ENABLE_TELEMETRY" in lines
     assert not [name for name in lines if re.search("FLAGS|SRC|BUILD|WORKSPACE|ENVS", name)]
@@ -364,18 +375,18 @@ def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Pat
 def test_where_nothing_can_be_kept_it_says_so(clone: Path, tmp_path: Path) -> None:
     body = f'{MAKES}\nmake("uno", ":00000001FF\\n")'
     (tmp_path / "cache").write_text("a file")
-    result = built(clone, pretending(tmp_path, body))
+    result = build_firmware(clone, pretending(tmp_path, body))
     result.gives(2, "make room there", str(tmp_path / "cache"))
 
 
 def test_a_file_that_cannot_be_removed_yet_fails_no_build(monkeypatch: pytest.MonkeyPatch) -> None:
-    """On Windows a virus scanner may still hold it."""
+    """A virus scanner on Windows may still hold it."""
 
-    def held(path: object, **_: object) -> None:
+    def raise_busy(path: object, **_: object) -> None:
         raise OSError(errno.EBUSY, "held", path)
 
     with building._temporary_folder() as folder:
-        monkeypatch.setattr(os, "rmdir", held)
+        monkeypatch.setattr(os, "rmdir", raise_busy)
     monkeypatch.undo()
     folder.rmdir()
 
@@ -390,7 +401,7 @@ time.sleep(600)
 """
     variables = pretending(tmp_path, body)
     variables["PYTHONPATH"] += os.pathsep + str(clone)
-    interrupted(path, "--build", **variables).gives(2)
+    run_interrupted(path, "--build", **variables).gives(2)
     for number in path.read_text().split():
         until(partial(has_ended, number), f"the end of {number}")
 
@@ -401,7 +412,7 @@ time.sleep(600)
 def test_without_platformio_it_says_how_to_get_it(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where pip may install nothing; else `tests/cli/test_fetching.py`."""
+    """Here pip may not install; `tests/cli/test_fetching.py` covers the rest."""
     monkeypatch.setattr(building, "find_spec", lambda name: None)
     monkeypatch.setattr(install_advice, "install_command", lambda extra: None)
     monkeypatch.setenv("PATH", str(tmp_path))
@@ -425,7 +436,7 @@ def test_the_platformio_of_the_editor_is_found(
 
 
 def test_a_package_without_sources_says_how_to_get_them(tmp_path: Path) -> None:
-    tsc(copied(tmp_path), "--build").gives(2, 'pip install ".[firmware]"')
+    tsc(copy_package(tmp_path), "--build").gives(2, 'pip install ".[firmware]"')
 
 
 # -- how far it is
@@ -481,7 +492,7 @@ assert os.path.exists("partitions.csv") and "esp32dev" in words
 """
 
 
-def written(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> CommandResult:
+def write_firmware(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> CommandResult:
     main_end, its_end = os.openpty()
     port = os.ttyname(its_end)
     variables = pretending(tmp_path, ESP32)
@@ -495,14 +506,14 @@ def written(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> CommandR
 
 
 def test_an_esp32_is_built_and_written_in_one_command(clone: Path, tmp_path: Path) -> None:
-    result = written(clone, tmp_path)
+    result = write_firmware(clone, tmp_path)
     result.gives(3, "no robot responds", out="firmware for tinibot32 was written to the esp32dev")
 
 
 @pytest.mark.parametrize("code", [1, -9])
 def test_an_esp32_that_is_not_written_is_told(clone: Path, tmp_path: Path, code: int) -> None:
-    written(clone, tmp_path, "--lang", "es", code=code).gives(2, "botón BOOT", out="")
+    write_firmware(clone, tmp_path, "--lang", "es", code=code).gives(2, "botón BOOT", out="")
 
 
 def test_an_esp32_is_only_built_where_that_is_asked(clone: Path, tmp_path: Path) -> None:
-    written(clone, tmp_path, "--build", code=1).gives(0, out="the firmware is built.")
+    write_firmware(clone, tmp_path, "--build", code=1).gives(0, out="the firmware is built.")

@@ -18,7 +18,7 @@ from tiniscript.flash import children
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs a shell")
 
-# Starts a program that has none of its ends, and goes on as its last word says.
+# Starts a program with closed standard streams, and continues as its last argument says.
 PARENT = 'sleep 3600 </dev/null >/dev/null 2>&1 & echo $! > "$1"; echo begun; {}'
 
 
@@ -27,7 +27,7 @@ class Broken(Exception):
 
 
 def looks_on(text: str) -> None:
-    """It may go on."""
+    """Let the program continue."""
 
 
 def breaks(text: str) -> None:
@@ -55,7 +55,7 @@ WAYS: dict[str, tuple[str, Callable[[str], None], type[BaseException] | None]] =
 
 
 def is_over(process: int) -> bool:
-    """Whether it has ended, though nobody may have waited for it."""
+    """Return whether it has ended, even as a zombie."""
     completed = subprocess.run(
         ["ps", "-o", "stat=", "-p", str(process)], capture_output=True, text=True
     )
@@ -67,19 +67,19 @@ def test_nothing_is_left_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
     end, look, failure = WAYS[way]
     monkeypatch.setattr(children, "KILL_DELAY_S", 0.2)
     for round_ in range(2):  # the second one as the first one
-        noted = tmp_path / f"{round_}"
-        words = ["sh", "-c", PARENT.format(end), "sh", str(noted)]
+        noted_path = tmp_path / f"{round_}"
+        words = ["sh", "-c", PARENT.format(end), "sh", str(noted_path)]
         if failure is None:
             code, text = children.run(words, None, look)
             assert text == "begun\n" and (code == 0) == (way == "it ends well")
         else:
             with pytest.raises(failure):
                 children.run(words, None, look, None, lambda _: way != FIRST_ITS_END, 0.2)
-        child = int(noted.read_text(encoding="utf-8"))
+        child = int(noted_path.read_text(encoding="utf-8"))
         until(partial(is_over, child), "what it has started ends")
 
 
-# What Popen may raise where a program cannot be started.
+# Exceptions of Popen for a program that cannot be started.
 REFUSALS = (FileNotFoundError, PermissionError, MemoryError, ValueError)
 
 

@@ -23,8 +23,8 @@ WRITES = "import sys\nwhile True: sys.stdout.write({said!r}); sys.stdout.flush()
 HALF = "Reading | ### |\\nWriting | " + "#" * 25
 
 
-def ended(folder: Path, body: str) -> tuple[WriteResult, list[StepProgress | None]]:
-    """Let this avrdude write a firmware; return how it ended and what was seen of it.
+def write_and_watch(folder: Path, body: str) -> tuple[WriteResult, list[StepProgress | None]]:
+    """Write a firmware with this avrdude; return the result and the progress seen.
 
     There is a file `seen` as soon as anything was.
     """
@@ -42,28 +42,28 @@ def ended(folder: Path, body: str) -> tuple[WriteResult, list[StepProgress | Non
 
 @pytest.mark.parametrize("message", ["avrdude: warning\n", "x" * 4096, "\x1b[31m", "#"])
 def test_one_that_writes_for_ever(tmp_path: Path, message: str) -> None:
-    assert ended(tmp_path, WRITES.format(said=message))[0].outcome == avrdude.ENDLESS
+    assert write_and_watch(tmp_path, WRITES.format(said=message))[0].outcome == avrdude.ENDLESS
 
 
 def test_its_progress_is_kept_until_then(tmp_path: Path) -> None:
     waits = f"import os\nwhile not os.path.exists({str(tmp_path / 'seen')!r}): pass\n"
     body = f'print("{HALF}", flush=True)\n' + waits + WRITES.format(said=" waiting\n")
-    how, steps = ended(tmp_path, body)
+    how, steps = write_and_watch(tmp_path, body)
     assert how.outcome == avrdude.ENDLESS
     assert StepProgress(avrdude.WRITING, 50) in steps
 
 
 def test_one_that_says_a_little_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is never silent, and its time is over all the same."""
+    """Though it is never silent, it times out."""
     monkeypatch.setattr(avrdude, "RUN_TIMEOUT_S", 1.0)
     body = 'import time\nwhile True: print(".", flush=True); time.sleep(0.02)\n'
-    assert ended(tmp_path, body)[0].outcome == avrdude.ENDLESS
+    assert write_and_watch(tmp_path, body)[0].outcome == avrdude.ENDLESS
 
 
 def test_one_that_has_said_all_and_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(avrdude, "EXIT_TIMEOUT_S", 0.1)
     body = "import os, time\nos.close(1); os.close(2); time.sleep(600)\n"
-    assert ended(tmp_path, body)[0].outcome == avrdude.ENDLESS
+    assert write_and_watch(tmp_path, body)[0].outcome == avrdude.ENDLESS
 
 
 def test_a_slow_reader_takes_nothing_of_the_file_that_is_opened_next(
@@ -78,7 +78,7 @@ def test_a_slow_reader_takes_nothing_of_the_file_that_is_opened_next(
 
     monkeypatch.setattr(os, "read", slow)
     body = "import time\nprint('attempt 1 of 10, attempt 2 of 10', flush=True)\ntime.sleep(600)\n"
-    assert ended(tmp_path, body)[0].outcome == avrdude.NOBODY
+    assert write_and_watch(tmp_path, body)[0].outcome == avrdude.NOBODY
     next_ones = [end for _ in range(4) for end in socketpair()]
     for end in next_ones:
         end.setblocking(False)
@@ -112,7 +112,7 @@ def test_its_children_end_with_it(tmp_path: Path, rest: str) -> None:
         f"import subprocess, sys\nchild = subprocess.Popen({sleep}, stdout=subprocess.DEVNULL,"
         f" stderr=subprocess.DEVNULL)\nopen({str(note)!r}, 'w').write(str(child.pid))\n{rest}\n"
     )
-    ended(tmp_path, body)
+    write_and_watch(tmp_path, body)
     until(partial(has_ended, note.read_text()), "its child has ended")
 
 
@@ -126,13 +126,13 @@ def test_ctrl_c_while_one_is_started_ends_it(monkeypatch: pytest.MonkeyPatch) ->
     processes: list[subprocess.Popen[bytes]] = []
     begin = subprocess.Popen
 
-    def interrupted(*arguments: object, **options: object) -> subprocess.Popen[bytes]:
+    def interrupt_first(*arguments: object, **options: object) -> subprocess.Popen[bytes]:
         processes.append(begin(*arguments, **options))  # type: ignore[call-overload]
         if len(processes) == 1:  # Windows starts another program to end it
             signal.raise_signal(signal.SIGINT)
         return processes[-1]
 
-    monkeypatch.setattr(subprocess, "Popen", interrupted)
+    monkeypatch.setattr(subprocess, "Popen", interrupt_first)
     with pytest.raises(KeyboardInterrupt):
         children.run([sys.executable, "-c", "import time; time.sleep(600)"], None, print)
     assert processes[0].poll() is not None

@@ -13,11 +13,11 @@ import pytest
 import serial
 
 from tests.machines.bootloaders import FOLDER, Bootloader, bootloader, optiboot
-from tests.machines.uno import built, needed
+from tests.machines.uno import build_uno, skip_unless_available
 from tests.support.command import Tsc
-from tests.support.flashed_boards import LIMITED, copied, new_board, to_hex, tsc
+from tests.support.flashed_boards import LIMITED, copy_package, new_board, to_hex, tsc
 from tests.support.needs import need
-from tests.support.platformio import firmware, prepared, shared
+from tests.support.platformio import firmware, prepare, shared_folder
 from tests.support.terminal import Terminal
 from tiniscript import robots
 from tiniscript.cli.commands import firmware as firmware_command
@@ -39,14 +39,16 @@ FILES = {"tinibot-uno": "uno", "tinibot-nano": "nano", "grabber-mega": "mega_gra
 @pytest.fixture(scope="module")
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the package that has come with firmware."""
-    needed()
+    skip_unless_available()
     if not shutil.which("avrdude"):
         need("no avrdude on this computer")
-    copy = copied(tmp_path_factory.mktemp("package"))
+    copy = copy_package(tmp_path_factory.mktemp("package"))
     folder = copy / "tiniscript" / "flash" / "ready"
     folder.mkdir()
     for name, environment in FILES.items():
-        elf = firmware(environment, tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
+        elf = firmware(
+            environment, tmp_path_factory.mktemp("sketch"), shared_folder(tmp_path_factory)
+        )
         to_hex(elf, folder / f"{name}-digest.hex")
     return copy
 
@@ -54,7 +56,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def with_platformio(monkeypatch: pytest.MonkeyPatch) -> None:
     """PlatformIO works here, with the offline stand-ins where it needs them."""
-    variables, why = prepared()
+    variables, why = prepare()
     need(why)
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
@@ -85,7 +87,7 @@ def test_a_board_without_a_bootloader_stays_as_it_is(
     package: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     """The robot's own firmware answers nothing that avrdude says."""
-    with Uno(firmware("uno", tmp_path, shared(tmp_path_factory)), tells_sleep=False) as uno:
+    with Uno(firmware("uno", tmp_path, shared_folder(tmp_path_factory)), tells_sleep=False) as uno:
         uno.go()
         tsc(package, "--port", uno.pty).gives(3, f"no bootloader responds on {uno.pty}", "HC-05")
         uno.pause()
@@ -133,8 +135,8 @@ PROGRESS = 'print("Writing | #########", end="", flush=True)'
 
 @pytest.fixture
 def board() -> Iterator[Uno]:
-    needed()
-    with Uno(built("nothing"), bootloader=bootloader("uno").file, tells_sleep=False) as uno:
+    skip_unless_available()
+    with Uno(build_uno("nothing"), bootloader=bootloader("uno").file, tells_sleep=False) as uno:
         uno.go()
         yield uno
 
@@ -173,7 +175,7 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
     variables = {"PYTHONPATH": str(package), **fake(tmp_path, body)}
     tsc = [*LIMITED, sys.executable, "-m", "tiniscript"]
     terminal = Terminal("firmware", "--yes", "--port", board.pty, command=tsc, env=variables)
-    terminal.until(r"\[#+\.+\]")  # it has read how far avrdude is
+    terminal.until(r"\[#+\.+\]")  # waits until avrdude's progress is shown
     terminal.interrupt()
     assert terminal.end() == 2
     assert "board's firmware" in " ".join(" ".join(terminal.whole()).split())
@@ -184,7 +186,7 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
 def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
     count: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """And nothing of that before: the board has what it had."""
+    """There is no such warning before the first byte, because the board is unchanged."""
 
     def write(*words: object) -> None:
         look = cast("Callable[[StepProgress | None], None]", words[-1])
@@ -195,9 +197,9 @@ def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
 
     monkeypatch.setattr(avrdude, "write", write)
     firmware = ReadyFile("tinibot", "uno", "0", Path("x.hex"))
-    with pytest.raises((CommandError, KeyboardInterrupt)) as ended:
+    with pytest.raises((CommandError, KeyboardInterrupt)) as exception_info:
         firmware_command._write_firmware(["x"], UNO, "x", firmware, "en")
-    assert getattr(ended.value, "key", None) == ("flash_stopped" if count else None)
+    assert getattr(exception_info.value, "key", None) == ("flash_stopped" if count else None)
 
 
 def test_without_avrdude_it_says_where_to_get_it(package: Path, tmp_path: Path) -> None:
@@ -223,7 +225,7 @@ def test_the_avrdude_of_another_program_is_found(
     program = tmp_path / place
     program.parent.mkdir(parents=True)
     program.touch(mode=0o755)
-    assert avrdude.find_avrdude() is None  # without its settings it does nothing
+    assert avrdude.find_avrdude() is None  # avrdude does not work without its configuration
     inside = program.parent.parent / "etc" if program.parent.name == "bin" else program.parent
     inside.mkdir(exist_ok=True)
     (inside / "avrdude.conf").touch()
@@ -250,7 +252,7 @@ def test_the_avrdude_of_another_program_is_found(
     (avrdude.FAILED, ""),
 ])  # fmt: skip
 def test_what_avrdude_says_has_a_name(how: str, name: str) -> None:
-    for code in (1, 255, -9, -15):  # also where it was ended from outside
+    for code in (1, 255, -9, -15):  # including exits by a signal from outside
         assert avrdude.result_of(code, name).outcome == how
 
 
@@ -273,8 +275,12 @@ def test_how_far_it_is(expected: str, progress: object) -> None:
 
 
 def test_what_cannot_be_run_is_no_crash(tmp_path: Path) -> None:
-    ended = avrdude.write([str(tmp_path / "none")], UNO, "x", tmp_path, lambda progress: None)
-    assert ended.outcome == avrdude.FAILED and "No such file" in ended.output
+    ended_write_result = avrdude.write(
+        [str(tmp_path / "none")], UNO, "x", tmp_path, lambda progress: None
+    )
+    assert (
+        ended_write_result.outcome == avrdude.FAILED and "No such file" in ended_write_result.output
+    )
 
 
 # -- the files
@@ -284,7 +290,7 @@ def test_what_cannot_be_run_is_no_crash(tmp_path: Path) -> None:
 def test_a_firmware_is_the_same_however_it_is_built(
     package: Path, tmp_path: Path, with_platformio: None
 ) -> None:
-    """As `pio run` builds a shipped robot, and as `tsc firmware` builds any, in another folder."""
+    """`pio run` builds shipped robots, and `tsc firmware` any robot, in another folder."""
     path = firmware_files.build(robots.load("tinibot"), tmp_path)
     assert path.name.startswith("tinibot-uno-")
     halting = firmware_files.build(robots.load("tinibot"), tmp_path, has_breakpoints=True)
@@ -309,7 +315,7 @@ def test_every_board_of_the_option_is_one_that_is_built() -> None:
 
 
 def test_breakpoints_are_built_where_they_take_the_place_of_the_reader_of_text() -> None:
-    """Of each robot on each board that lacks one of both."""
+    """For each robot on each board that lacks one of the two."""
     for robot in firmware_files.shipped_robots():
         halting = [
             halting for halting in firmware_files.halting_robots()

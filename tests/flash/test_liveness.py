@@ -1,4 +1,4 @@
-"""A long flashing that goes on is waited for, and one that stands still is not: on a fake clock."""
+"""A long flashing that progresses is waited for, and a stalled one is not: on a fake clock."""
 
 from __future__ import annotations
 
@@ -48,10 +48,10 @@ def output(rng: random.Random, whole_s: float, longest_s: float) -> list[tuple[f
     return lines
 
 
-def watched(
+def watch_parts(
     clock: Clock, parts: list[tuple[float, str]], until_s: float
 ) -> tuple[WriteResult | None, float]:
-    """Return how the watch has ended it, or None, and when."""
+    """Return the watch's verdict, or None, and its time."""
     all_progress: list[StepProgress | None] = []
     watch = avrdude._Watch(all_progress.append)
     began_s = clock.now_s
@@ -76,7 +76,7 @@ def test_what_goes_on_is_waited_for(clock: Clock, seed: int) -> None:
     """A Mega, and one that is as slow as may be, with pauses that are nearly too long."""
     rng = random.Random(seed)
     parts = output(rng, rng.choice((10, MEGA_S, 200)), NO_ANSWER_TIMEOUT_S - 1)
-    assert watched(clock, parts, parts[-1][0] + 1) == (None, parts[-1][0] + 1)
+    assert watch_parts(clock, parts, parts[-1][0] + 1) == (None, parts[-1][0] + 1)
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -85,7 +85,7 @@ def test_what_stands_still_ends(clock: Clock, seed: int) -> None:
     parts = output(rng, MEGA_S, NO_ANSWER_TIMEOUT_S - 1)
     some = parts[: rng.randrange(len(parts) - 1)]
     last_s = some[-1][0] if some else 0.0
-    how, at_s = watched(clock, some, RUN_TIMEOUT_S + 1)
+    how, at_s = watch_parts(clock, some, RUN_TIMEOUT_S + 1)
     assert how and how.outcome == (avrdude.BROKEN_OFF if len(some) > 1 else avrdude.NOBODY)
     limit_s = SILENCE_TIMEOUT_S if len(some) > 1 else NO_ANSWER_TIMEOUT_S
     assert limit_s - LOOK_S < at_s - last_s < limit_s + 2 * LOOK_S
@@ -93,5 +93,5 @@ def test_what_stands_still_ends(clock: Clock, seed: int) -> None:
 
 def test_what_only_says_something_ends(clock: Clock) -> None:
     parts = [(0.0, SIGNATURE + "Writing | #"), *((k * 1.0, ".") for k in range(1000))]
-    how, at_s = watched(clock, parts, RUN_TIMEOUT_S + 10)
+    how, at_s = watch_parts(clock, parts, RUN_TIMEOUT_S + 10)
     assert how == WriteResult(avrdude.ENDLESS) and at_s < RUN_TIMEOUT_S + 2 * LOOK_S

@@ -14,47 +14,47 @@ import pytest
 from tests.machines import host
 from tests.support.command import CommandResult
 from tests.support.needs import need
-from tests.support.platformio import OFFLINE, SKETCH, copied, pio, prepared
+from tests.support.platformio import OFFLINE, SKETCH, copy_sketch, pio, prepare
 from tiniscript import compile_text, robots
 from tiniscript.cli import main
 from tools.bench.firmware_size import SMALLER_ENVIRONMENTS, environments
 from tools.builds.platformio_offline import ARDUINO, BOARDS, DEBIAN_PACKAGES
 
-FLASH_BYTES, RAM_BYTES = 32_256, 2048  # of an Uno
+FLASH_BYTES, RAM_BYTES = 32_256, 2048  # memory of an Uno
 
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the sketch to build and to break. Without PlatformIO: skipped, in CI a failure."""
-    return copied(tmp_path_factory.mktemp("platformio"))
+    return copy_sketch(tmp_path_factory.mktemp("platformio"))
 
 
 @pytest.fixture
 def native(project: Path) -> Path:
-    """The same, where this computer's compiler can build the tests in C++."""
+    """Return the project, if this computer's compiler can build the tests in C++."""
     need(host.missing())
     return project
 
 
 @contextmanager
-def changed(path: Path, *changes: tuple[str, str]) -> Iterator[None]:
+def change_file(path: Path, *changes: tuple[str, str]) -> Iterator[None]:
     """Change a file of the copy, and put it back afterwards."""
-    before = path.read_text(encoding="utf-8")
-    after = before
+    text_before = path.read_text(encoding="utf-8")
+    before_after = text_before
     for old, new in changes:
-        assert old in after, f"{path.name} has no {old}"
-        after = after.replace(old, new)
+        assert old in before_after, f"{path.name} has no {old}"
+        before_after = before_after.replace(old, new)
     path.unlink()
-    path.write_text(after, encoding="utf-8")
+    path.write_text(before_after, encoding="utf-8")
     try:
         yield
     finally:
-        path.write_text(before, encoding="utf-8")
+        path.write_text(text_before, encoding="utf-8")
 
 
 def names_stand_in_if_used(log: str) -> bool:
     """Return whether a log names the stand-ins, or is one of PlatformIO's own platforms."""
-    return not prepared()[0] or "Offline stand-in for PlatformIO's platform" in log
+    return not prepare()[0] or "Offline stand-in for PlatformIO's platform" in log
 
 
 # -- the tests in C++ ---------------------------------------------------------------------------
@@ -71,12 +71,12 @@ def test_tests_pass(native: Path) -> None:
 
 
 def test_a_test_case_that_fails_is_one_and_has_its_name(native: Path) -> None:
-    broken = native / "test" / "cases.cpp"
-    with changed(broken, ('"0 SHOW 2\\n0 MOTORS 0 0\\n0 DONE\\n")', '"0 SHOW 3\\n")')):
+    broken_path = native / "test" / "cases.cpp"
+    with change_file(broken_path, ('"0 SHOW 2\\n0 MOTORS 0 0\\n0 DONE\\n")', '"0 SHOW 3\\n")')):
         log = pio(native, "test", "-e", "native").gives(1).out
-    named = re.findall(r"^FAILED: (.*)$", log, re.MULTILINE)
-    assert "accepted: ELSE after ELSE, where the condition is FALSE" in named
-    assert f"{len(named)} failed, " in log.splitlines()[-1] + log.splitlines()[-2], log
+    names = re.findall(r"^FAILED: (.*)$", log, re.MULTILINE)
+    assert "accepted: ELSE after ELSE, where the condition is FALSE" in names
+    assert f"{len(names)} failed, " in log.splitlines()[-1] + log.splitlines()[-2], log
 
 
 def test_no_test_case_fails(native: Path) -> None:
@@ -86,9 +86,9 @@ def test_no_test_case_fails(native: Path) -> None:
 
 def test_early_end_fails(native: Path) -> None:
     """A run that stops in the middle is no success, whatever its exit code."""
-    broken = native / "test" / "test_cases.cpp"
-    with changed(
-        broken,
+    broken_path = native / "test" / "test_cases.cpp"
+    with change_file(
+        broken_path,
         ('TEST_CASE("a robot that', 'TEST_CASE("ends") { exit(0); }\nTEST_CASE("a robot that'),
         ("#include <doctest.h>", "#include <doctest.h>\n#include <stdlib.h>"),
     ):
@@ -122,8 +122,8 @@ ESP32 = {"esp32dev": "tinibot32", "esp32c3": "tinibotc3"}
 
 def test_every_robot_has_a_sketch_for_its_board() -> None:
     text = (SKETCH / "platformio.ini").read_text(encoding="utf-8")
-    named = re.findall(r"\[env:(\w+)\]", text)
-    assert set(named) == {*SKETCHES, *NEW_NANOS, *ESP32, *SMALLER_ENVIRONMENTS, "native"}
+    names = re.findall(r"\[env:(\w+)\]", text)
+    assert set(names) == {*SKETCHES, *NEW_NANOS, *ESP32, *SMALLER_ENVIRONMENTS, "native"}
     assert set(environments()) == set(SKETCHES)
     for board, name in ESP32.items():
         assert robots.load(name).board.chip == board
@@ -146,7 +146,7 @@ def test_sketch_builds(project: Path, name: str) -> None:
 
 @pytest.mark.sampled(of="builds of PlatformIO")
 def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None:
-    with changed(
+    with change_file(
         project / "platformio.ini",
         ("= nanoatmega328\n", "= nanoatmega328\nboard_upload.maximum_size = 20000\n"),
     ):
@@ -159,7 +159,7 @@ def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None
 def test_an_interrupt_without_a_vector_is_refused(project: Path) -> None:
     """Tables lie where `vectors.S` has none."""
     clock = project / "src" / "boards" / "avr" / "clock.cpp"
-    with changed(clock, ("ISR(TIMER0_OVF_vect", "ISR(ADC_vect) {}\n\nISR(TIMER0_OVF_vect")):
+    with change_file(clock, ("ISR(TIMER0_OVF_vect", "ISR(ADC_vect) {}\n\nISR(TIMER0_OVF_vect")):
         pio(project, "run", "-e", "uno").gives(1, out="an interrupt has no vector in vectors.S")
 
 
@@ -179,7 +179,7 @@ def test_a_board_holds_what_its_fuses_leave(board: str, arduino: str) -> None:
 def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     project: Path, new_env: str, old_env: str
 ) -> None:
-    """What differs is how it is uploaded: as PlatformIO's board for such Nanos."""
+    """Only the upload differs: it is that of PlatformIO's board for such Nanos."""
     builds: list[bytes] = []
     held: list[int] = []
     for name in (new_env, old_env):
@@ -203,7 +203,7 @@ def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:
         assert main(["firmware", "--board", str(profile), "-o", str(own)]) == 0
         log = pio(project, "run", "-e", "uno").gives(0).out
         assert re.search(r"(Compiling |Retrieved `)\S+/boards/motors.cpp.o", log)
-        with changed(own, ("kBuzzer", "kNothingLikeIt")):
+        with change_file(own, ("kBuzzer", "kNothingLikeIt")):
             pio(project, "run", "-e", "uno").gives(1, out="kBuzzer")
         fits = "is wired to another board. It fits: uno."
         pio(project, "run", "-e", "mega").gives(1, out=fits)
@@ -251,9 +251,9 @@ def test_every_platform_has_its_version_and_another_one_is_refused(
     project: Path, tmp_path: Path
 ) -> None:
     settings = (project / "platformio.ini").read_text(encoding="utf-8")
-    named = re.findall(r"(?m)^platform = (.*)", settings)
-    assert named and all(re.fullmatch(r"\w+ @ \d+\.\d+\.\d+", package) for package in named)
-    with changed(project / "platformio.ini", ("= atmelavr @ 5.1.0", "= atmelavr @ 5.0.0")):
+    names = re.findall(r"(?m)^platform = (.*)", settings)
+    assert names and all(re.fullmatch(r"\w+ @ \d+\.\d+\.\d+", package) for package in names)
+    with change_file(project / "platformio.ini", ("= atmelavr @ 5.1.0", "= atmelavr @ 5.0.0")):
         result = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
     result.gives(2, "wants atmelavr @ 5.0.0, the stand-in is one for 5.1.0", out="")
 

@@ -29,10 +29,10 @@ from tiniscript.link.frames import decode_frame
 COMPILER = "clang++-22"
 FLAGS = ("-std=c++11", "-O2", "-g", "-fsanitize=fuzzer,address,undefined",
          "-fno-sanitize-recover=all")  # fmt: skip
-# What is compared with what takes half of the time. Only the machine's harness needs to be told:
-# the others make checksums right themselves, and begin with every message and record.
+# Arguments for comparisons at half the time. Only the machine's harness needs some: the others fix
+# checksums themselves, and begin with every message and record.
 NOT_COMPARED = "-fno-sanitize-coverage=trace-cmp"
-MOST_BYTES = 700  # of an input
+MOST_BYTES = 700  # most bytes of an input
 DONE = re.compile(r"Done (\d+) runs")
 
 VM = ("crc32.cpp", "find_word.cpp", "image.cpp", "verify.cpp", "bytecode.cpp", "decode_form.cpp")
@@ -49,13 +49,13 @@ DEFINED = {"large_link": ("-Dtiniscript_like_esp32",), "mqtt": ("-DARDUINO_ARCH_
 HEADERS = ("src/*.h", "src/boards/esp32/*.h", "src/vm/*.h", "src/link/*.h", "src/text/*.h",
            "src/store/*.h", "extras/fuzz/*.h", "extras/link/*.h",
            "extras/powercut/*.h")  # fmt: skip
-PARTS["large_link"] = PARTS["link"]  # with the frames and the window of an ESP32
+PARTS["large_link"] = PARTS["link"]  # the same sources, with the frames and window of an ESP32
 NAMES = tuple(PARTS)
 
 
 @lru_cache(maxsize=1)
 def missing() -> str:
-    """Return why nothing can be built here, or nothing."""
+    """Return the reason why nothing can be built here, or ""."""
     if shutil.which(COMPILER) is None:
         return f"no {COMPILER} on this computer: apt-get install clang-22 libclang-rt-22-dev"
     with tempfile.TemporaryDirectory() as folder:
@@ -77,7 +77,7 @@ def harness(name: str) -> Path:
 
 
 class Found(NamedTuple):
-    """How a run of a fuzzer has ended: how many inputs, and what was wrong with the last one."""
+    """The result of a fuzzer's run: the number of inputs, and the error of the last one."""
 
     runs: int
     wrong: str
@@ -90,7 +90,7 @@ def fuzz(program: Path, folder: Path, runs: int, seed: int) -> Found:
     command = [str(program), f"-runs={runs}", f"-seed={seed}", f"-max_len={MOST_BYTES}",
                f"-exact_artifact_path={crash}", "-print_final_stats=0", "-timeout=25",
                str(folder)]  # fmt: skip
-    # no stack is kept of each allocation: where an access is wrong says enough
+    # No stack is kept for each allocation: the place of a wrong access is enough.
     options = {**os.environ, "ASAN_OPTIONS": "malloc_context_size=0"}
     completed = subprocess.run(command, capture_output=True, errors="replace", env=options)
     output = completed.stderr + completed.stdout

@@ -1,4 +1,4 @@
-"""What a fuzzer makes finds nothing wrong in the robot's C++."""
+"""Fuzzers find no errors in the robot's C++."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FOUND: dict[str, tuple[str, ...]] = {
         # a BEGIN that is answered BUSY leaves the program that was begun before
         "00010a010002001b230600000040320a0910020000110000030040320b08000000aa4e4e4e4e4e4e"
         "4ec26e40320402000040320a09000200000f000f0400030040320b0600000144325040320402000040320a09000200000f000f0400030040320b0600000144325040320c04e2027ea740320a0900020000ff0000ffff40320a0900020000e8030000ff000096004032",
-        # text that asks whether the kit says how fast it turns
+        # Text that depends on a turning speed in the kit.
         "008f53497c4628464f52455645522c36308f293b5748454e2854525545293b52288f3930204445472c3630293b454e445f855748454e0a4032",
     ),
 }

@@ -35,7 +35,7 @@ from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.reader import read as read_profile
 from tiniscript.virtual.worlds import read as read_world
 
-EXAMPLES = 150  # in the tests, of each kind
+EXAMPLES = 150  # examples of each kind in the tests
 KIT = robots.load("tinibot").kit
 PIECES = (
     "SI|", "SB|", "LOOP(", "FOREVER", "IF ", "ELSE", "END_IF", "END_LOOP", "DEF X", "UNTIL(",
@@ -73,14 +73,16 @@ def changed_texts(pattern: str) -> SearchStrategy[str]:
 
 
 def check_program(text: str) -> None:
-    """It has an image that the verifier takes, or mistakes that can be said in every language."""
-    compiled = compile_text(text, KIT)
-    assert compiled.is_right != any(diagnostic.is_mistake for diagnostic in compiled.diagnostics)
-    if compiled.is_right:
-        image = unpack(compiled.image)
+    """Check that a text has a valid image, or mistakes with messages in every language."""
+    compilation = compile_text(text, KIT)
+    assert compilation.is_right != any(
+        diagnostic.is_mistake for diagnostic in compilation.diagnostics
+    )
+    if compilation.is_right:
+        image = unpack(compilation.image)
         verify(image.code, len(KIT.readings), len(KIT.actuators))
     source = Source(text, "x.ts")
-    for diagnostic in compiled.diagnostics:
+    for diagnostic in compilation.diagnostics:
         for language in languages():
             assert as_text(message(diagnostic, source, language), source, language)
 

@@ -16,7 +16,7 @@ import pytest
 
 from tests.pupils.corpus import check
 from tests.support.command import Tsc
-from tests.support.copies import linked
+from tests.support.copies import link_copy
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.base import languages
@@ -40,7 +40,7 @@ SOURCES = sources()
 @pytest.mark.parametrize("name", SOURCES)
 @pytest.mark.parametrize("language", languages.languages()[1:])
 def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(language: str, name: str) -> None:
-    """And each translation is of the English text that is there now."""
+    """Each translation is of the current English text."""
     catalogue = languages.merged_catalogue(name, language)
     assert catalogue.problems == []
     assert [
@@ -57,7 +57,7 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(language: str,
 
 @pytest.mark.parametrize("language", languages.languages()[1:])
 def test_a_language_is_in_step(language: str, tmp_path: Path) -> None:
-    """What the tool writes is what is there."""
+    """The tool would write the same files."""
     own = Translation(language, sources())
     bytes_before = {path.name: path.read_bytes() for path in own.folder.iterdir() if path.is_file()}
     assert [path for path, problems in own.problems() if problems] == []
@@ -96,9 +96,9 @@ def test_the_names_in_toml_files_are_translated() -> None:
 
 @pytest.mark.parametrize("language", languages.languages()[1:])
 def test_a_language_that_is_deleted_is_missed_by_no_other(language: str, tmp_path: Path) -> None:
-    """Nothing outside of its folder names it, so nothing becomes an unknown row."""
+    """Nothing outside of its folder names it, so no row becomes unknown."""
     package = tmp_path / "tiniscript"
-    linked(FOLDER.parent, package, "*.texts", "__pycache__", "page", "ready")
+    link_copy(FOLDER.parent, package, "*.texts", "__pycache__", "page", "ready")
     shutil.rmtree(package / "languages" / language)
     others = [code for code in languages.languages() if code != language]
     commands = [
@@ -111,13 +111,13 @@ def test_a_language_that_is_deleted_is_missed_by_no_other(language: str, tmp_pat
         )
     ]  # fmt: skip
     commands.append(["check", "-e", "W(1)", "--lang", language])
-    *outputs, (code, refused) = _of_package(tmp_path, commands)
+    *outputs, (code, refused_text) = _of_package(tmp_path, commands)
     assert outputs == _of_package(FOLDER.parent.parent, commands)[:-1]
-    assert code == 2 and all(other in refused for other in others)
+    assert code == 2 and all(other in refused_text for other in others)
 
 
 def _of_package(place: Path, commands: list[list[str]]) -> list[tuple[int, str]]:
-    """Return what the command of a package says each time, in one process."""
+    """Return the output of a package's command for each call, in one process."""
     script = (
         "import contextlib, io, json, sys\n"
         "from tiniscript.cli import main\n"
@@ -176,7 +176,7 @@ def longer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
         for module in ("tools.languages", "tools.translation_files"):
             patch.setattr(f"{module}.FOLDER", tmp_path)
         make_pseudo(sources())
-    check("avansar(2, 80)")  # what words mean is read once: of this folder all later tests had none
+    check("avansar(2, 80)")  # meanings are loaded once, so later tests would get this folder's
     monkeypatch.setattr(languages, "FOLDER", tmp_path)
     _forget()
     yield PSEUDO
@@ -233,14 +233,14 @@ def test_a_command_stays_in_one_row_where_there_is_room(text: str, rows: list[st
     assert wrap(text, 20) == "\n".join(rows)
 
 
-# What is laid out, on a terminal and elsewhere.
+# Aligned texts, on a terminal and elsewhere.
 LAID_OUT = (("help",), ("help", "all"), *(("help", verb) for verb in VERBS))
 
 
 def test_texts_that_are_longer_keep_to_80_columns(
     longer: str, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """And each of their texts is another one there: none is outside of the catalogues."""
+    """Each text is replaced, so none is outside of the catalogues."""
     for words in LAID_OUT:
         rows = {}
         for language in (SOURCE_LANGUAGE, longer):
@@ -253,8 +253,8 @@ def test_texts_that_are_longer_keep_to_80_columns(
         assert [row for row in same if re.search(r"^ *\w.*[a-z]{3} [a-z]{3}", row)] == [], words
 
 
-# What nobody who speaks the language says, whatever the message: brackets that keep, a DEF or a
-# part that is "made", a task that "moves itself", a thing to take out that has no name.
+# Phrases that no native speaker uses: brackets that keep, a DEF or a part that is "made", a task
+# that "moves itself", a removed thing without a name.
 UNSAID = {
     "es": r"\bva desde \{|se mueve el TASK|el TASK [^.]* se mueve\b|Quita esto\b|no entra: aquí",
     "pt": r"parênteses de \{word\} guardam|nunca é feit[oa]|a TASK [^.]* anda\b|Tire isto\b",

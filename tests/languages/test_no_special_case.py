@@ -40,7 +40,7 @@ def test_no_code_asks_for_one_language() -> None:
 
 
 def _rows(language: str) -> list[tuple[str, list[str]]]:
-    """What something means, and the words that mean it."""
+    """Return the meanings, and the words for each."""
     rows = [
         row
         for row in read_language_file(language, "lexicon.txt").split("\n")
@@ -91,7 +91,9 @@ def test_rows_name_no_word_of_a_language() -> None:
     ],
 )
 def test_each_language_says_how_much_and_what_pupils_call_things(language: str) -> None:
-    """What a word is taken for in one language, `poco`, is in each, `pouco`."""
+    """A word's meaning in one language, `poco`, is also in the others, `pouco`."""
     kinds = {meaning.split()[0] for meaning, words in _rows(language) if words}
-    wanted = "amount note device stem short power value bye help each every jump colour number unit"
-    assert kinds >= {*wanted.split()}
+    wanted_text = (
+        "amount note device stem short power value bye help each every jump colour number unit"
+    )
+    assert kinds >= {*wanted_text.split()}

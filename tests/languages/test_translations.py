@@ -1,4 +1,4 @@
-"""The files of a language: what is wrong costs little, and a translation follows its text."""
+"""The files of a language: errors have small effects, and a translation follows its text."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from babel.messages.pofile import read_po
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.support.copies import linked
+from tests.support.copies import link_copy
 from tests.support.waiting import HANGS_S
 from tiniscript.base import catalogue_source, languages
 from tiniscript.base.catalogue_source import Catalogue, Entry
@@ -76,8 +76,8 @@ def text_of(key: str, language: str = "xx") -> str | dict[str, str]:
     return languages.texts("some", language)[key]
 
 
-def opened(place: Path, own: str | None = None, is_seen: bool = False) -> Translation:
-    """Return what `xx` has, as the tool sees it; `is_seen`: of the English texts of now."""
+def open_translation(place: Path, own: str | None = None, is_seen: bool = False) -> Translation:
+    """Return the translation `xx` as the tool sees it; `is_seen`: of the current English texts."""
     if own is not None:
         write(place / "xx" / "some.toml", own)
     english = {"some": catalogue_source.load_catalogue(place / SOURCE_LANGUAGE / "some.toml")}
@@ -123,15 +123,15 @@ def problems(translation: Translation) -> list[tuple[str, int, str]]:
 def test_what_is_wrong_costs_its_row_and_is_said_with_its_line(
     row: str, line: int, why: str, place: Path
 ) -> None:
-    rows = problems(opened(place, f"{OWN}{row}\nmore = ['', 'Quítalo.']\n"))
+    rows = problems(open_translation(place, f"{OWN}{row}\nmore = ['', 'Quítalo.']\n"))
     assert rows[0][:2] == ("some.toml", line) and rows[0][2].startswith(why)
     assert text_of("b") == "Alto." and text_of("more/2") == "Quítalo."
     if not row.startswith(("b", 'a = "Lee {file}."\n', 'a = ["Lee {file}.", "Mi')):
         assert text_of("a") == "Read {file}."
     before = (place / "xx" / "some.toml").read_text().splitlines()
-    reopened = opened(place)
-    assert [*reopened.follow_moved_texts()] == []
-    reopened.write()
+    reopened_translation = open_translation(place)
+    assert [*reopened_translation.follow_moved_texts()] == []
+    reopened_translation.write()
     after = (place / "xx" / "some.toml").read_text().splitlines()
     assert sorted(after) == sorted(before), "it keeps what somebody must mend"
 
@@ -143,7 +143,7 @@ def test_what_is_wrong_costs_its_row_and_is_said_with_its_line(
 def test_a_row_that_is_not_in_utf_8_is_said_in_english(data: bytes, line: int, place: Path) -> None:
     (place / "xx" / "some.toml").write_bytes(data)
     assert ("some.toml", line, "this is no UTF-8: save the file as UTF-8") in problems(
-        opened(place)
+        open_translation(place)
     )
     assert text_of("b") == "Alto."
     assert text_of("a") == "Read {file}."
@@ -151,16 +151,16 @@ def test_a_row_that_is_not_in_utf_8_is_said_in_english(data: bytes, line: int, p
 
 def test_a_file_in_another_encoding_has_no_texts(place: Path) -> None:
     (place / "xx" / "some.toml").write_bytes(OWN.encode("utf-16"))
-    assert problems(opened(place)) == [
+    assert problems(open_translation(place)) == [
         ("some.toml", 1, "this is no UTF-8 text: save the file as UTF-8")
     ]
     assert text_of("b") == "Stop."
 
 
 def test_what_an_editor_does_to_a_file_is_no_mistake(place: Path) -> None:
-    changed = '\ufeff# by somebody\r\n[x]\r\nb = "Alto."\r\na = """\r\nLee\r\n{file}."""\r\n'
-    write(place / "xx" / "some.toml", changed)
-    assert problems(opened(place)) == []
+    changed_text = '\ufeff# by somebody\r\n[x]\r\nb = "Alto."\r\na = """\r\nLee\r\n{file}."""\r\n'
+    write(place / "xx" / "some.toml", changed_text)
+    assert problems(open_translation(place)) == []
     assert text_of("b") == "Alto." and text_of("a") == "Lee\n{file}."
 
 
@@ -173,7 +173,7 @@ def test_what_is_wrong_in_the_hashes_is_said_with_its_line_and_kept(
     row: str, line: int, why: str, place: Path
 ) -> None:
     write(place / "xx" / SEEN_FILE, row)
-    own = opened(place, OWN)
+    own = open_translation(place, OWN)
     assert problems(own) == [(SEEN_FILE, line, why)]
     own.note_seen(["*"])
     own.write()
@@ -198,7 +198,7 @@ def test_what_a_language_cannot_say_of_itself_is_as_in_english(
     row: str, line: int, why: str, place: Path
 ) -> None:
     write(place / "xx" / ABOUT_FILE, row + "\n")
-    ((name, at, problem),) = problems(opened(place, OWN))
+    ((name, at, problem),) = problems(open_translation(place, OWN))
     assert (name, at) == (ABOUT_FILE, line) and problem.startswith(why)
     languages.forget_languages()
     assert languages.language_info("xx").forms == ("one", "other")
@@ -231,10 +231,10 @@ def test_what_cannot_be_read_is_wrong_and_costs_the_file(
     own = place / "xx" / "some.toml"
     write(own, OWN)
 
-    def refused(path: Path) -> bytes:
+    def refuse_access(path: Path) -> bytes:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(Path, "read_bytes", refused)
+    monkeypatch.setattr(Path, "read_bytes", refuse_access)
     assert read_translation_file(own).problems == [(1, "this cannot be read: Permission denied")]
 
 
@@ -254,7 +254,7 @@ def test_plurals_follow_the_rule_of_the_language(place: Path) -> None:
         forms = names.split()
         write(place / "xx" / ABOUT_FILE, f"forms = {forms}\nwhich_form = '{rule}'\n")
         rows = "".join(f"n.{form} = '{{n}} {form}'\n" for form in forms)
-        assert problems(opened(place, rows)) == []
+        assert problems(open_translation(place, rows)) == []
         languages.forget_languages()
         for number, form in wanted.items():
             assert languages.plural_text("some", "n", number, "xx") == f"{{n}} {form}"
@@ -268,7 +268,9 @@ def test_a_form_that_no_number_has_may_be_missing(place: Path) -> None:
     write(place / "xx" / ABOUT_FILE, 'forms = ["one", "many"]\nwhich_form = "n != 1"\n')
     row = "n.one = '{n} a'\nn.many = '{n} b'\n"
     assert (
-        problems(opened(place, row)) == problems(opened(place, f"{row}n.other = '{{n}}'\n")) == []
+        problems(open_translation(place, row))
+        == problems(open_translation(place, f"{row}n.other = '{{n}}'\n"))
+        == []
     )
 
 
@@ -285,19 +287,19 @@ def test_a_sentence_has_the_form_of_its_number(language: str, many: str, one: st
 def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
     place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    opened(place, OWN + 'a = "Lee {file}."\n')
+    open_translation(place, OWN + 'a = "Lee {file}."\n')
     assert text_of("b") == "Alto.", "a new one is said at once"
-    opened(place, is_seen=True)
+    open_translation(place, is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
     assert text_of("b") == "Stop now." and text_of("a") == "Lee {file}."
-    own = opened(place)
+    own = open_translation(place)
     assert tool.report(own) == 0
     out = capsys.readouterr().out
     assert "some.toml:2: b: its English text has changed, and so it is said in English: St" in out
     assert "xx: 1 texts are stale." in out and "xx: 1 of 5 texts are translated" in out
     write(place / "xx" / ABOUT_FILE, "is_complete = true\n")
-    assert tool.report(opened(place)) == 4, "a whole language says all, and as it is now"
-    opened(place, is_seen=True)
+    assert tool.report(open_translation(place)) == 4, "a whole language says all, and as it is now"
+    open_translation(place, is_seen=True)
     assert text_of("b") == "Stop now.", "somebody has run the tool for others"
     assert own.note_seen(["x*", "b"]) == ["x*"]
     own.write()
@@ -310,19 +312,19 @@ def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
 def test_a_text_in_front_of_others_moves_and_loses_no_translation(
     place: Path, has_run: bool
 ) -> None:
-    opened(place, 'more = ["", "Quítalo.", "Ponlo."]\n', is_seen=True)
-    moved = ENGLISH.replace('["{fix}", "Take it out.", "Put it in."]',
+    open_translation(place, 'more = ["", "Quítalo.", "Ponlo."]\n', is_seen=True)
+    moved_text = ENGLISH.replace('["{fix}", "Take it out.", "Put it in."]',
                             '["New.", "Put it in.", "{fix}", "Take it out."]')  # fmt: skip
-    write(place / SOURCE_LANGUAGE / "some.toml", moved)
+    write(place / SOURCE_LANGUAGE / "some.toml", moved_text)
     if has_run:
-        own = opened(place)
+        own = open_translation(place)
         assert [*own.follow_moved_texts()] == []
         own.write()
         assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
             'more = ["", "Ponlo.", "", "Quítalo."]\n'
         )
         write(place / "xx" / "some.toml", 'more = ["Nuevo.", "Ponlo.", "", "Quítalo."]\n')
-    assert problems(opened(place)) == []
+    assert problems(open_translation(place)) == []
     assert [text_of("more/2"), text_of("more/3"), text_of("more/4")] == [
         "Ponlo.",
         "{fix}",
@@ -332,21 +334,23 @@ def test_a_text_in_front_of_others_moves_and_loses_no_translation(
 
 
 def test_a_new_text_of_a_list_whose_english_has_moved_is_none_of_another_text(place: Path) -> None:
-    opened(place, 'more = ["", "Quítalo."]\n', is_seen=True)
+    open_translation(place, 'more = ["", "Quítalo."]\n', is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace('"{fix}", ', '"{fix}", "New.", '))
-    ((_, line, why),) = problems(opened(place, 'more = ["", "Nuevo.", "Quítalo."]\n'))
+    ((_, line, why),) = problems(open_translation(place, 'more = ["", "Nuevo.", "Quítalo."]\n'))
     assert line == 1 and why.startswith("more: its English texts have other places now")
     assert text_of("more/2") == "New."
 
 
 def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(place: Path) -> None:
-    """What is gone goes; a key that somebody has mistyped stays, and is wrong."""
+    """Deleted texts are removed; a mistyped key stays, and is reported."""
     notes = '# who\n[x]\nb = "Alto."  # short\n# why\na = "Lee {file}."\ngoes = "Se va."\n# end\n'
-    opened(place, notes)
+    open_translation(place, notes)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH + 'goes = "It goes."\n')
-    opened(place, is_seen=True)
+    open_translation(place, is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("b =", "moved ="))
-    own = opened(place, (place / "xx" / "some.toml").read_text("utf-8") + 'mistyped = "Ay."\n')
+    own = open_translation(
+        place, (place / "xx" / "some.toml").read_text("utf-8") + 'mistyped = "Ay."\n'
+    )
     assert [*own.follow_moved_texts()] == ["some.toml: goes"]
     own.write()
     assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
@@ -358,28 +362,30 @@ def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(p
         "some a",
         "some moved",
     ]
-    assert problems(opened(place)) == [("some.toml", 7, "mistyped: there is no such English text")]
-    reopened = opened(place)
-    assert [*reopened.follow_moved_texts()] == []
-    reopened.write()
+    assert problems(open_translation(place)) == [
+        ("some.toml", 7, "mistyped: there is no such English text")
+    ]
+    reopened_translation = open_translation(place)
+    assert [*reopened_translation.follow_moved_texts()] == []
+    reopened_translation.write()
     assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8") == seen_file
 
 
 def test_a_mistake_in_a_file_costs_nothing_that_is_noted(place: Path) -> None:
-    opened(place, OWN + 'more = ["", "Quítalo."]\n', is_seen=True)
+    open_translation(place, OWN + 'more = ["", "Quítalo."]\n', is_seen=True)
     seen_file = (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
     for spoilt in ('b = "Alto.\n', 'more = ["", "a", "b", "c"]\n' + OWN, OWN + "b = 'x'\n"):
-        own = opened(place, spoilt, is_seen=True)
+        own = open_translation(place, spoilt, is_seen=True)
         assert [*own.follow_moved_texts()] == []
         own.write()
         assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8").startswith(seen_file[:60])
         file_text = (place / "xx" / "some.toml").read_text(encoding="utf-8")
         assert sorted(file_text.splitlines()) == sorted(spoilt.splitlines())
     (place / "xx" / "some.toml").write_bytes(OWN.encode("utf-16"))
-    own = opened(place, is_seen=True)
+    own = open_translation(place, is_seen=True)
     assert "some b" in (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
-    opened(place, OWN)
+    open_translation(place, OWN)
     assert text_of("b") == "Stop now.", "it is stale still"
 
 
@@ -391,7 +397,7 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
         place / SOURCE_LANGUAGE / "some.toml",
         '[verb]\na = "Open"\nb = ["Shut", "Open"]\n[door]\ndoor.own = "Open"\n[menu]\nd = "Open"\n',
     )
-    own = opened(place, 'a = "Abrir"\nb = ["Cierra"]\ndoor = "Abierta"\n')
+    own = open_translation(place, 'a = "Abrir"\nb = ["Cierra"]\ndoor = "Abierta"\n')
     entries = [entry for entry in own.merge("some").entries.values() if not entry.is_same]
     assert [(it.key, it.english, it.notes, it.translation[""]) for it in entries] == [
         ("a", "Open", ["verb", "menu"], "Abrir"), ("b", "Shut", ["verb"], "Cierra"),
@@ -401,13 +407,13 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
     assert languages.texts("some", "xx") == {
         "a": "Abrir", "b": "Cierra", "b/2": "Abrir", "door": "Abierta", "d": "Abrir",
     }  # fmt: skip
-    opened(place, 'a = "Abrir"\nb = ["Cierra", "Abre"]\n')
+    open_translation(place, 'a = "Abrir"\nb = ["Cierra", "Abre"]\n')
     assert text_of("b/2") == "Abre"
 
 
 def test_a_program_is_for_no_translator_and_may_have_a_lone_brace(place: Path) -> None:
     write(place / SOURCE_LANGUAGE / "some.toml", 'a = "A."\n"b/wrong".same = "LOOP(3) {"\n')
-    own = opened(place)
+    own = open_translation(place)
     assert problems(own) == []
     own.put_all("some", pseudo(own.english["some"]))
     own.write()
@@ -494,9 +500,9 @@ def test_a_new_language_begins_with_what_unicode_knows_of_it(
     )
     assert "".join(language.form_digits[number] for number in (1, 0, 2, 5, 11)) == of_1_0_2_5_11
     assert f"{code}: 0 of " in capsys.readouterr().out
-    before = {path: path.read_bytes() for path in (place / code).iterdir()}
+    files_before = {path: path.read_bytes() for path in (place / code).iterdir()}
     assert whole() == 0
-    assert {path: path.read_bytes() for path in (place / code).iterdir()} == before
+    assert {path: path.read_bytes() for path in (place / code).iterdir()} == files_before
 
 
 def test_a_stranger_adds_a_language_text_by_text(
@@ -528,7 +534,7 @@ def test_a_stranger_adds_a_language_text_by_text(
 
 
 def test_what_is_missing_is_named_with_the_line_that_it_goes_after() -> None:
-    """That of the text before it in English; another order of the file changes nothing there."""
+    """The line is that of the previous text in English, whatever the file's order."""
     translated = {"": "x"}
     rows = [Entry("a", "A"), Entry("b", "B", translation=translated, line=7),
             Entry("c", "C", line=99), Entry("d", "D", translation=translated, line=3),
@@ -607,7 +613,7 @@ def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
     assert stop() == "Stop.", "what was made of it is no translation"
     write(own, OWN)
     path.unlink()
-    path.mkdir()  # nobody can write this file
+    path.mkdir()  # makes the file impossible to write
     assert stop() == "Alto."
 
 
@@ -645,7 +651,7 @@ WITHOUT = (
 
 
 def command(package: Path, *words: str, code: str = WITHOUT) -> tuple[int, str]:
-    """Return what the command of a package says, of which no file can get a byte."""
+    """Return the output of a package's command that cannot read any file."""
     run = subprocess.run(
         [sys.executable, "-c", code, *words],
         env={**os.environ, "PYTHONPATH": str(package.parent), "PYTHONDONTWRITEBYTECODE": "1"},
@@ -658,7 +664,7 @@ def command(package: Path, *words: str, code: str = WITHOUT) -> tuple[int, str]:
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A package as a clone has it, in which nothing is made yet."""
     target = tmp_path_factory.mktemp("clone") / "tiniscript"
-    return linked(
+    return link_copy(
         FOLDER.parent, target, f"*{languages.CACHE_ENDING}", "__pycache__", "page", "ready"
     )
 
@@ -703,11 +709,11 @@ def test_english_texts_that_are_wrong_are_said_without_words_of_ours(
 def own(place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Translation:
     """A language with a translation, a stale one, and a form missing."""
     monkeypatch.chdir(tmp_path)
-    before = ENGLISH.replace("Stop.", "Halt.")
-    write(place / SOURCE_LANGUAGE / "some.toml", before)
-    opened(place, OWN + 'a = "Lee {file}."\nmore = ["", "", "Ponlo."]\n', is_seen=True)
+    replace_before = ENGLISH.replace("Stop.", "Halt.")
+    write(place / SOURCE_LANGUAGE / "some.toml", replace_before)
+    open_translation(place, OWN + 'a = "Lee {file}."\nmore = ["", "", "Ponlo."]\n', is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH)
-    return opened(place)
+    return open_translation(place)
 
 
 def po(own: Translation) -> Catalog:
@@ -742,7 +748,7 @@ def test_what_comes_back_is_of_the_english_text_beside_it(
     text = text.replace('"Take it out."\nmsgstr ""', '"Take it out."\nmsgstr "¡Fuera \\"x\\"!"')
     text = text.replace('msgstr[0] ""', 'msgstr[0] "{n} b"').replace('[1] ""', '[1] "{n} bb"')
     write(Path("xx.po"), text.replace("Lee {file}", "Mira {file}"))
-    assert translators.exchange("xx.po", opened(place).english) == 1
+    assert translators.exchange("xx.po", open_translation(place).english) == 1
     out = capsys.readouterr().out
     assert "some/n: its English text is not this one now: {n} byte" in out
     assert "xx.po: 3 texts are taken" in out
@@ -750,10 +756,10 @@ def test_what_comes_back_is_of_the_english_text_beside_it(
         'a = "Mira {file}."\nb = "Alto."\n'
         """more = ["", "", '¡Fuera "x"!', "Ponlo."]\n"""
     )
-    translation = opened(place)
+    translation = open_translation(place)
     assert problems(translation) == [] and translation.merge("some").entries["b", "Stop."].is_stale
     write(Path("xx.po"), text.replace("#, fuzzy", "#"))
-    translators.exchange("xx.po", opened(place).english)
+    translators.exchange("xx.po", open_translation(place).english)
     languages.forget_languages()
     assert languages.text("some", "b", "xx") == "Alto."
 
@@ -764,17 +770,19 @@ def test_a_language_goes_out_and_comes_back_with_every_text(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     english = tool.sources()
-    before = Translation(language, english)
-    translators.write_file(Path("out.po"), before)
+    translation_before = Translation(language, english)
+    translators.write_file(Path("out.po"), translation_before)
     shutil.copytree(FOLDER / SOURCE_LANGUAGE, tmp_path / "languages" / SOURCE_LANGUAGE)
     (tmp_path / "languages" / language).mkdir()
     for itself in (FOLDER / language).glob(ABOUT_FILE):
         shutil.copy(itself, tmp_path / "languages" / language)
     monkeypatch.setattr(translation_files, "FOLDER", tmp_path / "languages")
     assert translators.read_file(Path("out.po"), Translation(language, english)) == 0
-    after = Translation(language, english)
+    translation_after = Translation(language, english)
     for name in english:
-        old, new = (translation.merge(name) for translation in (before, after))
+        old, new = (
+            translation.merge(name) for translation in (translation_before, translation_after)
+        )
         assert new.problems == []
         for at, entry in old.entries.items():
             is_asked = not entry.is_same
@@ -799,9 +807,9 @@ def test_a_po_with_a_mistake_is_said_with_its_line_and_changes_nothing(
 ) -> None:
     if data is not None:
         Path("xx.po").write_bytes(data)
-    before = {path: path.read_bytes() for path in place.glob("*/*.t*")}
+    files_before = {path: path.read_bytes() for path in place.glob("*/*.t*")}
     assert translators.exchange("xx.po", own.english) == 1
     assert capsys.readouterr().out.startswith(why)
-    assert {path: path.read_bytes() for path in place.glob("*/*.t*")} == before
+    assert {path: path.read_bytes() for path in place.glob("*/*.t*")} == files_before
     assert translators.exchange("zz", own.english) == 1
     assert "zz: no such language. Try:  python -m tools.languages zz" in capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""Who builds programs of blocks hears of blocks, and of nothing that only a text has."""
+"""Users of blocks read about blocks, and about nothing that only a text has."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from tiniscript.studio.checking import profile_of
 LESSONS = range(1, len(catalogue.folders()) + 1)
 
 
-def is_on_a_block(code: str, spoken: dict[str, dict[str, object]]) -> bool:
-    """Whether a code is a word that begins nothing and ends nothing, a name, or a whole block."""
-    return code in spoken if not code.isidentifier() else ENDS.match(code) is None
+def is_on_a_block(code: str, spoken_blocks: dict[str, dict[str, object]]) -> bool:
+    """Return whether code is a word without a block's start or end, a name, or a whole block."""
+    return code in spoken_blocks if not code.isidentifier() else ENDS.match(code) is None
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -32,17 +32,17 @@ def test_a_lesson_speaks_of_blocks_to_those_who_have_them(number: int, language:
     parts = [block for step in steps for block in step["blocks"] if block["kind"] != "program"]
     sentences = [title, *(row[0] for block in parts for row in block["rows"] if row)]
     sentences += [step["hint"] for step in steps]
-    spoken = page_lessons.spoken_blocks(number, language)
+    spoken_blocks = page_lessons.spoken_blocks(number, language)
     is_line_on_floor = has_line_on_floor(number)
     for step_sentence in sentences:
         assert text_only_words(step_sentence, language, is_line_on_floor=is_line_on_floor) == [], (
             step_sentence
         )
         for code in CODE.findall(step_sentence):
-            assert is_on_a_block(code, spoken), (code, step_sentence)
+            assert is_on_a_block(code, spoken_blocks), (code, step_sentence)
 
 
-# A question, or what a pupil is told to do.
+# A question, or an instruction for a pupil.
 ASKS = {
     "en": r"\?|\b(Build|Change|Find|Follow|Guess|Invent|Press|Put|Read|Say|Think|Try|Write)\b",
     "es": r"\?|\b(Arma|Busca|Cambia|Di|Dilo|Escribe|Inventa|Junta|Lee|Piensa|Pon|Prueba|Pruébalo"
@@ -94,9 +94,9 @@ def test_what_a_check_finds_is_said_of_blocks_to_those_who_have_them(language: s
             assert text_only_words(on_blocks, language, is_line_on_floor=is_line_on_floor) == [], (
                 on_blocks
             )
-            spoken = block_speech.blocks_of(CODE.findall(on_blocks), kit)
+            spoken_blocks = block_speech.blocks_of(CODE.findall(on_blocks), kit)
             for code in CODE.findall(on_blocks):
-                assert is_on_a_block(code, spoken), (code, on_blocks)
+                assert is_on_a_block(code, spoken_blocks), (code, on_blocks)
 
 
 def test_an_alternative_is_read_in_one_form() -> None:

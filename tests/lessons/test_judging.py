@@ -170,7 +170,7 @@ def test_a_criterion_is_met_or_missed(
 
 @pytest.mark.parametrize("count", [2, 3, 5])
 def test_a_def_is_used_where_calls_lead_to_it(tmp_path: Path, count: int) -> None:
-    """However many words are between; where one call is missing nothing behind it is used."""
+    """Any number of words may be between; after a missing call nothing is used."""
     words = ["HOP", "TURN", "DANCE", "BOX", "SHOWER"][:count]
     lesson = lesson_of(tmp_path, f'[[criteria]]\nkind = "uses"\nwords = ["DEF"]\ntimes = {count}\n')
 
@@ -210,11 +210,13 @@ def answering(key: str, does: str) -> str:
 def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str) -> None:
     lesson = lesson_of(tmp_path, OBEYS.format(key=f"KEY_{key}"))
     assert sentences_on(lesson, answering(key, DOES[key])) == []
-    (missed,) = sentences_on(lesson, answering(OTHER[key], DOES[key]))
-    assert f"After 1.0 s KEY_{key} was held down, but the robot did not {FAILS[key]}." in missed
+    (missed_text,) = sentences_on(lesson, answering(OTHER[key], DOES[key]))
+    assert (
+        f"After 1.0 s KEY_{key} was held down, but the robot did not {FAILS[key]}." in missed_text
+    )
     if not FAILS[key].startswith("beep"):
-        (missed,) = sentences_on(lesson, answering(key, DOES[OTHER[key]]))
-        assert f"did not {FAILS[key]}." in missed
+        (missed_text,) = sentences_on(lesson, answering(key, DOES[OTHER[key]]))
+        assert f"did not {FAILS[key]}." in missed_text
 
 
 @pytest.mark.parametrize(
@@ -228,8 +230,8 @@ def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str
 )
 def test_a_robot_that_nobody_drives_stands(tmp_path: Path, text: str, seconds: str) -> None:
     lesson = lesson_of(tmp_path, OBEYS.format(key="KEY_UP"))
-    (missed,) = sentences_on(lesson, text)
-    assert f"After {seconds} s no key was held down, but the robot still moved. Make" in missed
+    (missed_text,) = sentences_on(lesson, text)
+    assert f"After {seconds} s no key was held down, but the robot still moved. Make" in missed_text
 
 
 def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) -> None:
@@ -280,7 +282,7 @@ def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
     ],
 )
 def test_a_lamp_blinks_on_the_way(tmp_path: Path, more: str, sentence: str) -> None:
-    """What goes on again without having been off has not blinked."""
+    """A lamp that is set again without having been off has not blinked."""
     lamp = '[[criteria]]\nkind = "blinks"\nwhat = "LED"\ntimes = 2\n'
     lines_told = sentences_on(lesson_of(tmp_path, lamp, "liner"), more)
     assert [sentence in line for line in lines_told] == ([True] if sentence else [])
@@ -353,7 +355,7 @@ def test_what_is_wrong_with_the_run_as_a_whole(tmp_path: Path, text: str, senten
     ],
 )
 def test_a_program_that_never_rests_ends(tmp_path: Path, body: str, ending: str) -> None:
-    """By actions or by the robot's time, never by the clock on the wall."""
+    """The end comes by actions or by the robot's time, never by the wall clock."""
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "ends"\n')
     (sentence,) = sentences_on(lesson, f"LOOP(FOREVER);{body};END_LOOP")
     assert ending in sentence

@@ -1,4 +1,4 @@
-"""Every shipped lesson: its answers are right, its wrong ones are told so, its pages are whole."""
+"""Every shipped lesson: right answers pass, wrong ones fail, and its pages are complete."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from tools.builds.page_texts import page_texts
 
 FOLDERS = catalogue.folders()
 MINUTES = "45"
-OTHER_SEEDS = range(101, 103)  # of worlds that the command does not try by itself
-BY_HEART = "by heart"  # in the label of a wrong answer
-HEADINGS = 5  # of a pupil's page: need, steps, task, check, and the title
+OTHER_SEEDS = range(101, 103)  # worlds that the command itself does not try
+BY_HEART = "by heart"  # part of a wrong answer's label
+HEADINGS = 5  # headings of a pupil's page: title, materials, steps, task, check
 
 each_lesson = pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: path.name)
 in_both = pytest.mark.parametrize("language", LANGUAGES)
@@ -72,7 +72,7 @@ def test_a_lesson_has_answers_and_typical_mistakes(folder: Path) -> None:
     assert len(wrong) >= 3
     if (
         catalogue.load(folder).world_count > 1 and folder.name[:2] != "08"
-    ):  # there "always to the left"
+    ):  # the other one is "always to the left"
         assert any(BY_HEART in answer.label_by_language["en"] for answer in wrong)
 
 
@@ -185,7 +185,7 @@ def test_spanish_speaks_to_one_pupil() -> None:
 
 
 def test_the_line_fits_between_the_sensors_as_the_page_says() -> None:
-    """In the middle both see white: so the table of lesson 12 begins."""
+    """In the middle both sensors see white, as in the first row of lesson 12's table."""
     lesson = catalogue.load(FOLDERS[11])
     left, right = (robots.load(lesson.robot).body.places[name] for name in ("LINE_L", "LINE_R"))
     assert left.y_cm - right.y_cm > max(line.width_cm for line in lesson.world.lines)

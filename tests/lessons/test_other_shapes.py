@@ -25,7 +25,7 @@ FOLLOW = (
 )
 RIGHT = [
     (1, 1, "M(80,80)\nW(2.5)"),
-    (1, 1, "f(2.5, 80)\nloop(forever); beep(0.5, 440); w(0.5); endloop"),  # there it stays
+    (1, 1, "f(2.5, 80)\nloop(forever); beep(0.5, 440); w(0.5); endloop"),  # the robot stays there
     (1, 1, "LOOP(FOREVER); F(0.5,80); IF(TIME >= 2.5); BREAK; ENDIF; END_LOOP"),
     (2, 1, "P = 80; LOOP(2); M(P, P); W(2.8); S; W(2); P = -P; END_LOOP"),
     (2, 1, "F(2.8,80); BEEP(2,440); R(0.83,60); F(2.8,80)"),
@@ -339,7 +339,7 @@ def test_every_lesson_has_some() -> None:
 @pytest.mark.sampled("number", "program", "what", keep=len(EACH) // 8)
 @pytest.mark.parametrize(("number", "program", "what"), EACH)
 def test_what_a_pupil_wrote_is_marked_fairly(number: int, program: str, what: str) -> None:
-    """In all worlds of the task: nothing is said of a right one, and the cause of another one."""
+    """In all worlds of the task: right programs get no finding, and others the right cause."""
     lesson = lesson_of(number)
     findings = findings_of(program.replace("; ", "\n"), lesson, range(1, lesson.world_count + 1))
     assert bool(findings) is bool(what)
@@ -370,17 +370,17 @@ def test_a_program_by_heart_does_not(number: int, seed: int, program: str) -> No
 def test_a_task_says_the_numbers_that_are_measured(folder: Path, language: str) -> None:
     """Each has one home, the criterion: a page names it, and has no number of its own."""
     lesson = catalogue.load(folder)
-    written = printed_part((folder / f"pupil.{language}.md").read_text(encoding="utf-8"))
-    task = written.split("\n## ")[-2]
+    written_text = printed_part((folder / f"pupil.{language}.md").read_text(encoding="utf-8"))
+    task = written_text.split("\n## ")[-2]
     assert "{seconds}" in task
     assert not re.search("[0-9]", re.sub(r"`[^`]*`", "", NAMED.sub("", task))), task
-    for criterion in lesson.criteria:  # one tolerance for all that is at a place
+    for criterion in lesson.criteria:  # one tolerance for all criteria of a place
         if "within_cm" in criterion.number_by_key and criterion.places and not criterion.area:
-            named = {name for name in NAMED.findall(task) if name.endswith(".within_cm")}
-            tolerances = {criterion.number_by_key["within_cm"] for criterion in lesson.criteria for name in named
+            names = {name for name in NAMED.findall(task) if name.endswith(".within_cm")}
+            tolerances = {criterion.number_by_key["within_cm"] for criterion in lesson.criteria for name in names
                           if name == f"{criterion.kind}.within_cm"}  # fmt: skip
             assert tolerances == {criterion.number_by_key["within_cm"]}, criterion.kind
     page = catalogue.page(folder, catalogue.PUPIL, language)
     assert "{" not in page
     assert f" {lesson.seconds:g} " in page
-    assert len(blocks(page)) == len(blocks(written))
+    assert len(blocks(page)) == len(blocks(written_text))

@@ -21,7 +21,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def refused(folder: Path, text: str, language: str = "en") -> list[str]:
+def refusal_of(folder: Path, text: str, language: str = "en") -> list[str]:
     (folder / "lesson.toml").write_text(text, encoding="utf-8")
     with pytest.raises(LessonRefused) as exception_info:
         catalogue.load(folder)
@@ -73,19 +73,19 @@ CASES = [
 
 @pytest.mark.parametrize(("text", "message"), CASES)
 def test_a_refused_lesson_says_why(folder: Path, text: str, message: str) -> None:
-    complaints = refused(folder, text)
+    complaints = refusal_of(folder, text)
     assert any(message in sentence for sentence in complaints), complaints
-    assert len(refused(folder, text, "es")) == len(complaints)
+    assert len(refusal_of(folder, text, "es")) == len(complaints)
 
 
 def test_all_complaints_come_at_once(folder: Path) -> None:
     text = 'speed = 3\nrobot = "tinibot"\nseconds = 0\n[title]\nen = ""\nes = "B"\n' + TOUCH
-    assert len(refused(folder, text)) == 3
+    assert len(refusal_of(folder, text)) == 3
 
 
 def test_a_world_is_read_as_any_other(folder: Path) -> None:
     (folder / "world.toml").write_text(WORLD.replace("floor", "flor"), encoding="utf-8")
-    assert "The lesson's file has no key flor" in " ".join(refused(folder, HEAD + TOUCH))
+    assert "The lesson's file has no key flor" in " ".join(refusal_of(folder, HEAD + TOUCH))
 
 
 def test_answers_are_read_strictly(folder: Path) -> None:

@@ -41,20 +41,20 @@ class Place:
         self.tries = 0
         monkeypatch.setattr("tiniscript.library.opening.monotonic", lambda: self.now_s)
         monkeypatch.setattr("tiniscript.library.opening.sleep", self.pass_s)
-        monkeypatch.setattr(opening, "_resolve_address", self.resolved)
+        monkeypatch.setattr(opening, "_resolve_address", self.resolve)
         monkeypatch.setattr(opening, "_join_shared", lambda *_: None)
         monkeypatch.setattr(opening, "_claim", lambda *_: None)
-        monkeypatch.setattr(opening, "_open_connection", self.opened)
+        monkeypatch.setattr(opening, "_open_connection", self.open_port)
 
     def pass_s(self, seconds: float) -> None:
         self.now_s += seconds
 
-    def resolved(self, port: str, language: str) -> str:
+    def resolve(self, port: str, language: str) -> str:
         self.pass_s(self.search_s)
         self.free_s = self.now_s + self.busy_s
         return "ble://aa:bb:cc:dd:ee:01"
 
-    def opened(self, address: str, *_: object) -> Any:
+    def open_port(self, address: str, *_: object) -> Any:
         self.tries += 1
         if self.now_s < self.free_s:
             raise RobotError(self.reason, "en", {"port": address, "why": ""})
@@ -165,7 +165,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
     monkeypatch.setattr("tiniscript.link.port_connection.PortConnection", Line)
     profile = robots.load("tinibot")
 
-    def tried() -> Client:
+    def open_client() -> Client:
         return Client(ADDRESS, "upload", profile, is_shared=True)
 
     whys: list[BaseException | bool] = [PortError("missing", "gone"), KeyboardInterrupt()]
@@ -178,7 +178,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
         with monkeypatch.context() as patched:
             patched.setattr(step, fails(why))
             with pytest.raises(BaseException):  # noqa: B017 - whichever it is
-                tried()
+                open_client()
         assert not any(device.is_open for device in Device.opened), why
         lock = registry.lock_port(ADDRESS)
         assert lock is not None, f"{why!r} leaves its lock"
@@ -186,7 +186,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
         if sys.platform == "linux":
             assert len(list(Path("/proc/self/fd").iterdir())) == before, why
     monkeypatch.setattr(Client, "_share", lambda *_: None)
-    line = tried().connection
+    line = open_client().connection
     assert Device.opened[-1].is_open
     line.close()
 

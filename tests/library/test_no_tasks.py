@@ -38,7 +38,7 @@ def test_a_text_is_refused_at_its_task(program: Path, verb: tuple[str, ...]) -> 
 
 
 def test_a_reader_that_lacks_them_is_told_from_a_robot_that_does(program: Path) -> None:
-    """An Uno runs what is sent compiled."""
+    """An Uno runs compiled programs."""
     result = inside("check", "--text-level", "uno", program, "--robot", ROBOT)
     output = result.out + result.err
     assert (result.code, "TS313" in output, output.count("[TS308]")) == (1, False, 1)
@@ -71,7 +71,7 @@ def test_the_library_sends_none() -> None:
                         send(cast("str", form))
                     assert refused.value.reason == "UNKNOWN_NEEDS"
                     assert "tsc run" in str(refused.value)
-        robot.upload("SHOW(2)")  # nothing has come of the others
+        robot.upload("SHOW(2)")  # the others had no effect
         assert [event.values for event in robot.events() if event.name == "SHOW"] == [{"value": 2}]
 
 

@@ -132,10 +132,10 @@ def test_a_run_is_cut_where_tsc_run_cuts_it(tsc: Tsc) -> None:
 
 
 def test_a_seed_makes_a_run_repeat() -> None:
-    def shown(seed: int) -> str:
+    def run_random_program(seed: int) -> str:
         return str(tiniscript.run("LOOP(5);SHOW(RANDOM(1, 1000));END_LOOP", seed=seed))
 
-    assert shown(5) == shown(5) != shown(6)
+    assert run_random_program(5) == run_random_program(5) != run_random_program(6)
 
 
 @pytest.mark.parametrize("make", [lambda image: image, tiniscript.compile], ids=["text", "program"])
@@ -186,7 +186,7 @@ def test_what_is_said_of_bytes_names_no_robot_that_is_not_there(
     assert set(REFUSALS) <= set(all_said("en", "library"))
 
 
-# What the library says of a robot as the command does: its catalogue alone has the sentences.
+# The library's sentences about a robot are those of the command's catalogue.
 SHARED = (
     "link_echo", "not_confirmed", "not_saved", "port_broken", "port_forbidden",
     "port_forbidden_linux", "port_missing", "port_no_multicast", "port_not_announced",

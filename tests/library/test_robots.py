@@ -480,7 +480,7 @@ def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
     robot.upload(FOREVER)
     other = Command("upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", pty_robot.port)
     other.until("running")
-    pty_robot.until(lambda: "MOTORS 30 30" in pty_robot.did, "it does the other's")
+    pty_robot.until(lambda: "MOTORS 30 30" in pty_robot.actions, "it does the other's")
     if watches:
         with fails(tiniscript.RobotError, "replaced"):
             robot.wait()
@@ -490,10 +490,10 @@ def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
     began_ms = pty_robot.robot_ms
     pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 2000, "it goes on")
     assert pty_robot.moves and other.process.poll() is None
-    with tiniscript.connect(pty_robot.port) as second_robot:  # through what holds the port
+    with tiniscript.connect(pty_robot.port) as second_robot:  # through the holder of the port
         assert second_robot.info.port == pty_robot.port
         second_robot.stop()
-    assert other.ended().code == 3
+    assert other.wait_for_result().code == 3
     until(
         lambda: not any(thread.name == "holder" for thread in threading.enumerate()), "it lets go"
     )
@@ -506,7 +506,7 @@ def test_ctrl_c_stops_what_another_command_has_started_through_it(pty_robot: Pty
         other = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
         other.until("running")
         raise KeyboardInterrupt
-    assert other is not None and other.ended().code == 3
+    assert other is not None and other.wait_for_result().code == 3
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
 
 

@@ -45,7 +45,7 @@ def status(saved: int) -> StatusReply:
     return StatusReply(**{**fields, "program": PROGRAM, "saved": saved})
 
 
-def waited(clock: Clock, saving: Saving, story: list[tuple[float, int]]) -> float:
+def wait_for_saving(clock: Clock, saving: Saving, story: list[tuple[float, int]]) -> float:
     """Let the robot say, up to each of these times, how far it is; return how long it was asked."""
     began_s = clock.now_s
     for _ in saving.polls():
@@ -74,7 +74,7 @@ def test_dips_of_the_supply_end_no_saving_that_goes_on(clock: Clock, seed: int) 
     first = SAVED_LOW_SUPPLY if rng.random() < 0.5 else SAVED_SAVING
     clock.now_s = rng.choice((0.0, 5.0, 1e6))
     saving = Saving(receipt(first))
-    waited(clock, saving, story)
+    wait_for_saving(clock, saving, story)
     assert (saving.is_over, saving.reason) == (True, ""), story
 
 
@@ -93,7 +93,7 @@ def test_a_supply_that_stays_low_is_waited_for_as_long_each_time(clock: Clock, s
         ]
         assert (
             good_s + LOW_VOLTAGE_TIMEOUT_S - LOOK_S
-            <= waited(clock, saving, story)
+            <= wait_for_saving(clock, saving, story)
             <= good_s + LOW_VOLTAGE_TIMEOUT_S + 4 * LOOK_S
         )
         assert saving.reason == "low_supply"
@@ -104,11 +104,13 @@ def test_what_is_never_saved_is_given_up(clock: Clock) -> None:
     saving = Saving(receipt(SAVED_SAVING))
     assert (
         SAVE_TIMEOUT_S
-        <= waited(clock, saving, [(SAVE_TIMEOUT_S * 9, SAVED_SAVING)])
+        <= wait_for_saving(clock, saving, [(SAVE_TIMEOUT_S * 9, SAVED_SAVING)])
         <= SAVE_TIMEOUT_S + LOOK_S
     )
     assert saving.reason == "saves_later"
-    assert waited(clock, saving, [(SAVE_TIMEOUT_S * 9, SAVED_STORED)]) == pytest.approx(LOOK_S)
+    assert wait_for_saving(clock, saving, [(SAVE_TIMEOUT_S * 9, SAVED_STORED)]) == pytest.approx(
+        LOOK_S
+    )
     assert saving.reason == ""
 
 

@@ -38,7 +38,7 @@ class Asked:
 
 
 class Line:
-    """A robot that runs what it is told, and what its client did with it."""
+    """A robot that runs its commands, and the record of its client's actions."""
 
     def __init__(self, *_: object) -> None:
         self.run, self.program = 0, PROGRAM
@@ -81,7 +81,7 @@ class Line:
         self.did.append(CLOSE if not self.unsaved_looks else "close while it saves")
 
 
-# How a program ends, and whether who has started it looks.
+# The end of a program, and whether its starter looks on.
 ENDS: dict[str, Callable[[Line], list[Event]]] = {
     "runs on": lambda line: [],
     "done": lambda line: [DoneEvent(line.run)],
@@ -113,7 +113,7 @@ def happens(robot: RobotConnection, line: Line, story: Story) -> str:
         return error.reason
 
 
-def connected(monkeypatch: pytest.MonkeyPatch) -> tuple[RobotConnection, Line]:
+def connect_client(monkeypatch: pytest.MonkeyPatch) -> tuple[RobotConnection, Line]:
     line = Line()
     monkeypatch.setattr(connection, "Client", lambda *_: line)
     monkeypatch.setattr(opening, "remember", lambda *_: None)
@@ -136,11 +136,11 @@ def test_leaving_is_about_the_last_program_alone(
 ) -> None:
     rng = random.Random(seed)
     last = STORIES[seed]
-    robot, line = connected(monkeypatch)
+    robot, line = connect_client(monkeypatch)
     outcome = happens(robot, line, last)
     fresh = leave(robot, line, kind)
     for _ in range(8):
-        robot, line = connected(monkeypatch)
+        robot, line = connect_client(monkeypatch)
         before = [rng.choice(STORIES) for _ in range(rng.randint(1, 3))]
         for story in before:
             happens(robot, line, story)
@@ -161,7 +161,7 @@ def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> N
         (("upload", "replaced", False), [CLOSE]),
     ):
         for kind in (None, KeyboardInterrupt):
-            robot, line = connected(monkeypatch)
+            robot, line = connect_client(monkeypatch)
             happens(robot, line, story)
             did = leave(robot, line, kind)
             assert did == calls if kind is None else did[0] == "stop", (story, kind)
@@ -169,7 +169,7 @@ def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_what_a_program_tells_late_is_of_its_own_text(monkeypatch: pytest.MonkeyPatch) -> None:
     """The next one has the same code. Its own events nobody has looked at before that."""
-    robot, line = connected(monkeypatch)
+    robot, line = connect_client(monkeypatch)
     for name, end in (("NEAR", "; "), ("FAR", "\n")):
         compilation = compile_text(f"SI|{name} = TIME{end}SHOW({name} / 0)", KIT)
         assert compilation.image

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.source_maps import compiled, mapped
+from tests.support.source_maps import compile_right_text, make_source_map
 from tiniscript.base import files
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import checksum
@@ -17,17 +17,17 @@ from tiniscript.library.source_map import MapLocation, SourceMap
 from tiniscript.link.outcomes import ShownEvent
 
 
-def shown(text: str) -> list[Show | None]:
+def list_shows(text: str) -> list[Show | None]:
     """Return the SHOW of each instruction that shows, in the order of the code."""
-    compilation = compiled(text)
-    shows = Shows(mapped(compilation))
+    compilation = compile_right_text(text)
+    shows = Shows(make_source_map(compilation))
     return [
         shows.show_at(row.offset) for row in rows(compilation.code) if row.text.startswith("SHOW")
     ]
 
 
 def names(text: str) -> list[str]:
-    return ["" if show is None else show.text for show in shown(text)]
+    return ["" if show is None else show.text for show in list_shows(text)]
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,7 @@ def names(text: str) -> list[str]:
         ("SHOW(MAX(LIGHT_L,.5))", "MAX(LIGHT_L, 0.5)"),
         ("SHOW(// how far\n  DISTANCE // or near\n  + 1)", "DISTANCE + 1"),
         ("// café\r\nSHOW(TIME)", "TIME"),
-        # what says no more than the value itself
+        # Expressions whose name would only repeat the value.
         ("SHOW(12.5)", ""), ("SHOW(-3)", ""), ("SHOW(.5)", ""), ("SHOW(TRUE)", ""),
         ("SHOW(5-3)", "5 - 3"), ("SHOW(((2)))", "((2))"), ("SHOW(NOT TRUE)", "NOT TRUE"),
     ],
@@ -56,7 +56,9 @@ def test_each_show_has_its_own_instruction_between_others() -> None:
 
 
 def test_shows_of_one_expression_are_told_apart_by_their_lines() -> None:
-    shows_found = shown("SHOW(TIME)\nSHOW( time ); SHOW(LIGHT_L); SHOW(LIGHT_L)\nSHOW(LIGHT_R)")
+    shows_found = list_shows(
+        "SHOW(TIME)\nSHOW( time ); SHOW(LIGHT_L); SHOW(LIGHT_L)\nSHOW(LIGHT_R)"
+    )
     assert shows_found == [
         Show("TIME", 1, 1, shares_text=True),
         Show("TIME", 2, 1, shares_text=True),
@@ -69,7 +71,7 @@ def test_shows_of_one_expression_are_told_apart_by_their_lines() -> None:
 def test_the_copies_of_a_def_are_one_show() -> None:
     tasks = "TASK; TELL(2); END_TASK\nTASK; TELL(3); END_TASK"
     text = f"DEF TELL(X); SHOW(X); END_DEF\nTELL(1)\n{tasks}"
-    assert shown(text) == [Show("X", 1, 14)] * 3
+    assert list_shows(text) == [Show("X", 1, 14)] * 3
 
 
 def test_a_map_that_is_not_of_its_text_names_nothing() -> None:
@@ -95,13 +97,13 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("cache")
 def test_a_program_is_found_by_its_checksum_alone() -> None:
-    mine, theirs = compiled("SHOW(DISTANCE)"), compiled("SHOW(LIGHT_R)")
+    mine, theirs = compile_right_text("SHOW(DISTANCE)"), compile_right_text("SHOW(LIGHT_R)")
     at = rows(mine.code)[-1].offset
-    finder = ShowFinder({checksum(mine.image): mapped(mine)})
+    finder = ShowFinder({checksum(mine.image): make_source_map(mine)})
     assert finder.show_of(event(checksum(mine.image), at)) == Show("DISTANCE", 1, 1)
     other = event(checksum(theirs.image), at, run=2)
     assert finder.show_of(other) is None, "nobody here has it"
-    source_map.remember(theirs.image, mapped(theirs))
+    source_map.remember(theirs.image, make_source_map(theirs))
     assert finder.show_of(other) == Show("LIGHT_R", 1, 1), "it came into the cache later"
     assert finder.show_of(event(checksum(mine.image), at, run=3)) == Show("DISTANCE", 1, 1)
     assert finder.show_of(event(checksum(mine.image), -1)) is None
@@ -110,23 +112,26 @@ def test_a_program_is_found_by_its_checksum_alone() -> None:
 
 @pytest.mark.usefixtures("cache")
 def test_the_same_code_of_another_text_is_called_as_that_text_says() -> None:
-    first, second = compiled("NEAR = TIME; SHOW(NEAR)"), compiled("FAR = TIME; SHOW(FAR)")
+    first, second = (
+        compile_right_text("NEAR = TIME; SHOW(NEAR)"),
+        compile_right_text("FAR = TIME; SHOW(FAR)"),
+    )
     assert first.image == second.image
     program, at = checksum(first.image), rows(first.code)[-1].offset
-    maps = {program: mapped(first)}
+    maps = {program: make_source_map(first)}
     finder = ShowFinder(maps)
     names = [finder.show_of(event(program, at))]
-    maps[program] = mapped(second)
+    maps[program] = make_source_map(second)
     names += [finder.show_of(event(program, at)), finder.show_of(event(program, at, run=2))]
     assert [show and show.text for show in names] == ["NEAR", "NEAR", "FAR"], "until its next run"
 
 
 @pytest.mark.usefixtures("cache")
 def test_a_value_is_called_so_whatever_was_shown_before() -> None:
-    """Also behind a reset of the robot: its runs begin at the same number again."""
-    programs = [compiled(f"SHOW({name})") for name in ("DISTANCE", "LIGHT_R", "TIME")]
+    """This also holds after a reset of the robot, which restarts its run numbers."""
+    programs = [compile_right_text(f"SHOW({name})") for name in ("DISTANCE", "LIGHT_R", "TIME")]
     at = rows(programs[0].code)[-1].offset
-    known = {checksum(program.image): mapped(program) for program in programs[:2]}
+    known = {checksum(program.image): make_source_map(program) for program in programs[:2]}
     events = [event(checksum(program.image), at, run) for program in programs for run in (1, 2)]
     for before in product(events, repeat=2):
         for shown_last in events:
@@ -141,13 +146,15 @@ def test_a_value_is_called_so_whatever_was_shown_before() -> None:
 
 @pytest.mark.usefixtures("cache")
 def test_a_run_keeps_the_text_that_it_began_with() -> None:
-    """Where its first value comes late, and where its number was that of another run."""
-    texts = [compiled(f"{name} = TIME; SHOW({name})") for name in ("NEAR", "FAR", "THIRD")]
+    """Its first value may be late, and its number may be that of another run."""
+    texts = [
+        compile_right_text(f"{name} = TIME; SHOW({name})") for name in ("NEAR", "FAR", "THIRD")
+    ]
     program, at = checksum(texts[0].image), rows(texts[0].code)[-1].offset
     maps: dict[int, SourceMap] = {}
     finder = ShowFinder(maps)
     for run, compilation in enumerate(texts):
-        maps[program] = mapped(compilation)
+        maps[program] = make_source_map(compilation)
         finder.begin(run % 2, program)
     names = [finder.show_of(event(program, at, run)) for run in (1, 0, 1)]
     assert [show and show.text for show in names] == ["FAR", "THIRD", "FAR"]

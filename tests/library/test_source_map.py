@@ -11,7 +11,7 @@ import pytest
 
 from tests.oracle import programs
 from tests.support.kits import KITS
-from tests.support.source_maps import compiled, mapped
+from tests.support.source_maps import compile_right_text, make_source_map
 from tiniscript import compile_text
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import checksum
@@ -20,9 +20,9 @@ from tiniscript.library.source_map import MapLocation
 from tiniscript.semantics.ir import Show
 
 
-def located(text: str) -> list[tuple[str, str]]:
+def locate_instructions(text: str) -> list[tuple[str, str]]:
     """Return each instruction with the piece of the text that it comes from."""
-    compilation = compiled(text)
+    compilation = compile_right_text(text)
     pairs = []
     for row in rows(compilation.code):
         place = [
@@ -38,7 +38,7 @@ def located(text: str) -> list[tuple[str, str]]:
     ("text", "expected"),
     [
         ("F(1, 80); S", [("MOVE8_F", "F(1, 80)"), ("STOP", "S")]),
-        # a reading belongs to the instruction that takes it, and a sensor alone to itself
+        # A reading belongs to its instruction, and a lone sensor to itself.
         ("SHOW(1 + DISTANCE)", [("READ_2", "SHOW(1 + DISTANCE)"),
                                 ("PUSH_NUM_1", "SHOW(1 + DISTANCE)"),
                                 ("PUSH_SENSOR_2", "SHOW(1 + DISTANCE)"),
@@ -54,12 +54,12 @@ def located(text: str) -> list[tuple[str, str]]:
         ("F(1, 80) UNTIL(DISTANCE < 9)",
          [(name, "F(1, 80) UNTIL(DISTANCE < 9)")
           for name in ("PUSH_NUM_1", "PUSH_NUM_80", "WATCH_F", "PUSH_READ_2", "UNTIL8_LT")]),
-        # a condition belongs to its arm, and the jump after an arm to what ends it
+        # A condition belongs to its arm, and the jump after an arm to its end.
         ("X = 1\nIF(X = 1); S; ELSEIF(X = 2); W(1); ENDIF",
          [("PUSH_NUM_1", "X = 1"), ("SET_VAR_0", "X = 1"), ("IF_VAR8_EQ", "IF(X = 1)"),
           ("STOP", "S"), ("ELSE", "S"),
           ("IF_VAR8_EQ", "ELSEIF(X = 2)"), ("WAIT8", "W(1)")]),
-        # what begins a loop or a DEF, and the jump back, belong to all of it
+        # The start of a loop or a DEF, and the jump back, belong to all of it.
         ("LOOP(2); S; END_LOOP", [("LOOP8", "LOOP(2); S; END_LOOP"), ("STOP", "S"),
             ("NEXT", "LOOP(2); S; END_LOOP")]),
         ("X = 1; WHILE(X < 2); S; END_WHILE",
@@ -74,13 +74,13 @@ def located(text: str) -> list[tuple[str, str]]:
     ],
 )  # fmt: skip
 def test_where_an_instruction_comes_from(text: str, expected: list[tuple[str, str]]) -> None:
-    assert located(text) == expected
+    assert locate_instructions(text) == expected
 
 
 def test_instructions_that_became_far_stay_where_they_were() -> None:
     """A comparing branch that does not reach is four instructions of one place."""
     row = "S;" * 256
-    pairs = located(f"X = 1; IF(X = 5); {row} ENDIF; W(1)")
+    pairs = locate_instructions(f"X = 1; IF(X = 5); {row} ENDIF; W(1)")
     assert pairs[:6] == [("PUSH_NUM_1", "X = 1"), ("SET_VAR_0", "X = 1"),
                          *[(name, "IF(X = 5)") for name in
                            ("PUSH_VAR_0", "PUSH_NUM_5", "EQ", "IF_FAR")]]  # fmt: skip
@@ -89,12 +89,12 @@ def test_instructions_that_became_far_stay_where_they_were() -> None:
 
 
 def test_what_is_folded_away_has_no_place() -> None:
-    assert located("IF(1 > 2); S; ENDIF; W(1)") == [("WAIT8", "W(1)")]
+    assert locate_instructions("IF(1 > 2); S; ENDIF; W(1)") == [("WAIT8", "W(1)")]
 
 
 def test_places_are_in_order_and_the_first_is_at_the_beginning() -> None:
     text = "DEF A; S; END_DEF; LOOP(3); A; IF(DISTANCE < 5); BREAK; ENDIF; END_LOOP"
-    compilation = compiled(text)
+    compilation = compile_right_text(text)
     offsets = [place.offset for place in compilation.locations]
     assert offsets == sorted(set(offsets)) and offsets[0] == 0
     assert set(offsets) <= {row.offset for row in rows(compilation.code)}
@@ -106,7 +106,7 @@ def test_places_are_in_order_and_the_first_is_at_the_beginning() -> None:
 
 
 def test_an_offset_inside_an_instruction_is_the_instruction_s() -> None:
-    mapping = mapped(compiled("S; F(1, 80); W(1)"))
+    mapping = make_source_map(compile_right_text("S; F(1, 80); W(1)"))
     columns = [None if (place := mapping.location_at(offset)) is None else place.column
                for offset in range(-1, 7)]  # fmt: skip
     assert columns == [None, 1, 4, 4, 4, 14, 14, 14]
@@ -140,7 +140,7 @@ def test_a_map_is_written_as_json_writes_it() -> None:
     ],
 )
 def test_what_is_no_map_is_refused(changed: dict[str, object]) -> None:
-    fields = json.loads(source_map.as_json(mapped(compiled("S"))))
+    fields = json.loads(source_map.as_json(make_source_map(compile_right_text("S"))))
     assert source_map.from_json(json.dumps(fields)).variables == ()
     earlier = {name: fields[name] for name in ("version", "name", "lines", "places")}
     assert source_map.from_json(json.dumps(earlier)) == source_map.from_json(json.dumps(fields))
@@ -166,7 +166,7 @@ def test_a_variable_is_a_yes_no_where_a_show_of_it_is_one() -> None:
                 assert isinstance(last, Show) and last.is_yes_no == is_yes_no, (seed, name)
                 kinds.add(is_yes_no)
     assert kinds == {True, False}
-    compilation = compiled(
+    compilation = compile_right_text(
         "DEF GO(FAST, SPEED); IF(FAST); F(1, SPEED); ENDIF; END_DEF\n"
         "TASK; GO(TRUE, 50); END_TASK; TASK; GO(DISTANCE < 9, 60); END_TASK; GO(FALSE, 70)"
     )
@@ -176,9 +176,9 @@ def test_a_variable_is_a_yes_no_where_a_show_of_it_is_one() -> None:
 
 def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(source_map, "MOST_MAPS", 3)
-    programs = [compiled(f"W({k})") for k in range(1, 6)]
+    programs = [compile_right_text(f"W({k})") for k in range(1, 6)]
     for k, compilation in enumerate(programs):
-        source_map.remember(compilation.image, mapped(compilation))
+        source_map.remember(compilation.image, make_source_map(compilation))
         path = source_map._path(checksum(compilation.image))
         os.utime(path, (k + 1, k + 1))
     kept = [source_map.recall(checksum(program.image)) is not None for program in programs]

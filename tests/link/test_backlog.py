@@ -1,4 +1,4 @@
-"""A device that chatters for ever, while nobody looks, costs no more than one that does not."""
+"""A device that chatters forever, while nobody looks, costs no more than a silent one."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tiniscript.link.session import Session
 
 CHATTER = b"debug: the battery has 7.4 V and all is well\r\n" * 20
 PIECES = 400  # of it, 8,000 lines: half a minute at 115200 baud
-MOST_BYTES = 500_000  # that what is kept of that may take
+MOST_BYTES = 500_000  # most bytes kept of these
 
 
 class Chatterbox:
@@ -96,8 +96,9 @@ class Socket(Chatterbox):
 
 
 def test_what_a_socket_has_is_heard_in_one_piece(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two bytes a turn of the line left a stop waiting for seconds behind what was shown. Whoever
-    closes the port may have said why before."""
+    """With two bytes per turn, a stop waited for seconds after the values. The peer may have sent
+    its reason before it closes.
+    """
     pieces: list[bytes] = []
     session = Session(1)
     monkeypatch.setattr(session, "receive", lambda data, now_ms: pieces.append(data))
@@ -106,14 +107,14 @@ def test_what_a_socket_has_is_heard_in_one_piece(monkeypatch: pytest.MonkeyPatch
     assert (pieces, line.end_reason) == ([CHATTER], "socket disconnected")
 
 
-def shown(number: int) -> TimedEvent:
+def make_shown_event(number: int) -> TimedEvent:
     return number, ShownEvent(number, 0)
 
 
 def test_what_the_robot_does_is_kept_before_what_it_shows() -> None:
     backlog = Backlog()
-    backlog.add_events([(0, StartedEvent(1, 2)), shown(0)])
-    backlog.add_events(shown(number) for number in range(1, 10 * MOST_EVENTS))
+    backlog.add_events([(0, StartedEvent(1, 2)), make_shown_event(0)])
+    backlog.add_events(make_shown_event(number) for number in range(1, 10 * MOST_EVENTS))
     backlog.add_events([(0, FaultEvent(1, 2, 3, 4))])
     events = [backlog.take_event()[1] for _ in range(len(backlog))]
     assert [event.name for event in events[:3]] == ["MISSED", "STARTED", "SHOW"]
@@ -125,7 +126,7 @@ def test_what_the_robot_does_is_kept_before_what_it_shows() -> None:
 
 def test_what_has_room_is_not_missed() -> None:
     backlog = Backlog()
-    backlog.add_events(shown(number) for number in range(MOST_EVENTS))
+    backlog.add_events(make_shown_event(number) for number in range(MOST_EVENTS))
     assert [backlog.take_event()[0] for _ in range(MOST_EVENTS)] == list(range(MOST_EVENTS))
 
 

@@ -52,12 +52,12 @@ def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot
         result = inside("upload", "-e", DRIVE, "--port", port)
         assert (result.code, result.err) == (0, ""), port
         assert result.out.splitlines()[-2:] == ["Done.", "Saved. It starts with the button."]
-        assert (ble.robot.did, ble.connections) == (DROVE * count, 2 * count - 1)
+        assert (ble.robot.actions, ble.connections) == (DROVE * count, 2 * count - 1)
         assert inside("set", "trim", "--show").code == 0  # the port is remembered
     assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
     assert max(len(data) for _, data in ble.written) == 20
     inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\nR(0.1, 40)\n").gives(0, "")
-    assert ble.robot.did[-6::3] == ["MOTORS 50 50", "MOTORS 40 -40"]
+    assert ble.robot.actions[-6::3] == ["MOTORS 50 50", "MOTORS 40 -40"]
 
 
 @pytest.mark.sampled("service", "mtu", "late_s", keep=3)
@@ -89,7 +89,7 @@ def test_where_a_module_answers_each_write_it_is_waited_for(
     bluez.add(ble)
     assert inside("upload", "-e", DRIVE, "--port", PLACE).code == 0
     assert {kind for kind, _ in ble.written} == {"request"}
-    assert pty_robot.did == DROVE
+    assert pty_robot.actions == DROVE
 
 
 # -- who has the port ---------------------------------------------------------------------------
@@ -103,13 +103,13 @@ def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: 
     result = inside("stop", *(("--port", port) if port else ()))
     assert (result.code, result.out.count("Stopped")) == (0, 1)
     assert not ble.robot.moves
-    assert command.ended().code == 3
+    assert command.wait_for_result().code == 3
     assert ble.connections == 1
 
 
 def test_two_at_once_take_turns(ble: BleRobot) -> None:
     both = [Command("doctor", "--identify", "--port", port) for port in (NAME, PLACE)]
-    results = [command.ended() for command in both]
+    results = [command.wait_for_result() for command in both]
     assert 0 in [result.code for result in results]
     for result in results:
         assert (
@@ -120,7 +120,7 @@ def test_two_at_once_take_turns(ble: BleRobot) -> None:
 def test_ctrl_c_stops_the_robot_and_frees_it(ble: BleRobot, bluez: FakeBluez) -> None:
     command = uploading(ble)
     command.signal(signal.SIGINT)
-    assert command.ended().code == 2
+    assert command.wait_for_result().code == 2
     assert not ble.robot.moves
     ble.robot.until(lambda: not bluez.devices[ADDRESS].is_connected, "BlueZ has heard it")
     assert inside("doctor", "--identify", "--port", NAME).code == 0
@@ -144,7 +144,7 @@ def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
     assert bluez.devices[ADDRESS].is_connected
     for port in (NAME, PLACE):
         assert inside("upload", "-e", DRIVE, "--port", port).code == 0
-    assert ble.robot.did[-3:] == DROVE
+    assert ble.robot.actions[-3:] == DROVE
 
 
 # -- which robot --------------------------------------------------------------------------------
@@ -208,7 +208,7 @@ def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
         ports = ("--port", NAME, "--port", "ble://tini 2")
         for words in (("upload", "-e", DRIVE), ("stop",)):
             inside(*words, *ports).gives(0, "Done: 2 of 2.")
-        assert (ble.robot.did[:3], second.did[:3]) == (DROVE, DROVE)
+        assert (ble.robot.actions[:3], second.actions[:3]) == (DROVE, DROVE)
 
 
 def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:
@@ -245,4 +245,4 @@ def test_a_connection_that_is_closed_is_free_while_its_process_goes_on(
             robot.wait()
             assert bluez.devices[ADDRESS].is_connected
         assert not bluez.devices[ADDRESS].is_connected
-        assert (ble.connections, ble.robot.did) == (count, DROVE * count)
+        assert (ble.connections, ble.robot.actions) == (count, DROVE * count)

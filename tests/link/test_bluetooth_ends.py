@@ -41,10 +41,10 @@ def test_a_connection_that_is_never_made(ble: BleRobot, stage: str) -> None:
         result = inside("upload", "-e", DRIVE, "--port", PLACE, "--lang", language).gives(3, out="")
         assert result.err.startswith("tsc: ")
         assert PLACE.upper() in result.err.upper()
-    assert ble.robot.did == []
+    assert ble.robot.actions == []
     ble.fails_at = ""
     assert inside("upload", "-e", DRIVE, "--port", PLACE).code == 0
-    assert ble.robot.did == DROVE
+    assert ble.robot.actions == DROVE
 
 
 @pytest.mark.sampled("heard", keep=3)
@@ -56,7 +56,7 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     before, after = tmp_path / "before.bin", tmp_path / "after.bin"
     assert inside("upload", "-e", "SB|F(1, 10)", "--port", PLACE).code == 0
     assert inside("show", "-o", before, "--port", PLACE).code == 0
-    ble.parts_after = len(ble.heard) + heard
+    ble.parts_after = len(ble.received_data) + heard
     result = inside("upload", "-e", LONG, "--port", PLACE)
     assert result.code == 3
     assert f"lost the Bluetooth connection to {PLACE}" in result.err
@@ -74,7 +74,7 @@ def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
 ) -> None:
     command = uploading(ble)
     bluez.part(ble)
-    command.ended().gives(3, f"lost the Bluetooth connection to {PLACE}")
+    command.wait_for_result().gives(3, f"lost the Bluetooth connection to {PLACE}")
     stops_by_itself(ble)
     assert inside("upload", "-e", DRIVE, "--port", NAME).code == 0
     port = ports.open_port(PLACE, 9600)
@@ -89,7 +89,7 @@ def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
 
 def test_a_line_after_a_lost_connection_ends_live(ble: BleRobot, bluez: FakeBluez) -> None:
     inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n").gives(0)
-    ble.parts_after = len(ble.heard) + 60
+    ble.parts_after = len(ble.received_data) + 60
     inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n" * 9).gives(3, "Bluetooth connection")
 
 
@@ -104,7 +104,7 @@ def test_an_adapter_that_is_gone_ends_the_command(
         bluez.unplug()
     else:
         bluez.vanish()
-    result = command.ended().gives(3, "the Bluetooth connection")
+    result = command.wait_for_result().gives(3, "the Bluetooth connection")
     assert result.err.count("\n") == 1  # nothing of bleak's
     stops_by_itself(ble)
     result = inside("stop", "--port", PLACE, "--lang", "es")
@@ -199,7 +199,7 @@ def test_without_its_package_the_next_step_is_said(
 def test_an_hm10_gets_no_more_than_its_uart_passes_on(
     service: str, sizes: list[int], waits: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It drops what comes sooner; 20 bytes take it 20.8 ms at 9600 baud."""
+    """It drops earlier bytes; 20 bytes take 20.8 ms at 9600 baud."""
     from tiniscript.link.transports import bluetooth
 
     now_s, slept, written = [0.0], [], []

@@ -33,7 +33,7 @@ class Device:
         self.clients: list[Client] = []
         self.notified = 0
 
-    async def reached(self, stage: str) -> None:
+    async def reach(self, stage: str) -> None:
         await asyncio.sleep(0)
         if self.fails_at == stage:
             if self.failure is None:
@@ -50,9 +50,9 @@ class Client:
 
     async def connect(self) -> None:
         assert not self.device.clients, "somebody else has the device"
-        await self.device.reached("before it is connected")
+        await self.device.reach("before it is connected")
         self.device.clients.append(self)
-        await self.device.reached("connected")
+        await self.device.reach("connected")
 
     async def disconnect(self) -> None:
         await asyncio.sleep(0)
@@ -78,7 +78,7 @@ class Client:
         return [SimpleNamespace(uuid=uuid, get_characteristic=characteristic)]
 
     async def start_notify(self, *_: object) -> None:
-        await self.device.reached("notify")
+        await self.device.reach("notify")
         self.device.notified += 1
 
 
@@ -168,11 +168,11 @@ def test_ctrl_c_leaves_the_device(
 
 
 def connects_until(loop: event_loop.EventLoop, device: Device, pressed: pytest.MonkeyPatch) -> None:
-    """Ctrl-C is pressed once: what clears up behind it is left alone."""
+    """Press Ctrl-C once during a connection; the clean-up afterwards is not interrupted."""
     run = loop.run
     runs = 0
 
-    def counted(coroutine: Any, limit_s: float) -> Any:
+    def count_runs(coroutine: Any, limit_s: float) -> Any:
         nonlocal runs
         runs += 1
         if runs == 2:
@@ -180,5 +180,5 @@ def connects_until(loop: event_loop.EventLoop, device: Device, pressed: pytest.M
         return run(coroutine, limit_s)
 
     port = bluetooth.BluetoothPort(loop, 9600)
-    pressed.setattr(loop, "run", counted)
+    pressed.setattr(loop, "run", count_runs)
     port.connect(device)  # type: ignore[arg-type]

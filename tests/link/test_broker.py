@@ -1,5 +1,6 @@
-"""A broker: the list of a class is whole over a slow network, what is said there is not kept, and
-large messages are not taken."""
+"""A broker: the list of a class is complete over a slow network, its messages are not stored, and
+large ones are refused.
+"""
 
 from __future__ import annotations
 
@@ -49,8 +50,8 @@ def school(tmp_path: Path) -> Iterator[Mosquitto]:
 
 
 class SlowNetwork(Network):
-    """What the broker hears is `late_s` on its way, and what it says stands still for `gap_s` once,
-    in the middle of what it retains; `is_cut` says nothing of that at all.
+    """Data for the broker is delayed by `late_s`, and its own stops for `gap_s` once, in the middle
+    of the retained messages; `is_cut` drops those.
     """
 
     most = 200
@@ -60,7 +61,7 @@ class SlowNetwork(Network):
         self.is_silent = False
         super().__init__(target)
 
-    def passed(self, data: bytes, is_back: bool, number: int) -> bytes:
+    def pass_on(self, data: bytes, is_back: bool, number: int) -> bytes:
         if not is_back:
             time.sleep(self.late_s)
         elif b"tiniscript/" in data:
@@ -135,7 +136,7 @@ def flush(client: Broker) -> None:
 
 def retained_topics(own: Mosquitto) -> list[str]:
     """Return the topics of all that a broker retains."""
-    late = own.connected()
+    late = own.connect_client()
     texts: list[str] = []
 
     def keep(_: Any, __: Any, message: Any) -> None:
@@ -143,7 +144,7 @@ def retained_topics(own: Mosquitto) -> list[str]:
 
     late._client.on_message = keep
     late._client.subscribe("#")
-    late._client.publish(LAST, b"")  # what is retained comes before what is said later
+    late._client.publish(LAST, b"")  # retained messages precede later ones
     until(lambda: LAST in texts, "all that is retained has come")
     late.close()
     return texts[: texts.index(LAST)]
@@ -152,7 +153,7 @@ def retained_topics(own: Mosquitto) -> list[str]:
 def test_stops_and_frames_are_not_retained(tmp_path: Path) -> None:
     own = Mosquitto(tmp_path)
     try:
-        teacher = own.connected()
+        teacher = own.connect_client()
         port = teacher.port_of("aula", "12345678")
         port.write(bytes(STOP_BYTES))
         teacher.stop("aula")
@@ -226,4 +227,4 @@ def test_a_large_message_ends_the_connection_before_it_is_in_memory(size: int) -
         assert client.end_reason == f"the broker sends a message of {size} bytes"
         serving.join(HANGS_S)
         client.close()
-    assert taken < 32 << 20  # what the system's buffers hold
+    assert taken < 32 << 20  # size of the system's buffers

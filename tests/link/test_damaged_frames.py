@@ -14,7 +14,7 @@ import pytest
 
 from tests.machines.damage import CppDamage, DamagedLine, cpp_damage
 from tests.machines.link import cpp_link
-from tests.support.campaign import wanted
+from tests.support.campaign import make_options
 from tests.support.link_cases import packets_of
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import CRC_BYTES, HEAD_BYTES, SMALL_FRAME
@@ -24,7 +24,7 @@ LARGE_FRAMES = 100_000
 LINES = 200  # that are judged at a time; a line has about 500 damaged frames
 SAMPLED = 5  # lines in the tests
 LARGE_SAMPLED = 1
-SAMPLED_OF = 1000  # one line of so many, in a campaign
+SAMPLED_OF = 1000  # one in so many lines, in a campaign
 SEED = 4
 
 
@@ -96,7 +96,7 @@ def damage_frames(cpp: CppDamage, count: int, seed: int) -> tuple[int, int]:
     """Send lines until so many frames are damaged; return how many were, and the lines."""
     judged_count = lines = 0
     while judged_count < count:
-        judged_count += cpp.judged(seed, lines, LINES)
+        judged_count += cpp.damage_frames(seed, lines, LINES)
         lines += LINES
     return judged_count, lines
 
@@ -114,7 +114,7 @@ def test_python_finds_the_same_in_them(is_large: bool) -> None:
 
 
 if __name__ == "__main__":
-    given = wanted(10_000_000, 1_000_000, "large")
+    given = make_options(10_000_000, 1_000_000, "large")
     judges = cpp_damage(given.large)
     damaged, lines = damage_frames(judges, given.count, given.seed)
     for sampled in range(0, lines, SAMPLED_OF):

@@ -1,4 +1,4 @@
-"""The event loop of the libraries that need one: results, failures, and what is cancelled."""
+"""The event loop of the libraries that need one: results, failures, and cancellation."""
 
 from __future__ import annotations
 
@@ -73,5 +73,5 @@ def test_the_end_of_a_process_cancels_what_runs() -> None:
         "    task = asyncio.create_task(work())\n"
         "shared_loop().run(begin(), 100); begun.wait(100)\n"
     )
-    result = Command(code=code).ended()
+    result = Command(code=code).wait_for_result()
     assert (result.code, result.out, result.err) == (0, "cancelled\n", "")

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from tests.machines.link import CppLink, cpp_link, link_library
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.link_cases import KIT
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import SILENCE_MS, TEXT_MS
@@ -90,8 +90,9 @@ def never_silence(cpp: CppLink, seed: int) -> str:
     draw = random.Random(seed)
     robot = Robot(cpp)
     before = [draw.choice(BEFORE) for _ in range(draw.randint(0, 4))]
-    answered = 0  # before the last silence: a mistake takes all lines with it that follow at once
-    in_frames = False  # where only what ends is a line
+    # Before the last silence, because a mistake removes all lines that follow it directly.
+    answered = 0
+    in_frames = False  # only if a line needs its end
     for data in before:
         robot.type(data)
         pause_ms = draw.choice(PAUSES_MS)
@@ -181,6 +182,6 @@ def test_a_law_of_the_wire(holds: object) -> None:
 
 
 if __name__ == "__main__":
-    given = wanted(10_000, 1_000_000)
+    given = make_options(10_000, 1_000_000)
     for check in PROPERTIES:
         each_seed(partial(check, link_library()), given)

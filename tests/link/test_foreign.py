@@ -64,7 +64,7 @@ def test_each_row_has_a_recording() -> None:
 
 @EACH
 def test_a_recording_that_is_cut_is_of_that_board_or_of_none(recording: Recording) -> None:
-    """A piece says less, and nothing wrong: an ESP32 starts before what is on it says so."""
+    """A piece identifies less, and nothing wrong: an ESP32's boot messages precede the sketch's."""
     also = {recording.name, "esp32", None}
     if recording.data.endswith(b">>> "):
         also |= {"micropython"}
@@ -132,7 +132,7 @@ def test_much_noise_is_no_board() -> None:
 
 @given(st.lists(st.sampled_from(OURS), min_size=1, max_size=6), st.binary(max_size=20))
 def test_a_robot_is_no_board(traffic: list[bytes], noise: bytes) -> None:
-    """With any noise before it and behind: its frames and its lines are looked at first."""
+    """With any noise around them, frames and lines are recognized first."""
     for data in (b"".join(traffic), noise + b"\0" + b"".join(traffic) + noise):
         assert identify_stranger(data) is None or not foreign.is_robot(data)
         if any(foreign.is_robot(data) for data in traffic):

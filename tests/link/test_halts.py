@@ -10,7 +10,7 @@ import pytest
 from tests.machines.host_firmware import HostFirmware
 from tests.support.command import FOREVER
 from tests.support.pty_robot import drives_now
-from tests.support.unsent_requests import greeted, image, live, long_upload, upload
+from tests.support.unsent_requests import image, live, long_upload, open_session, upload
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import SAVED_STORED
 from tiniscript.link.outcomes import CANCELLED
@@ -27,7 +27,7 @@ def moves(robot: HostFirmware) -> bool:
 
 def driving() -> tuple[Session, HostFirmware, int]:
     """Return a robot that drives for a client, and the run."""
-    session, robot = greeted()
+    session, robot = open_session()
     assert robot.until(session, session.upload(DRIVES, saves=False)) == OK
     robot.talk(session, 300)
     assert moves(robot) and session.run is not None
@@ -74,7 +74,7 @@ def test_a_run_of_another_goes_on() -> None:
 
 @pytest.mark.parametrize("after_ms", range(5))
 def test_an_upload_that_is_withdrawn_starts_nothing_and_the_next_is_done(after_ms: int) -> None:
-    session, robot = greeted()
+    session, robot = open_session()
     long = image("F(1, 80);" * 40)
     gone = session.upload(long)
     other = live(session)
@@ -87,7 +87,7 @@ def test_an_upload_that_is_withdrawn_starts_nothing_and_the_next_is_done(after_m
 
 
 def test_one_that_waits_is_withdrawn() -> None:
-    session, robot = greeted()
+    session, robot = open_session()
     first, gone, last = live(session), session.upload(DRIVES), live(session)
     session.withdraw(gone)
     assert gone.outcome is not None and gone.outcome.status == CANCELLED
@@ -98,7 +98,7 @@ def test_one_that_waits_is_withdrawn() -> None:
 @pytest.mark.parametrize("answers", [OK, "BUSY"])
 def test_a_frame_that_may_start_a_run_is_answered_first(answers: object) -> None:
     """And nothing more is sent where the robot was busy."""
-    session, robot = greeted()
+    session, robot = open_session()
     if answers == "BUSY":
         assert robot.until(session, session.upload(image("SB|SHOW(1)"))) == OK
     gone = session.upload(DRIVES, saves=False)
@@ -115,7 +115,7 @@ def test_a_frame_that_may_start_a_run_is_answered_first(answers: object) -> None
 
 
 def test_a_program_that_was_sent_before_is_saved_all_the_same() -> None:
-    session, robot = greeted()
+    session, robot = open_session()
     assert robot.until(session, session.upload(DRIVES)) == OK
     assert session.run is not None
     session.end_run(session.run, robot.now_ms)

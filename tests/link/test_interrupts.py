@@ -22,7 +22,7 @@ from tiniscript.link.transports.pushed import PushedTransport
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no timer of signals")
 
 INTERRUPTS = 1_500
-FEW = 8  # of what takes a while to be cancelled
+FEW = 8  # a task that takes a while to cancel
 
 
 class Port(PushedTransport):
@@ -40,7 +40,7 @@ class Port(PushedTransport):
 def hail(work: Callable[[], object], count: int = INTERRUPTS) -> None:
     """Repeat work while Ctrl-C is pressed again and again. Whatever else it raises passes."""
     rng = random.Random(1)
-    pressed: list[int] = []  # a callback of the interpreter drops what is raised in it
+    pressed: list[int] = []  # the interpreter discards exceptions in a callback
 
     def press(number: int, _: object) -> None:
         pressed.append(number)
@@ -87,7 +87,7 @@ def test_a_bell_rings_for_who_waits() -> None:
     def work() -> None:
         bell.ring()
         bell.wait(1e-5)
-        bell.wait(1e-5)  # gives the interpreter up, without which it may miss a signal
+        bell.wait(1e-5)  # yields the interpreter, which might otherwise miss a signal
 
     hail(work)
     bell.ring()

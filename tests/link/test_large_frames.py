@@ -136,7 +136,7 @@ def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, most: i
     assert (
         pending_request.outcome
         and pending_request.outcome.status == OK
-        and robot.held() == pack("SI", 0, CODE)
+        and robot.fetch_image() == pack("SI", 0, CODE)
     )
     hello = struct.pack("<BBBBHI", MAJOR, MINOR, *LEAST_ISA, KIT, 8)
     answers(robot, Frame(HELLO, 1, 0, hello))
@@ -181,7 +181,7 @@ def test_both_receivers_find_the_same_where_frames_wait() -> None:
 # -- the computer ---------------------------------------------------------------------------------
 
 
-WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # what lies after the checksum
+WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # bytes after the checksum
 
 
 @pytest.mark.parametrize(
@@ -190,7 +190,7 @@ WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # what lies after
         ((), (), 7),
         ((), (2, 3), 7),  # the next answer reports them
         ((), (7,), 8),
-        ((2,), (), 10),  # what followed it is sent again
+        ((2,), (), 10),  # the frames after it are sent again
         ((7,), (), 8),
         ((1, 2, 3, 4), (), 11),
     ],
@@ -208,8 +208,9 @@ def test_what_is_lost_is_sent_again_and_no_more(
 
 
 @pytest.mark.parametrize(("largest", "window"), [
-    (0, 0), (0, 1), (SMALL_FRAME, 0), (SMALL_FRAME, 1),  # of before: they get what they got
-    (255, 255), (251, 2), (100, 200),  # they say more than there is
+    # Earlier requests, which get the same answers.
+    (0, 0), (0, 1), (SMALL_FRAME, 0), (SMALL_FRAME, 1),
+    (255, 255), (251, 2), (100, 200),  # the header states more bytes than there are
 ])  # fmt: skip
 def test_a_robot_gets_frames_as_it_says_up_to_what_there_is(largest: int, window: int) -> None:
     taking = InOrderReceiver()
@@ -231,7 +232,7 @@ def test_a_slow_line_has_little_before_a_stop() -> None:
 @pytest.mark.parametrize(
     ("outcome", "status"),
     [
-        ((OK, 0), LOST),  # it takes nothing
+        ((OK, 0), LOST),  # it accepts nothing
         ((STALE, 0), LOST),  # it calls all of them old, in the epoch of the session
         ((STATUSES["NOT_BEGUN"], 0), STATUSES["NOT_BEGUN"]),
         (None, LOST),
@@ -278,7 +279,7 @@ def test_a_stop_ends_the_pieces() -> None:
     assert robot.session.poll(robot.now_ms).strip(b"\0") == b""
     seq = robot.data[0][0]
     late = Frame(DATA, seq, 0, struct.pack("<BH", OK, 240), is_reply=True)
-    robot.session.receive(encode_frame(late), robot.now_ms)  # the answer comes all the same
+    robot.session.receive(encode_frame(late), robot.now_ms)  # the answer arrives anyway
     assert robot.session.poll(robot.now_ms + 50).strip(b"\0") == b""
 
 

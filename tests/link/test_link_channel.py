@@ -13,7 +13,7 @@ from functools import partial
 import pytest
 
 from tests.machines.link import CppLink, cpp_link, link_library
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.link_channel import World, program, run_upload_scenario
 from tiniscript.bytecode.image import pack, unpack
 
@@ -77,7 +77,7 @@ def one_undo(cpp: CppLink, seed: int) -> str:
             confirmed += 1
         if undo_count:
             images.reverse()
-        assert cpp.held() == images[1], f"seed {seed}: the robot holds another program"
+        assert cpp.fetch_image() == images[1], f"seed {seed}: the robot holds another program"
     return f"{confirmed} confirmed"
 
 
@@ -88,7 +88,7 @@ def test_undos_over_a_bad_radio() -> None:
 
 
 if __name__ == "__main__":
-    given = wanted(10_000, 1_000_000, "large", "undos", "pieces")
+    given = make_options(10_000, 1_000_000, "large", "undos", "pieces")
     one = (
         one_undo
         if given.undos

@@ -11,7 +11,7 @@ import struct
 import pytest
 
 from tests.machines.link import CppLink, Step, cpp_link
-from tests.support.link_channel import damaged
+from tests.support.link_channel import damage_frame
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
@@ -30,7 +30,7 @@ SEED = 5
 FRAMES = 1500
 
 
-def greeted(epoch: int = EPOCH) -> CppLink:
+def open_session(epoch: int = EPOCH) -> CppLink:
     """Return a robot in a session."""
     robot = cpp_link()
     robot.begin(epoch=epoch)
@@ -53,9 +53,9 @@ def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
         code = draw.choice((*CODES, CODES[0] + bytes(draw.randrange(4)), draw.randbytes(9)))
         data = live(code, draw.randrange(2, 100), (epoch + draw.randrange(20) // 19 + 1) % 256)
         if number % 3 == 0:
-            data = damaged(data[:-1], draw) + b"\0"
-        steps = [greeted(epoch).step(10, data, is_late=is_late) for is_late in (False, True)]
-        # one that looks late misses what comes after the end of another packet
+            data = damage_frame(data[:-1], draw) + b"\0"
+        steps = [open_session(epoch).step(10, data, is_late=is_late) for is_late in (False, True)]
+        # A late reader misses bytes after the end of another packet.
         if data.count(b"\0") == 1 and not {*b"\r\n"} & {*data}:
             assert steps[0] == steps[1], data.hex()
         if number % 3 == 0 and data != live(code):
@@ -66,9 +66,9 @@ def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
 
 @pytest.mark.parametrize("code", CODES)
 def test_it_does_not_run_before_its_frame_ends(code: bytes) -> None:
-    """And what runs goes on until then."""
+    """The running program goes on until then."""
     for runs in (False, True):
-        robot = greeted()
+        robot = open_session()
         if runs:
             robot.happens("r")
         assert not robot.step(10, live(code)[:-1]).did
@@ -81,7 +81,7 @@ def test_it_does_not_run_before_its_frame_ends(code: bytes) -> None:
 def test_a_robot_makes_the_image_of_the_compiler(text: str) -> None:
     """Without tasks it is one of 2.0, in a session of 2.1 too."""
     image = compile_text(text, KIT).image
-    sent = greeted().step(10, live(unpack(image).code)).sent
+    sent = open_session().step(10, live(unpack(image).code)).sent
     replies = [frame for frame in map(decode_frame, sent.split(b"\0")) if frame is not None]
     checksum = unpack(image).checksum.to_bytes(4, "little")
     assert [checksum in reply.payload for reply in replies] == [True]
@@ -91,19 +91,19 @@ def test_a_frame_that_is_damaged_goes_on_or_ends_too_late_runs_nothing() -> None
     for at in (2, 3, 7, 9, 10, 11):
         damage = bytearray(live(CODES[0]))
         damage[at] ^= 0x40 if at < 8 else 0x11
-        assert greeted().step(10, bytes(damage)) == NOTHING, at
+        assert open_session().step(10, bytes(damage)) == NOTHING, at
     more = (b"\x01\0", b"\x05\0", b"\x01\x01\0", b"\xff\0")
     ends = [(10 + messages.SILENCE_MS, b"\0"), *((10, data) for data in more)]
     for code in CODES:
         for now_ms, end in ends:
-            robot = greeted()
+            robot = open_session()
             assert not robot.step(10, live(code)[:-1]).did
             assert robot.step(now_ms, end) == NOTHING, (code, end)
 
 
 @pytest.mark.parametrize(("before", "between"), [("", "b"), ("r", "f")], ids=["button", "fault"])
 def test_a_button_or_a_fault_in_between_makes_it_stale(before: str, between: str) -> None:
-    robot = greeted()
+    robot = open_session()
     if before:
         robot.happens(before)
     data = live(CODES[0])
@@ -115,7 +115,7 @@ def test_a_button_or_a_fault_in_between_makes_it_stale(before: str, between: str
 
 
 def test_a_stop_ends_the_frame_and_then_the_run() -> None:
-    robot = greeted()
+    robot = open_session()
     assert not robot.step(10, live(CODES[0])[:-1]).did
     did = robot.step(10, bytes(8)).did
     assert did.index(STARTED) < did.index("PINS OFF") < did.index("STOP")
@@ -123,8 +123,8 @@ def test_a_stop_ends_the_frame_and_then_the_run() -> None:
 
 
 def test_another_frame_after_one_that_was_cut_runs_its_own_code() -> None:
-    robot = greeted()
+    robot = open_session()
     assert not robot.step(10, live(CODES[1])[:-1]).did
     step = robot.step(10 + messages.SILENCE_MS, b"\0" + live(CODES[0]))
-    expected = greeted().step(10, live(CODES[0]), is_late=True)
+    expected = open_session().step(10, live(CODES[0]), is_late=True)
     assert step == (b"\0" + expected.sent, expected.did)

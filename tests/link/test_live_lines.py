@@ -9,7 +9,7 @@ import random
 from collections import Counter
 
 from tests.machines.link import CppLink, cpp_link, link_library
-from tests.support.campaign import wanted
+from tests.support.campaign import make_options
 from tests.support.link_channel import OUTCOMES, World
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.opcodes import BY_NAME as OPCODES
@@ -34,8 +34,8 @@ class LiveWorld(World):
 
 
 def lives(cpp: CppLink, count: int, seed: int) -> Counter[str]:
-    """Send so many lines, each of its own code, over radios that lose answers; return how that
-    went. A line begins once where the computer says so, and never twice.
+    """Send so many lines, each with its own code, over radios that lose answers; return the
+    results. A line that the computer confirms begins once, and no line twice.
     """
     draw = random.Random(seed)
     counts: Counter[str] = Counter()
@@ -75,5 +75,5 @@ def test_live_lines_over_a_bad_radio() -> None:
 
 
 if __name__ == "__main__":
-    given = wanted(100_000, 1_000_000)
+    given = make_options(100_000, 1_000_000)
     print(lives(link_library(), given.count, given.seed))

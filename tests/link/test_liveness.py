@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from tests.machines.host_firmware import HostFirmware
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.images import TINIBOT, image_of
 from tests.support.robot_on_host import computer, switched_on
 from tiniscript.link.connection import EXCHANGE_TIMEOUT_MS, PendingRequest
@@ -23,7 +23,7 @@ from tiniscript.link.session import DEAF_MS, Session
 
 IN_A_ROW = 4  # packets of both that are lost before an answer arrives
 DEAD_MS, ALIVE_MS = 2500, 1500  # of a line that is dead again and again
-LATE_MS = 1200  # that what goes to the robot takes
+LATE_MS = 1200  # most delay of data to the robot
 EACH_MS = 10_000  # of a request and of each of its pieces
 LONG = "SI|" + "F(0.1, 30); B(0.1, 20);" * 60
 GOES_ON = "SI|F(20, 40)"
@@ -44,7 +44,7 @@ ASKED: dict[str, Callable[[Session], PendingRequest[Any]]] = {
 
 
 class BadLine:
-    """Says what is lost of that which the one or the other sends, packet by packet."""
+    """A line that decides the loss of each packet in both directions."""
 
     def __init__(self, rng: random.Random) -> None:
         self.rng = rng
@@ -54,7 +54,7 @@ class BadLine:
         self.likely = rng.choice((0.2, 0.5, 0.8)) if kind == "losses" else 0
         self.late_ms = rng.choice((300, LATE_MS)) if kind == "late" else 0
         self.under_way: deque[tuple[int, bytes]] = deque()  # to the robot
-        self.packets = [(-9, False), (-9, False)]  # when each way's last one was, and what it met
+        self.packets = [(-9, False), (-9, False)]  # time and fate of the last one in each direction
         self.dead_ms = rng.choice((500, 1500, DEAD_MS))
 
     def takes(self, data: bytes, now_ms: int, is_answer: bool = False) -> bytes:
@@ -109,7 +109,7 @@ def check(seed: int) -> str:
         status = until(session, robot, line, request, pieces * EACH_MS)
         assert status == OK, f"{explanation}: {status}"
     if name == "what goes on alone":
-        robot.wait(2 * DEAF_MS)  # who has asked for it has gone
+        robot.wait(2 * DEAF_MS)  # the client that sent it has gone
         assert not robot.is_latched, explanation
     return name
 
@@ -203,4 +203,4 @@ def test_answers_to_keys_that_come_late_keep_the_line(late_ms: int) -> None:
 
 
 if __name__ == "__main__":
-    each_seed(check, wanted(1000, 10_000))
+    each_seed(check, make_options(1000, 10_000))

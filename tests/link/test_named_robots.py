@@ -21,7 +21,7 @@ from tests.support.waiting import HANGS_S, until
 from tiniscript.base import files
 from tiniscript.link import known_ports, ports
 
-if TYPE_CHECKING:  # without zeroconf there is none
+if TYPE_CHECKING:  # without zeroconf there are no names
     from zeroconf import ServiceInfo, Zeroconf
 
     from tiniscript.link.transports.network import AnnouncedRobot
@@ -44,7 +44,7 @@ LOST = 0.05  # of the pieces
 
 @pytest.fixture
 def listing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """No other test lists what is announced, or announces what has no address, meanwhile."""
+    """No other test lists or announces names meanwhile."""
     shared = tmp_path_factory.getbasetemp().parent / "listing"  # by the workers of a run
     end_s = time.monotonic() + HANGS_S
     with ExitStack() as stack:
@@ -57,7 +57,7 @@ def listing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 
 @contextmanager
-def announced(name: str, address: str, number: int) -> Iterator[None]:
+def announce(name: str, address: str, number: int) -> Iterator[None]:
     """Something that says it is a robot."""
     from zeroconf import ServiceInfo, Zeroconf
 
@@ -73,8 +73,9 @@ def announced(name: str, address: str, number: int) -> Iterator[None]:
 
 @contextmanager
 def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
-    """Multicast packets that announce names, one after the other; and so many names of which
-    nobody tells the address."""
+    """Yield multicast packets that announce names one after the other, and so many names without an
+    address.
+    """
     from zeroconf._dns import DNSAddress, DNSPointer, DNSService, DNSText
     from zeroconf._protocol.outgoing import DNSOutgoing
     from zeroconf.const import (
@@ -106,7 +107,7 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
             out.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, bytes((127, 0, 0, 1)))
             out.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             out.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
-            out.bind(("127.0.0.1", 5353))  # from elsewhere nobody believes it
+            out.bind(("127.0.0.1", 5353))  # names from elsewhere are ignored
             while not is_over.wait(0.1):
                 for data in packet.packets():
                     out.sendto(data, ("224.0.0.251", 5353))
@@ -151,7 +152,7 @@ def test_a_name_and_an_address_share_a_connection(tini: Robot) -> None:
     command = Command("upload", "-e", FOREVER, "--port", f"tcp://Ñ tini {HERE}")
     command.until("running")
     assert inside("stop", "--port", tini.port).code == 0
-    assert command.ended().code == 3
+    assert command.wait_for_result().code == 3
 
 
 def test_a_robot_announces_itself_only_when_asked(
@@ -195,7 +196,7 @@ def test_two_robots_of_one_name_are_not_announced(tini: Robot) -> None:
 
 @pytest.mark.parametrize("address", ["8.8.8.8", "0.0.0.0"])
 def test_an_address_outside_is_not_called(address: str) -> None:
-    with announced(f"bait-{HERE}", address, 7007):
+    with announce(f"bait-{HERE}", address, 7007):
         result = inside("doctor", "--identify", "--port", f"tcp://bait-{HERE}")
         message = f"an address outside this network ({address})"
         assert (result.code, message in result.err) == (3, True)
@@ -242,7 +243,7 @@ def test_a_hostile_name_is_shown_without_what_a_terminal_obeys(
     monkeypatch.setattr(ports, "list_ports", list)
     with (
         robot("--listen", "0") as running_robot,
-        announced("\u202ex", "127.0.0.1", number_of(running_robot.port)),
+        announce("\u202ex", "127.0.0.1", number_of(running_robot.port)),
     ):
         result = inside("doctor", "--ports", "--ask").gives(0, out=running_robot.port)
         assert "\u202e" not in result.out
@@ -258,7 +259,7 @@ def test_whatever_answers_a_name_has_to_be_a_robot() -> None:
             peer.close()
 
         threading.Thread(target=serve, daemon=True).start()
-        with announced(f"web-{HERE}", "127.0.0.1", number):
+        with announce(f"web-{HERE}", "127.0.0.1", number):
             assert inside("doctor", "--identify", "--port", f"tcp://web-{HERE}").code == 3
 
 
@@ -284,7 +285,7 @@ def test_a_bad_network_costs_time_and_nothing_else() -> None:
         closing(
             BadNetwork(number_of(running_robot.port), LATE_S, every=2000, lost=LOST)
         ) as network,
-        announced(f"far-{HERE}", "127.0.0.1", network.port),
+        announce(f"far-{HERE}", "127.0.0.1", network.port),
     ):
         result = inside("upload", "-e", f"SB|{LONG}", "--port", port).gives(0, "")
         checksum = result.out.partition("checksum ")[2][:8]
@@ -292,4 +293,4 @@ def test_a_bad_network_costs_time_and_nothing_else() -> None:
         command = Command("upload", "-e", FOREVER, "--port", port)
         command.until("running")
         assert inside("stop", "--port", port).code == 0
-        command.ended()
+        command.wait_for_result()

@@ -63,7 +63,7 @@ def test_a_robot_is_reached_over_a_network(protocol: str) -> None:
         address = f"{protocol}://127.0.0.1:{tcp.getsockname()[1]}"
         result = process("upload", "-e", "SI|F(0.2, 50);SHOW(1.5)", "--port", address).gives(0, "")
         assert result.out.splitlines()[1:3] == ["SHOW 1.5", "Done."]
-        assert pty_robot.did == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
+        assert pty_robot.actions == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
         server.join(10)
         assert process("doctor", "--ports").out.count(address) == 1
 

@@ -1,5 +1,6 @@
-"""The reading half of a radio's port: whatever came before, a read waits where there is nothing to
-read and nobody has cancelled it, once for each cancelling."""
+"""The reading half of a radio's port: after any history, a read waits if there are no bytes and no
+cancellation, once for each cancellation.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""What was asked for before a stop starts nothing after it, whoever has stopped the robot, and
-whatever of that is lost on the way.
+"""Requests from before a stop start nothing after it, whoever stopped the robot, and whatever is
+lost on the way.
 
 Random requests wait for each other; at any moment somebody stops the robot. `Session` knows of it
 from an event, from a reply, or is what stops; the robot knows the epoch of each frame.
@@ -13,7 +13,7 @@ from collections import Counter
 import pytest
 
 from tests.machines.host_firmware import HostFirmware
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.images import image_of
 from tests.support.queued_requests import ACTING, NOTHING, OTHERS, OWN, STOPS, Losses, Wire
 from tiniscript.link.messages import STATE_STOPPED
@@ -37,7 +37,7 @@ def check(seed: int) -> str:
              for _ in range(rng.randint(2, 5))]  # fmt: skip
     wire.loses = rng.choice((NOTHING, Losses(0.3, 0.3), Losses(0, 1)))
     wire.turns(rng.choice((0, 0, 1, 2, 3, 5, 8, 13, 30)))
-    if how == "the button" and not is_driving(robot):  # it would start what is held
+    if how == "the button" and not is_driving(robot):  # it would start the stored program
         how = "zeros"
     open_ones = [
         pending_request for pending_request in pending_requests if pending_request.outcome is None
@@ -54,7 +54,7 @@ def check(seed: int) -> str:
     robot.codes()
     robot.did.clear()
     wire.loses = rng.choice((NOTHING, Losses(0, 0.3)))
-    wire.turn(b"" if rng.random() < 0.5 else sent)  # the event, or nobody has heard it
+    wire.turn(b"" if rng.random() < 0.5 else sent)  # the event, if the session heard it
     wire.turns(rng.choice((1, 5, 200)))
     wire.loses = NOTHING
     wire.turns(wire.late_ms)
@@ -84,4 +84,4 @@ def test_what_was_asked_for_before_a_stop_starts_nothing(part: int) -> None:
 
 
 if __name__ == "__main__":
-    each_seed(check, wanted(2000, 10_000))
+    each_seed(check, make_options(2000, 10_000))

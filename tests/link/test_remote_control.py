@@ -1,5 +1,5 @@
-"""Keys of a remote control, from who holds them to what a program reads: the newest word, and none
-that is older than the release of a key.
+"""Keys of a remote control, from a person to a program: the newest state, and none older than the
+release of a key.
 
 A word is KEYS; what a program reads is asked of the robot's own firmware.
 """
@@ -16,8 +16,8 @@ from tests.machines.host_firmware import HostFirmware
 from tests.support.owners import KIT, Keys, Owned
 from tests.support.queued_requests import OWN, STOPS
 from tests.support.remote_readings import RELEASED, remote_readings
-from tests.support.session_frames import greeted as described
-from tests.support.unsent_requests import greeted, image
+from tests.support.session_frames import greet as described
+from tests.support.unsent_requests import image, open_session
 from tiniscript.base.kit import YES_NO, Device, Kit
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
@@ -95,7 +95,7 @@ class Hand:
 
 
 def hand() -> Hand:
-    return Hand(*greeted())
+    return Hand(*open_session())
 
 
 def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
@@ -205,7 +205,7 @@ def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_keys_that_change_all_the_time_on_a_bad_line(seed: int) -> None:
-    """`Hand` looks at each word: it is what is held when it is sent."""
+    """`Hand` checks each state: it is that at the time of sending."""
     rng = random.Random(seed)
     one = hand()
     one.loses = lambda: rng.random() < 0.3
@@ -219,7 +219,7 @@ def test_keys_that_change_all_the_time_on_a_bad_line(seed: int) -> None:
 
 def test_who_falls_silent_holds_nothing() -> None:
     """A command that hangs, while its session still talks."""
-    session, robot = greeted()
+    session, robot = open_session()
     session.press(*UP)
     robot.talk(session, HOLD_MS - 50)
     assert robot.remote() == remote_readings(UP)
@@ -229,7 +229,7 @@ def test_who_falls_silent_holds_nothing() -> None:
 
 def test_two_who_press_on_one_line() -> None:
     """All their keys, and the pad of who moved his last; who goes lets his go."""
-    session, robot = greeted()
+    session, robot = open_session()
     session.press(*UP, 1)
     session.press(A.keys, 10, 20, 2)
     robot.talk(session, 100)
@@ -331,9 +331,11 @@ def test_a_stop_by_somebody_else_voids_what_is_held(how: str) -> None:
 
 @pytest.mark.parametrize("seed", range(24))
 def test_what_was_held_before_a_stop_is_not_held_after_it(seed: int) -> None:
-    """Before somebody says so: whoever held it, however soon the next program begins."""
+    """This holds before the next state arrives: whoever held the keys, however soon the next
+    program begins.
+    """
     rng = random.Random(seed)
-    session, robot = greeted()
+    session, robot = open_session()
     how = rng.choice((*STOPS, OWN))
     assert robot.until(session, session.upload(image(DRIVES), saves=False)) == OK
     for _ in range(rng.randint(1, 3)):
@@ -417,7 +419,7 @@ def test_only_who_may_run_a_line_presses_keys_of_a_robot_with_an_owner(
     defines: tuple[str, ...],
 ) -> None:
     table, keys = Owned(defines=defines), Keys()
-    table.claimed(keys)
+    table.claim_session(keys)
     stranger = Session(9, 9600, KIT.fingerprint)
     assert table.robot.until(stranger, stranger.hello()) == OK
     refused = stranger.press(*UP)
@@ -442,7 +444,7 @@ class Wire:
     """Who writes frames by hand, each with the next number."""
 
     def __init__(self) -> None:
-        self.session, self.robot = greeted()
+        self.session, self.robot = open_session()
         self.seq = self.session._seq
         self.epoch = self.session._epoch
 
@@ -548,7 +550,7 @@ def test_keys_drop_no_open_block_of_text() -> None:
     """Another request does: it may need the memory."""
     for sent, is_there in ((None, True), ("KEYS", True), ("NAME", False)):
         wire = Wire()
-        wire.robot.wait(1500)  # text comes again
+        wire.robot.wait(1500)  # from here on the robot reads text again
         wire.robot.wait(50, b"SI|LOOP(1)\r\nF(0.1, 50)\r\n")
         if sent is not None:
             payload = b"\1\0\0" if sent == "KEYS" else b"Ana"

@@ -12,7 +12,8 @@ from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AGAIN_MS, BY_NAME, DEAD_MAN_MS, LISTEN_MS
 
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
-ANSWERS = 17  # to mistakes, without a pause of five seconds: the last one says that these are all
+# Answers to mistakes without a pause of five seconds; the last one announces the silence.
+ANSWERS = 17
 
 
 def robot_with_session() -> CppLink:
@@ -140,14 +141,14 @@ def test_a_slow_line_back_costs_no_answer() -> None:
 def test_a_robot_tells_only_who_listens() -> None:
     cpp = cpp_link()
     cpp.begin(kit=KIT)
-    assert cpp.happens("s", 1) and not cpp.step(0).sent  # nobody has said HELLO
+    assert cpp.happens("s", 1) and not cpp.step(0).sent  # no HELLO has been sent
     cpp = robot_with_session()
     assert cpp.happens("s", 1)
-    assert not cpp.happens("s", 2)  # the last one is not sent yet: it comes again
+    assert not cpp.happens("s", 2)  # the last one has not been sent yet, so it is repeated
     assert cpp.step(LISTEN_MS - 1).sent
     cpp.step(LISTEN_MS)
     assert cpp.happens("s", 3) and cpp.happens("s", 3)
     cpp.happens("d")
     assert not cpp.step(LISTEN_MS + 5).sent
     cpp.happens("b")
-    assert cpp.step(LISTEN_MS + 10).sent  # that it was stopped it always tells
+    assert cpp.step(LISTEN_MS + 10).sent  # it always reports that it was stopped

@@ -1,4 +1,4 @@
-"""The seal of a session: both halves against the same bytes, and against what is not theirs.
+"""The seal of a session: both halves agree on the same bytes, and reject others.
 
 The bytes are made here anew from what `docs/develop/owners.md` says, with SipHash-2-4 alone, which
 has the vectors of its authors.
@@ -107,7 +107,7 @@ def test_the_robot_seals_and_the_computer_opens_as_written_and_what_is_new() -> 
     for _ in range(300):
         frame, counter = random_frame(chance, True), counters(chance)
         marked, sent = whole(frame._replace(is_sealed=True)), by_hand(frame, counter)
-        assert cpp_link().sealed(KEY, ORIGIN, 0, counter - 1, marked) == sent
+        assert cpp_link().seal(KEY, ORIGIN, 0, counter - 1, marked) == sent
         mine = seal(heard=counter - 1)
         assert mine.open_frame(frame_of(sent)) == frame._replace(is_sealed=True)
         assert mine.open_frame(frame_of(sent)) is None  # once
@@ -152,8 +152,8 @@ def test_a_counter_at_its_end_seals_nothing_more() -> None:
     with pytest.raises(AssertionError):
         mine.seal_frame(Frame(2, 1, 1))
     marked = whole(Frame(2, 1, 1, is_reply=True, is_sealed=True))
-    assert cpp_link().sealed(KEY, ORIGIN, 0, LAST_COUNTER - 1, marked)
-    assert cpp_link().sealed(KEY, ORIGIN, 0, LAST_COUNTER, marked) == b""
+    assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER - 1, marked)
+    assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER, marked) == b""
     assert not cpp_link().opens(KEY, ORIGIN, LAST_COUNTER, by_hand(Frame(2, 1, 1), LAST_COUNTER))
 
 

@@ -1,4 +1,4 @@
-"""A bad line with a stranger on it: what is sealed is done once or not at all, and a stop always.
+"""A bad line with a stranger on it: sealed requests are executed at most once, and a stop always.
 
 The stranger hears all, and says what it likes to both ends: what it has heard, again, later, in
 another order or to the other end, frames without a seal or with a wrong one, and HELLO; it answers
@@ -14,9 +14,9 @@ from collections import Counter
 import pytest
 
 from tests.machines.link import CppLink, cpp_link, link_library
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.link_cases import KIT
-from tests.support.link_channel import World, damaged, program, run_upload_scenario
+from tests.support.link_channel import World, damage_frame, program, run_upload_scenario
 from tests.support.owners import Keys
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
@@ -40,7 +40,9 @@ HEARD = 400  # frames that the stranger keeps
 
 
 class SealedWorld(World):
-    """A robot with an owner, whose session is sealed. `says` is how often the stranger speaks."""
+    """A robot with an owner, whose session is sealed. `says` is how many times the stranger
+    speaks.
+    """
 
     has_hello = True
 
@@ -49,7 +51,7 @@ class SealedWorld(World):
         self.says = 0.0
         self.frames: list[bytes] = []
         self.asked: Frame | None = None  # the last request
-        self.greeting = b""  # what the robot said to HELLO
+        self.greeting = b""  # the robot's answer to HELLO
         super().__init__(cpp, draw, 0, 0)
         largest = LARGE_FRAME if cpp.is_large else SMALL_FRAME
         self.line = (payload_bytes(largest, is_sealed=True) - 1) // 3 * 3
@@ -57,7 +59,7 @@ class SealedWorld(World):
         self.reconnect()
         claim = self.session.claim(KEY_OWNER)
         self.run(None, 1000)
-        while not cpp.happens("h"):  # until the claim has come
+        while not cpp.happens("h"):  # until the claim arrives
             self.run(None, 200)
         self.run(claim)
         assert claim.outcome and claim.outcome.status == 0
@@ -79,27 +81,27 @@ class SealedWorld(World):
     def disturb(self) -> None:
         if self.says == 0 or self.draw.random() >= self.says or not self.frames:
             return
-        data = self.forged()
+        data = self.forge_frame()
         (self.to_computer if self.draw.random() < 0.4 else self.to_robot).send(
             b"\0" + data, self.now_ms
         )
 
-    def forged(self) -> bytes:
+    def forge_frame(self) -> bytes:
         draw = self.draw
         how = draw.randrange(7)
         old = draw.choice(self.frames)
         if how == 6 and self.asked is not None:
-            return self.answered(self.asked)
+            return self.answer_unsealed(self.asked)
         if how == 0:
-            return damaged(old, draw)
+            return damage_frame(old, draw)
         frame = decode_frame(old.rstrip(b"\0"))
         if how < 3 or frame is None:
             return old
-        if how == 3:  # a seal is taken off, put on, or moved to what may still be expected
+        if how == 3:  # a seal is removed, added, or moved to an expected frame
             number = draw.choice((frame.number, BY_NAME["LIVE"].number))
             frame = frame._replace(number=number, seq=(frame.seq + draw.randrange(3)) & 0xFF)
             return encode_frame(frame._replace(is_sealed=draw.random() < 0.5))
-        if how == 4:  # the robot is said to have no seal, or to have done it
+        if how == 4:  # the attacker claims that the robot has no seal, or has done it
             status = draw.choice((0, 0, STATUSES["NOT_OWNER"], STATUSES["STALE"]))
             payload = bytes([status]) + draw.randbytes(draw.choice((0, 2, 8)))
             return encode_frame(frame._replace(payload=payload, is_reply=True, is_sealed=False))
@@ -111,7 +113,7 @@ class SealedWorld(World):
         seq, epoch = draw.randrange(256), frame.epoch
         return encode_frame(Frame(message.number, seq, epoch, payload))
 
-    def answered(self, asked: Frame) -> bytes:
+    def answer_unsealed(self, asked: Frame) -> bytes:
         """Return an answer that has no seal: HELLO as a robot that seals nothing, or done."""
         message = next(message for message in MESSAGES if message.number == asked.number)
         payload = b"\0" + self.draw.randbytes(sum(field.least_bytes for field in message.reply))
@@ -172,6 +174,6 @@ def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:
 
 
 if __name__ == "__main__":
-    given = wanted(10_000, 1, "large")
+    given = make_options(10_000, 1, "large")
     robot = link_library(given.large)
     each_seed(lambda seed: run_upload_scenario(robot, seed, SealedWorld), given)

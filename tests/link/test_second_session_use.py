@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from tests.machines.host_firmware import HostFirmware
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.images import TINIBOT, image_of
 from tests.support.queued_requests import ACTING, LONG, NOTHING, OTHERS, STOPS, Losses, Wire
 from tests.support.robot_on_host import computer
@@ -38,7 +38,7 @@ from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 QUIET_MS = 8000
-LATER_MS = 600  # a session that has seen losses may wait so much longer, or less
+LATER_MS = 600  # extra or missing wait of a session with losses
 PROGRAMS = ("SI|SHOW(1);F(0.2, 50);SHOW(2)", LONG, "SI|X = 0;W(0.1);SHOW(1 / X)", "SI|F(60, 50)")
 
 
@@ -68,7 +68,7 @@ def first(rng: random.Random) -> Wire:
 
 
 def happens(rng: random.Random, wire: Wire) -> None:
-    # A STOP of who has said no HELLO may bear a number that is ahead of ours: not "a message".
+    # A STOP from a client without HELLO may have a number ahead of ours: not "a message".
     how = rng.choice(("zeros", "the button", "the cable", "its own stop", "a reset", "a silence",
                       "a dead line", "a dead line"))  # fmt: skip
     if how in STOPS:
@@ -77,7 +77,7 @@ def happens(rng: random.Random, wire: Wire) -> None:
         wire.session.stop(wire.robot.now_ms)
     elif how == "a silence":
         wire.robot.wait(rng.choice((400, 4000)))
-    elif how == "a dead line":  # mostly for so long that the robot is given up
+    elif how == "a dead line":  # usually long enough for the robot to be given up
         for _ in range(rng.choice((40, 400, 1200))):
             wire.session.poll(wire.robot.now_ms)
             wire.robot.wait(10)
@@ -119,8 +119,8 @@ def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
         began_ms = robot.now_ms
         if rng.random() < 0.3:
             session.stop(robot.now_ms)
-        elif rng.random() < 0.3 and session.is_running:  # one that stands was stopped before
-            session.receive(robot.step(bytes(4)), robot.now_ms)  # somebody else
+        elif rng.random() < 0.3 and session.is_running:  # a robot at rest was stopped earlier
+            session.receive(robot.step(bytes(4)), robot.now_ms)  # another client
         robot.talk(session, rng.choice((5, 700)))
         what += [str(event) for event in session.events() if not isinstance(event, MissedEvent)]
     robot.talk(session, 1500)
@@ -145,7 +145,7 @@ def check(seed: int) -> str:
     used, other = first(random.Random(seed)), first(random.Random(seed))
     for wire in (used, other):
         wire.robot.talk(wire.session, QUIET_MS)
-        if not wire.robot.is_latched:  # what runs detached goes on
+        if not wire.robot.is_latched:  # detached programs continue
             wire.session.stop(wire.robot.now_ms)
             wire.robot.talk(wire.session, 300)
     events = used.session.events()
@@ -161,7 +161,7 @@ def check(seed: int) -> str:
     return "it runs" if "DoneEvent" in str(want) else "it stands"
 
 
-def met(rng: random.Random) -> Wire:
+def open_wire(rng: random.Random) -> Wire:
     wire = Wire(rng)
     wire.session.hello()
     wire.turns(300)
@@ -175,7 +175,7 @@ def test_who_has_restarted_does_what_is_asked_when_the_line_is_there_again(
 ) -> None:
     """Though the question who it is was lost, or dropped by a stop."""
     rng = random.Random(dead_ms)
-    wire = met(rng)
+    wire = open_wire(rng)
     restart(rng, wire)
     wire.turn(STOPS["zeros"](wire.robot, wire.session))
     for _ in range(dead_ms // 10):
@@ -189,8 +189,8 @@ def test_who_has_restarted_does_what_is_asked_when_the_line_is_there_again(
 
 @pytest.mark.parametrize("how", STOPS)
 def test_what_is_asked_behind_a_stop_that_an_answer_has_shown_is_done(how: str) -> None:
-    wire = met(random.Random(1))
-    STOPS[how](wire.robot, wire.session)  # nobody hears of it
+    wire = open_wire(random.Random(1))
+    STOPS[how](wire.robot, wire.session)  # no client hears it
     wire.robot.until(wire.session, wire.session.fetch())
     assert wire.robot.until(wire.session, wire.session.identify()) == OK
 
@@ -198,7 +198,7 @@ def test_what_is_asked_behind_a_stop_that_an_answer_has_shown_is_done(how: str) 
 @pytest.mark.parametrize("fate", ["nothing", "a reset", *STOPS])
 def test_nothing_more_is_told_of_a_run_whose_loss_was_told(fate: str) -> None:
     rng = random.Random(fate)
-    wire = met(rng)
+    wire = open_wire(rng)
     wire.session.tells_starts = wire.session.tells_places = True
     assert wire.robot.until(wire.session, wire.session.live(image_of("F(60, 50)").code)) == OK
     wire.robot.talk(wire.session, 500)
@@ -215,7 +215,7 @@ def test_nothing_more_is_told_of_a_run_whose_loss_was_told(fate: str) -> None:
 
 def test_who_is_found_again_tells_where_its_program_is() -> None:
     """Though that is where it was before."""
-    wire = met(random.Random(1))
+    wire = open_wire(random.Random(1))
     wire.session.tells_places = True
     program = image_of("SI|W(100)")
     upload = wire.session.upload(program, saves=False, is_detached=True)
@@ -230,7 +230,7 @@ def test_who_is_found_again_tells_where_its_program_is() -> None:
 
 
 def lose(wire: Wire) -> bool:
-    """Let nobody hear the other; return whether the session tells that and nothing else."""
+    """Block both directions; return whether the session reports that and nothing else."""
     wire.session.events()
     events: list[Event] = []
     for _ in range(800):
@@ -248,4 +248,4 @@ def test_a_session_is_as_a_fresh_one_whatever_it_has_seen(part: int) -> None:
 
 
 if __name__ == "__main__":
-    each_seed(check, wanted(2000, 10_000))
+    each_seed(check, make_options(2000, 10_000))

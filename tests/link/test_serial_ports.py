@@ -35,7 +35,7 @@ def line(request: pytest.FixtureRequest) -> Iterator[Line]:
 
 @pytest.fixture
 def ready(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Who waits for bytes is told of some at once, as one who was suspended after that."""
+    """Simulate a wait that reports bytes at once, like that of a process suspended afterwards."""
     monkeypatch.setattr(select, "select", lambda readers, *_: (readers[:1], [], []))
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from tests.machines.host_firmware import HostFirmware
 from tests.support.link_cases import KIT
-from tests.support.session_frames import DESCRIPTION, FORWARD, answer, event, greeted, receipt
+from tests.support.session_frames import DESCRIPTION, FORWARD, answer, event, greet, receipt
 from tests.support.session_resets import running
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, pack, unpack
@@ -62,7 +62,7 @@ def sending(session: Session, until_ms: int) -> list[tuple[int, bytes]]:
 def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
     baud: int, first: int
 ) -> None:
-    session = greeted(baud)
+    session = greet(baud)
     session.is_attached = False
     request = session.live(FORWARD)
     session.poll(0)
@@ -83,11 +83,11 @@ def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
 def test_a_retry_learns_how_long_an_answer_takes() -> None:
     """Four variations above the mean, as RFC 6298 has it; an answer to a repetition tells nothing
     of its own time, and the doubled timer stays."""
-    session = greeted(115_200)
+    session = greet(115_200)
     session.is_attached = False
     now_ms = 0
 
-    def asked(took_ms: int) -> list[int]:
+    def measure_waits(took_ms: int) -> list[int]:
         """Ask, and be answered; return how long after each sending the next one came."""
         nonlocal now_ms
         session.ping()
@@ -98,8 +98,8 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
         session.receive(answer(data, {"state": 0, "run": 0, "place": b""}), now_ms)
         return [later - earlier for earlier, later in pairwise([0, *times])]
 
-    assert asked(600) == [127, 254]  # and 508, which is not over
-    assert asked(500) == []  # it stays, and this one is certain: 500 and 4 * 250
+    assert measure_waits(600) == [127, 254]  # and 508, which is not over
+    assert measure_waits(500) == []  # it stays, and this one is certain: 500 and 4 * 250
     silent = session.ping()
     session.poll(now_ms)
     first = sending(session, now_ms + 2000)[0][0] - now_ms
@@ -110,7 +110,7 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
 
 def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_ends_it() -> None:
     """However long its answers have taken."""
-    session = greeted(115_200)
+    session = greet(115_200)
     live = session.live(FORWARD)
     session.receive(answer(session.poll(0), receipt(1)), 0)
     assert live.outcome and session.is_running
@@ -127,7 +127,7 @@ def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_en
 
 
 def test_a_stop_cuts_everything_short() -> None:
-    session = greeted()
+    session = greet()
     requests: list[PendingRequest[Any]] = [session.live(FORWARD), session.fetch()]
     session.poll(0)
     session.stop(3)
@@ -139,7 +139,7 @@ def test_a_stop_cuts_everything_short() -> None:
 
 
 def test_a_stop_that_nobody_answers_is_told_and_holds_up_others_for_a_few_seconds() -> None:
-    session = greeted()
+    session = greet()
     session.stop(0)
     early = session.ping()
     assert len(sending(session, CONFIRM_MS)) == CONFIRM_MS // STOP_MS
@@ -153,7 +153,7 @@ def test_a_stop_that_nobody_answers_is_told_and_holds_up_others_for_a_few_second
 
 def test_what_came_before_a_stop_was_sent_confirms_nothing() -> None:
     """The robot may have been started again since."""
-    session = greeted()
+    session = greet()
     session.stop(3)
     session.receive(event("STOPPED", 0, {"cause": 3}), 3)
     assert session.poll(3) == bytes(8)
@@ -166,12 +166,12 @@ def test_what_came_before_a_stop_was_sent_confirms_nothing() -> None:
 @pytest.mark.parametrize("cause", [2, 3, 4, 5])
 def test_another_stop_confirms_none(cause: int) -> None:
     """Its STOPPED was under way; the robot may have been started again since."""
-    session = greeted()
+    session = greet()
     session.stop(0)
     assert session.poll(0) == bytes(8)
     session.receive(event("STOPPED", 0, {"cause": cause}), 30)
     assert session.events() == [] and session.is_latched
-    assert sending(session, 150) == [(100, bytes(8))]  # it goes on
+    assert sending(session, 150) == [(100, bytes(8))]  # the program continues
     session.receive(event("STOPPED", 1, {"cause": 1}, epoch=12), 160)
     assert [event.name for event in session.events()] == ["STOPPED"]
     assert sending(session, 500) == []
@@ -181,7 +181,7 @@ def test_another_stop_confirms_none(cause: int) -> None:
 def test_a_robot_that_another_has_stopped_confirms_in_its_epoch(cause: int) -> None:
     """It tells the first cause each time; the session may know of that stop, or not yet."""
     for is_known in (True, False):
-        session = greeted() if is_known else Session(1, kit=KIT)
+        session = greet() if is_known else Session(1, kit=KIT)
         if is_known:
             session.receive(event("STOPPED", 0, {"cause": cause}), 0)
             session.events()
@@ -205,7 +205,7 @@ def test_a_move_after_another_stop_does_not_go_unseen() -> None:
     assert robot.until(other, other.clear()) == 0
     assert robot.until(other, other.live(compile_text("F(200, 80)", ROBOT.kit).code)) == 0
     session.stop(robot.now_ms)
-    assert session.poll(robot.now_ms)  # nobody hears it
+    assert session.poll(robot.now_ms)  # no client hears it
     session.receive(stopped_event, robot.now_ms)
     assert session.events() == []
     robot.talk(session, 500)
@@ -215,7 +215,7 @@ def test_a_move_after_another_stop_does_not_go_unseen() -> None:
 
 def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> None:
     """The frame that does it is under way. What was not sent, or was refused, is not done."""
-    session = greeted()
+    session = greet()
     live, waits = session.live(FORWARD), session.start()
     session.poll(0)
     session.stop(5)
@@ -223,7 +223,7 @@ def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> Non
         "stopped_midway", "stopped_elsewhere",
     ]  # fmt: skip
     for is_cleared in (False, True):  # the latch has to be released before the program
-        session = greeted()
+        session = greet()
         session.receive(event("STOPPED", 0, {"cause": 3}), 0)
         session.hello()
         session.receive(
@@ -236,7 +236,7 @@ def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> Non
         session.poll(20)
         session.stop(25)
         assert live.outcome and live.outcome.detail == (DETAIL_MIDWAY if is_cleared else 0)
-    session = greeted()
+    session = greet()
     live = session.live(FORWARD)
     session.receive(answer(session.poll(0), {}, status=STATUSES["BUSY"]), 5)
     session.stop(10)
@@ -245,7 +245,7 @@ def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> Non
 
 def test_one_stop_is_told_once_however_late_its_answers_come() -> None:
     """51 of them were stalled; the stop was given up meanwhile. A later stop has another epoch."""
-    session = greeted()
+    session = greet()
     session.stop(100)
     sending(session, 8000)
     assert [event.name for event in session.events()] == ["LOST"] and not session.is_open
@@ -258,7 +258,7 @@ def test_one_stop_is_told_once_however_late_its_answers_come() -> None:
 
 
 def test_a_late_answer_to_a_stop_ends_no_run_that_has_begun_since() -> None:
-    session = greeted()
+    session = greet()
     session.stop(0)
     session.poll(0)
     session.receive(event("STOPPED", 0, {"cause": 1}), 20)
@@ -279,7 +279,7 @@ def test_a_late_answer_to_a_stop_ends_no_run_that_has_begun_since() -> None:
 
 
 def test_a_robot_that_was_reset_may_be_stopped_in_the_epoch_of_before() -> None:
-    session = greeted()
+    session = greet()
     session.receive(event("STOPPED", 0, {"cause": 3}), 20)
     session.events()
     session.hello()
@@ -290,7 +290,7 @@ def test_a_robot_that_was_reset_may_be_stopped_in_the_epoch_of_before() -> None:
 
 def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> None:
     """The radio was slow: two stop sequences were sent before the first was confirmed."""
-    session = greeted()
+    session = greet()
     session.stop(0)
     assert len(sending(session, 150)) == 2
     session.receive(event("STOPPED", 0, {"cause": 1}), 160)
@@ -309,7 +309,7 @@ def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> N
 
 
 def test_an_old_answer_is_none() -> None:
-    session = greeted()
+    session = greet()
     first = session.live(FORWARD)
     data = session.poll(0)
     session.receive(answer(data, receipt(1)), 10)
@@ -321,7 +321,7 @@ def test_an_old_answer_is_none() -> None:
 
 
 def test_a_program_that_is_done_before_its_receipt_does_not_run() -> None:
-    session = greeted()
+    session = greet()
     session.live(FORWARD)
     data = session.poll(0)
     session.receive(event("DONE", 0, {"run": 1}, epoch=10), 10)
@@ -330,7 +330,7 @@ def test_a_program_that_is_done_before_its_receipt_does_not_run() -> None:
 
 
 def test_text_and_echoes_are_told() -> None:
-    session = greeted()
+    session = greet()
     session.receive(b"OK+LOST\r\n\0" + encode_frame(Frame(2, 1, 1)), 5)
     events = session.events()
     assert [event.name for event in events] == ["TEXT", "ECHO"]
@@ -338,7 +338,7 @@ def test_text_and_echoes_are_told() -> None:
 
 
 def test_what_a_newer_robot_sends_is_no_harm() -> None:
-    session = greeted()
+    session = greet()
     for frame in (Frame(40, 0, 10, b"new", is_reply=True), Frame(35, 1, 10, b"", is_reply=True)):
         session.receive(b"\0" + encode_frame(frame), 5)
     request = session.ping()
@@ -352,7 +352,7 @@ def test_what_a_newer_robot_sends_is_no_harm() -> None:
     assert request.outcome
 
 
-ISA = 256 * ISA_MAJOR + ISA_MINOR  # of the robot, as a detail says it
+ISA = 256 * ISA_MAJOR + ISA_MINOR  # the robot's rule, as in a detail
 
 
 def test_what_does_not_fit_is_not_sent() -> None:
@@ -363,7 +363,7 @@ def test_what_does_not_fit_is_not_sent() -> None:
         (image._replace(code=bytes(390)), STATUSES["TOO_LARGE"], 389),
         (image._replace(code=bytes(389), later=b"x"), STATUSES["TOO_LARGE"], 389),
     ]
-    session = greeted()
+    session = greet()
     for too_large, status, detail in cases:
         request = session.upload(too_large)
         assert session.poll(0) == b""
@@ -377,9 +377,9 @@ def test_what_does_not_fit_is_not_sent() -> None:
 Request = PendingRequest[ReceiptReply]
 
 
-def uploaded(image: Image, kit: int | None, is_refused: int = 0) -> tuple[list[str], Request]:
+def upload_image(image: Image, kit: int | None, is_refused: int = 0) -> tuple[list[str], Request]:
     """Return what a session sends to bring an image, and the request; the robot takes it all."""
-    session = greeted()
+    session = greet()
     request = session.upload(image, kit=kit)
     names: list[str] = []
     next_at = now_ms = 0
@@ -404,7 +404,7 @@ def uploaded(image: Image, kit: int | None, is_refused: int = 0) -> tuple[list[s
 
 
 def test_what_uses_devices_goes_with_its_header_to_a_robot_of_another_kit() -> None:
-    """For a frame alone does not say which they are: the robot compares them."""
+    """A frame alone does not name the devices: the robot compares them."""
     free, used = unpack(pack("SI", 0, FORWARD)), unpack(pack("SI", 7, b"\x38\x02"))
     later = unpack(pack("SI", 0, FORWARD, b"later"))
     in_pieces = ["BEGIN", "DATA", "COMMIT"]
@@ -412,16 +412,16 @@ def test_what_uses_devices_goes_with_its_header_to_a_robot_of_another_kit() -> N
         (free, KIT ^ 1, ["PROGRAM"]), (used, KIT, ["PROGRAM"]), (used, None, ["PROGRAM"]),
         (used, KIT ^ 1, in_pieces), (used, 0, in_pieces), (later, KIT, in_pieces),
     ):  # fmt: skip
-        names, request = uploaded(image, kit)
+        names, request = upload_image(image, kit)
         assert names == expected
         assert request.outcome and request.outcome.status == 0
     for refused in (STATUSES["WRONG_KIT"], RULES["NO_SUCH_DEVICE"][0]):
-        _, request = uploaded(used, KIT ^ 1, refused)
+        _, request = upload_image(used, KIT ^ 1, refused)
         assert request.outcome and request.outcome.status == STATUSES["WRONG_KIT"]
 
 
 def test_a_receipt_for_another_program_is_no_success() -> None:
-    session = greeted()
+    session = greet()
     request = session.upload(unpack(pack("SI", 0, FORWARD)))
     session.receive(answer(session.poll(0), {**receipt(1), "program": 1}), 5)
     assert request.outcome and request.outcome.status != 0
@@ -457,7 +457,7 @@ def test_a_line_that_an_older_machine_does_not_know(minor: int, version: tuple[i
 @pytest.mark.parametrize(("busy_ms", "ends"), [(60_000, STATUSES["BUSY"]), (1000, LOST)])
 def test_a_busy_robot_is_asked_again_but_not_for_ever(busy_ms: int, ends: int) -> None:
     """One that answers is not lost; one that falls silent then is."""
-    session = greeted()
+    session = greet()
     request = session.upload(unpack(pack("SI", 0, FORWARD)))
     now_ms = 0
     while request.outcome is None and now_ms < 3 * EXCHANGE_TIMEOUT_MS:
@@ -489,7 +489,7 @@ def test_hello_tells_whether_another_epoch_voids_what_waits(
     session.hello()
     first, second = session.live(FORWARD), session.live(FORWARD)
     session.receive(answer(session.poll(0), DESCRIPTION), 0)
-    assert first.outcome is None  # HELLO begins an epoch, it ends none
+    assert first.outcome is None  # HELLO begins an epoch, and does not end one
     session.receive(answer(session.poll(1), receipt(1), epoch=epoch), 1)
     assert first.outcome and first.outcome.status == 0
     assert second.outcome is None
@@ -499,7 +499,7 @@ def test_hello_tells_whether_another_epoch_voids_what_waits(
 
 
 def lost_at(session: Session, now_ms: int = 0) -> int:
-    """Let nobody answer, and look every millisecond; return when the robot is given up."""
+    """Let nobody answer, and check every millisecond; return when the robot is given up."""
     for at in range(now_ms, now_ms + 10_000):
         session.poll(at)
         if [event.name for event in session.events()] == ["LOST"]:
@@ -509,7 +509,7 @@ def lost_at(session: Session, now_ms: int = 0) -> int:
 
 def over() -> tuple[Session, int]:
     """Return a session whose heartbeat has just said that its run is over, and the time."""
-    session = greeted()
+    session = greet()
     session.live(FORWARD)
     session.receive(answer(session.poll(0), receipt(1)), 0)
     at = session.wakes_at()
@@ -519,7 +519,7 @@ def over() -> tuple[Session, int]:
 
 
 def test_a_heartbeat_has_three_seconds_and_so_has_asking_for_the_end_of_a_run() -> None:
-    assert 3000 <= lost_at(greeted()) - IDLE_HEARTBEAT_MS < 3500  # the end of a try
+    assert 3000 <= lost_at(greet()) - IDLE_HEARTBEAT_MS < 3500  # the end of a try
     session, at = over()
     assert session.poll(at), "it asks how the run has ended"
     assert 3000 <= lost_at(session, at) - at < 3500
@@ -567,7 +567,7 @@ def test_the_end_of_a_run_waits_for_its_readings_and_nobody_else_does(reading_co
 
 
 def test_an_upload_that_waits_for_the_button_tells_the_end_of_the_run_before_it() -> None:
-    """It has ended that, and nothing of it is told after what the button begins."""
+    """The upload ended that run, and nothing of it is reported after the button's run."""
     robot = HostFirmware(ROBOT.kit)
     robot.wait(200)
     session = Session(1, kit=KIT)
@@ -582,10 +582,10 @@ def test_an_upload_that_waits_for_the_button_tells_the_end_of_the_run_before_it(
     assert [event.name for event in session.events()] == ["SHOW", "DONE"]
 
 
-def asked(statuses: list[int]) -> tuple[int, int]:
-    """Name a robot that answers with these statuses, the last one for ever; return how many
+def count_namings(statuses: list[int]) -> tuple[int, int]:
+    """Name a robot that answers with these statuses, the last one forever; return how many
     times it is asked, and how that ends."""
-    session = greeted()
+    session = greet()
     request = session.name(b"Ana")
     times = now_ms = 0
     while request.outcome is None and now_ms < 60_000:
@@ -608,12 +608,12 @@ def asked(statuses: list[int]) -> tuple[int, int]:
     ],
 )
 def test_a_low_voltage_is_waited_for_less_long(statuses: list[int], times: int, ends: int) -> None:
-    assert asked(statuses) == (times, ends)
+    assert count_namings(statuses) == (times, ends)
 
 
 def places_told(*replies: bytes) -> list[tuple[int, int]]:
     """Return the runs and places that a session tells when its heartbeats get these replies."""
-    session = greeted(features=PLACES)
+    session = greet(features=PLACES)
     session.tells_places = True
     now_ms = 10
     for payload in replies:

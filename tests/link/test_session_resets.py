@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.support.session_resets import KIT, reset, running, started
+from tests.support.session_resets import KIT, reset, running, start_program
 from tiniscript import compile_text
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.link.messages import STATUSES
@@ -15,7 +15,7 @@ from tiniscript.link.session import Session
 
 
 def test_a_reset_robot_runs_its_first_program_with_a_heartbeat() -> None:
-    session, robot = started("SHOW(1)")
+    session, robot = start_program("SHOW(1)")
     robot.talk(session, 500)
     assert [event.name for event in session.events()] == ["SHOW", "DONE"]
     robot = reset(robot)  # run 1 of before has ended, the next one's has not
@@ -81,7 +81,7 @@ def test_a_stop_that_nobody_has_told_is_no_reset() -> None:
 
 
 def test_a_fault_that_nobody_has_told_is_asked_for() -> None:
-    session, robot = started("W(0.6); SHOW(1 / DISTANCE)")
+    session, robot = start_program("W(0.6); SHOW(1 / DISTANCE)")
     robot.wait(900)  # its end is lost
     robot.talk(session, 1500)
     assert session.events() == [FaultEvent(1, FAULTS[1][0], 5, 481506241)]

@@ -1,4 +1,4 @@
-"""Of which program a shown value is: its run and its epoch say so, or the robot does."""
+"""The program of a shown value: its run and its epoch identify it, or the robot does."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import struct
 
 import pytest
 
-from tests.support.session_frames import FORWARD, answer, event, greeted, receipt
+from tests.support.session_frames import FORWARD, answer, event, greet, receipt
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import BY_NAME, PLACES, STATE_IDLE, STATE_RUNNING
@@ -25,13 +25,13 @@ def value(seq: int, run: int | None, at: int = 2, epoch: int = EPOCH) -> bytes:
     return event("SHOW", seq, {"value": 1500, "is_yes_no": 0, "place": place}, epoch)
 
 
-def shown(run: int = 0, program: int = 0, at: int = -1) -> ShownEvent:
+def make_shown_event(run: int = 0, program: int = 0, at: int = -1) -> ShownEvent:
     return ShownEvent(1500, 0, run, program, at)
 
 
 def new_session(run: int = 5, features: int = PLACES) -> Session:
     """Return a session that has started a run of PROGRAM."""
-    session = greeted(features=features)
+    session = greet(features=features)
     session.live(FORWARD)
     session.receive(answer(session.poll(0), receipt(run)), 0)
     session.events()
@@ -56,14 +56,14 @@ def answer_to_ping(
 
 def test_a_value_of_our_run_is_of_our_program() -> None:
     session = new_session()
-    assert events_after(session, value(1, 5)) == [shown(5, PROGRAM, 2)]
-    assert events_after(session, value(2, 5, 770)) == [shown(5, PROGRAM, 770)]
+    assert events_after(session, value(1, 5)) == [make_shown_event(5, PROGRAM, 2)]
+    assert events_after(session, value(2, 5, 770)) == [make_shown_event(5, PROGRAM, 770)]
     assert session.poll(10) == b"", "nothing is asked"
 
 
 def test_what_an_older_robot_shows_has_no_place() -> None:
     session = new_session()
-    assert events_after(session, value(1, None)) == [shown()]
+    assert events_after(session, value(1, None)) == [make_shown_event()]
     assert session.poll(10) == b""
 
 
@@ -71,54 +71,63 @@ def test_what_an_older_robot_shows_has_no_place() -> None:
 def test_a_place_that_is_cut_is_none(place: bytes) -> None:
     session = new_session()
     cut = event("SHOW", 1, {"value": 1500, "is_yes_no": 0, "place": place}, EPOCH)
-    assert events_after(session, cut) == [shown()]
+    assert events_after(session, cut) == [make_shown_event()]
 
 
 def test_the_program_of_a_run_that_somebody_else_has_started_is_asked_for() -> None:
-    """Once for each run; its values wait for the answer, and are told in their order."""
-    session = greeted(features=PLACES)
+    """Once for each run; its values wait for the answer, and are reported in their order."""
+    session = greet(features=PLACES)
     assert events_after(session, value(1, 3, 2)) == [], "it waits"
     reply = answer_to_ping(session, 3, OTHER, 20)
     assert events_after(session, value(2, 3, 7)) == []
-    assert events_after(session, reply) == [shown(3, OTHER, 2), shown(3, OTHER, 7)]
-    assert events_after(session, value(3, 3, 2)) == [shown(3, OTHER, 2)]
+    assert events_after(session, reply) == [
+        make_shown_event(3, OTHER, 2),
+        make_shown_event(3, OTHER, 7),
+    ]
+    assert events_after(session, value(3, 3, 2)) == [make_shown_event(3, OTHER, 2)]
     assert session.poll(30) == b""
     assert events_after(session, value(4, 4, 2)) == []
-    assert events_after(session, answer_to_ping(session, 4, PROGRAM, 40)) == [shown(4, PROGRAM, 2)]
+    assert events_after(session, answer_to_ping(session, 4, PROGRAM, 40)) == [
+        make_shown_event(4, PROGRAM, 2)
+    ]
 
 
 def test_a_program_that_has_ended_meanwhile_has_no_name() -> None:
-    session = greeted(features=PLACES)
+    session = greet(features=PLACES)
     assert events_after(session, value(1, 3)) == []
-    assert events_after(session, answer_to_ping(session, 3, OTHER, 20, STATE_IDLE)) == [shown()]
-    assert events_after(session, value(2, 3)) == [shown()], "it is not asked again"
+    assert events_after(session, answer_to_ping(session, 3, OTHER, 20, STATE_IDLE)) == [
+        make_shown_event()
+    ]
+    assert events_after(session, value(2, 3)) == [make_shown_event()], "it is not asked again"
 
 
 def test_nothing_but_values_waits_for_the_answer() -> None:
-    session = greeted(features=PLACES)
+    session = greet(features=PLACES)
     assert events_after(session, value(1, 3)) == []
     done_event = event("DONE", 2, {"run": 3}, EPOCH)
-    assert events_after(session, done_event) == [shown(), DoneEvent(3)]
+    assert events_after(session, done_event) == [make_shown_event(), DoneEvent(3)]
     assert events_after(session, value(3, 4)) == []
-    assert events_after(session, value(5, 4)) == [shown(), MissedEvent(1)], "the one after it waits"
+    assert events_after(session, value(5, 4)) == [make_shown_event(), MissedEvent(1)], (
+        "the one after it waits"
+    )
     session.stop(20)
-    assert session.events() == [shown()], "a stop asks nothing"
+    assert session.events() == [make_shown_event()], "a stop asks nothing"
 
 
 def test_a_value_that_comes_late_never_gets_the_next_program_s_name() -> None:
     session = new_session(run=5)
     session.live(FORWARD[:-1] + b"\3")
     next_one = answer(session.poll(20), {**receipt(6), "program": OTHER})
-    assert events_after(session, value(1, 5), next_one) == [shown(5, PROGRAM, 2)]
+    assert events_after(session, value(1, 5), next_one) == [make_shown_event(5, PROGRAM, 2)]
     assert events_after(session, value(2, 5)) == [], "no robot does that: nothing is guessed"
-    assert events_after(session, value(3, 6)) == [shown(), shown(6, OTHER, 2)]
+    assert events_after(session, value(3, 6)) == [make_shown_event(), make_shown_event(6, OTHER, 2)]
 
 
 def test_runs_of_two_epochs_with_one_number_are_two() -> None:
     """A robot that was reset counts its runs anew, and so may show the old number."""
     session = new_session(run=1, features=0)
-    assert events_after(session, value(1, 1)) == [shown(1, PROGRAM, 2)]
-    assert events_after(session, value(2, 1, epoch=EPOCH + 1)) == [shown()]
+    assert events_after(session, value(1, 1)) == [make_shown_event(1, PROGRAM, 2)]
+    assert events_after(session, value(2, 1, epoch=EPOCH + 1)) == [make_shown_event()]
 
 
 def test_a_run_number_that_comes_round_again_is_another_run() -> None:
@@ -126,24 +135,24 @@ def test_a_run_number_that_comes_round_again_is_another_run() -> None:
     session.ping()
     other = answer(session.poll(20), {"state": STATE_RUNNING, "run": 6, "place": b""})
     events_after(session, other, now_ms=20)
-    assert events_after(session, value(1, 5)) == [shown()]
+    assert events_after(session, value(1, 5)) == [make_shown_event()]
 
 
 def test_a_robot_that_does_not_tell_its_place_is_not_asked() -> None:
-    session = greeted(features=0)
-    assert events_after(session, value(1, 3)) == [shown()]
+    session = greet(features=0)
+    assert events_after(session, value(1, 3)) == [make_shown_event()]
     assert session.poll(20) == b""
 
 
 def test_after_a_request_that_takes_its_time_no_value_waits() -> None:
-    session = greeted(features=PLACES)
+    session = greet(features=PLACES)
     session.status()
     assert session.poll(10)
-    assert events_after(session, value(1, 3)) == [shown()]
+    assert events_after(session, value(1, 3)) == [make_shown_event()]
 
 
 def test_only_who_wants_places_is_told_of_them() -> None:
-    session = greeted(features=PLACES)
+    session = greet(features=PLACES)
     events_after(session, value(1, 3))
     assert [
         event.name for event in events_after(session, answer_to_ping(session, 3, OTHER, 20))

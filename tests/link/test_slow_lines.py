@@ -93,7 +93,7 @@ class Talk:
         request.limit_ms = REQUEST_TIMEOUT_MS
         status = self.wait(request)
         if status == OK:
-            assert self.robot.held() == pack("SI", 0, program(code_bytes).code)
+            assert self.robot.fetch_image() == pack("SI", 0, program(code_bytes).code)
         return status
 
 
@@ -195,7 +195,7 @@ def test_a_long_live_line_gets_through_a_line_with_losses_and_is_done_once(
         talk = Talk(Line(11_520, 20, 0.01), 115_200, is_large=True, seed=seed)
         assert talk.wait(talk.session.hello()) == OK
         assert talk.wait(talk.session.live(program(code_bytes).code, KIT)) == OK, seed
-        for _ in range(200):  # what is still under way arrives
+        for _ in range(200):  # bytes under way arrive
             talk.step()
         assert sum(line.startswith("START") for line in talk.did) == 1, seed
 
@@ -211,7 +211,7 @@ def test_a_long_live_line_gets_through_a_slow_line_without_many_copies(line: Lin
 
 @pytest.mark.parametrize("line", [Line(1000), Line(1000, 40), Line(500, 100), Line(11_520, 300)])
 def test_a_line_that_is_slower_than_its_port_gets_little_twice(line: Line) -> None:
-    """An ESP32 at 115200 baud behind something slow, as a radio or a broker is."""
+    """An ESP32 at 115200 baud on a slow link, such as a radio or a broker."""
     talk = Talk(line, 115_200, is_large=True)
     assert talk.upload(1800) == OK
     assert talk.sent_bytes < 1800 * 1.35
@@ -229,7 +229,7 @@ def test_a_line_that_is_slower_than_its_port_gets_little_twice(line: Line) -> No
 def test_a_line_that_lets_some_bytes_through_ends_an_upload(
     is_large: bool, rate: int, late_ms: int, lost: float, code_bytes: int, seed: int
 ) -> None:
-    """Or the robot was stopped: a frame of which bytes are lost may be a line that says so."""
+    """The robot may also have been stopped: a damaged frame may be a line with a stop."""
     talk = Talk(Line(rate, late_ms, lost), 115_200 if is_large else 9600, is_large, seed)
     status = talk.upload(code_bytes)
     was_stopped = any(event.name == "STOPPED" for event in talk.session.events())
@@ -253,7 +253,7 @@ def test_a_line_that_is_cut_for_long_goes_on_and_for_longer_ends(is_large: bool)
 
 
 def test_an_answer_that_comes_after_its_piece_was_sent_again_counts() -> None:
-    """A line that becomes slow in the middle: little is sent again, and not for ever."""
+    """A line that becomes slow in the middle: little is sent again, and not forever."""
     talk = Talk(Line(11_520), 115_200, is_large=True)
     request = talk.session.upload(program(8000), runs=False)
     while request.done_bytes < 3000:

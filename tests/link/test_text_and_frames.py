@@ -41,7 +41,7 @@ class TextSender(Sender):
     text_ms = TEXT_MS
 
     def text(self, line: bytes, now_ms: int) -> bytes:
-        """Return a line of text, or nothing where it has to wait behind a frame."""
+        """Return a line of text, or nothing if it has to wait for a frame."""
         if self._sent_ms is not None and now_ms - self._sent_ms < self.text_ms:
             return b""
         self._sent_ms = None  # the next frame needs a 0x00
@@ -102,13 +102,15 @@ def all_arrive(sender: TextSender, draw: random.Random) -> None:
 
 
 def torn_ones_arrive_when_repeated(sender: TextSender, draw: random.Random) -> None:
-    """A pause comes between any two bytes, and ends what came before it; or some bytes are lost."""
+    """Check lines with a pause between any two bytes, which ends the text before it, or with lost
+    bytes.
+    """
     line = Line()
     for _ in range(FRAMES):
         frame = random_frame(draw)
         data = sender.prepare_frames(encode_frame(frame), line.now_ms)
         at = draw.randrange(len(data))
-        line.receiver.put(data[0], line.now_ms)  # nobody looks
+        line.receiver.put(data[0], line.now_ms)  # no client looks
         for byte in data[1:at]:
             line.now_ms += 1
             line.receiver.put(byte, line.now_ms)
@@ -122,7 +124,7 @@ def torn_ones_arrive_when_repeated(sender: TextSender, draw: random.Random) -> N
 
 
 def no_two_zeros_come_before_a_frame(sender: TextSender, draw: random.Random) -> None:
-    """Of a session that sends a program over a line that loses much, stops and says HELLO."""
+    """Check a session that sends a program over a lossy line, stops and sends HELLO."""
     lost = tuple(draw.randrange(12) for _ in range(draw.randrange(6)))
     robot = AnsweringRobot(InOrderReceiver(lost), baud=draw.choice((9600, 115_200)))
     session = robot.session
@@ -130,12 +132,12 @@ def no_two_zeros_come_before_a_frame(sender: TextSender, draw: random.Random) ->
     sent: list[bytes] = []
     poll = session.poll
 
-    def watched(now_ms: int) -> bytes:
+    def poll_and_record(now_ms: int) -> bytes:
         data = poll(now_ms)
         sent.append(data)
         return data
 
-    session.poll = watched  # type: ignore[method-assign]
+    session.poll = poll_and_record  # type: ignore[method-assign]
     robot.run(session.upload(IMAGE))
     robot.now_ms += draw.choice((0, 300, 500))
     session.stop(robot.now_ms)
@@ -170,7 +172,7 @@ def test_a_sender_that_keeps_the_rule(law: Property, seed: int) -> None:
 
 
 class Late(TextSender):
-    """Sends a 0x00 only where the receiver takes what comes for text already."""
+    """A sender that sends a 0x00 only if the receiver already treats the bytes as text."""
 
     def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         if self._sent_ms is not None and not is_repeated:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import pytest
 
 from tests.machines.damage import CppDamage, cpp_damage
-from tests.support.campaign import wanted
+from tests.support.campaign import make_options
 
 PREFIXES = 100_000  # in the tests
 FRAMES = 1_000_000
@@ -53,7 +53,7 @@ def test_few_damaged_frames_stop() -> None:
 
 
 if __name__ == "__main__":
-    given = wanted(1_000_000, 1_000_000)
+    given = make_options(1_000_000, 1_000_000)
     for both in (False, True):
         for begin in range(0, given.count, PREFIXES):
             some = min(PREFIXES, given.count - begin)

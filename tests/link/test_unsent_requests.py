@@ -1,4 +1,4 @@
-"""A request of which nothing was sent before a reset, a fault or a stop of the robot.
+"""A request that was not sent before a reset, a fault or a stop of the robot.
 
 After a reset or a fault it is answered as if it were asked then. A stop voids it, whatever tells
 of the stop.
@@ -12,7 +12,7 @@ import pytest
 
 from tests.machines.host_firmware import HostFirmware
 from tests.support.session_resets import reset, running
-from tests.support.unsent_requests import greeted, image, live, long_upload, upload
+from tests.support.unsent_requests import image, live, long_upload, open_session, upload
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.payloads import EmptyReply, ReceiptReply
@@ -46,7 +46,7 @@ ASKS = ["heartbeat", "status", "fetch", "identify", "clear"]
 @pytest.mark.parametrize("asks", ASKS)
 def test_it_is_done_after_a_reset(asks: str, wanted: Ask) -> None:
     for seed in (0x9ABCDEF1, 3, 4, 5):
-        session, robot = greeted()
+        session, robot = open_session()
         busy_line(session, robot, asks)
         request = wanted(session)
         robot = reset(robot, seed)
@@ -70,7 +70,7 @@ def test_it_is_void_after_a_stop(asks: str, wanted: Ask) -> None:
 @pytest.mark.parametrize("wanted", [live, upload, long_upload])
 @pytest.mark.parametrize("is_told", [True, False])
 def test_it_is_done_after_a_program_that_faults(is_told: bool, wanted: Ask) -> None:
-    session, robot = greeted()
+    session, robot = open_session()
     assert robot.until(session, session.live(image(FAULTS_SOON).code)) == OK
     session.fetch()
     assert session.poll(robot.now_ms)
@@ -85,7 +85,7 @@ def test_it_is_done_after_a_program_that_faults(is_told: bool, wanted: Ask) -> N
 @pytest.mark.parametrize("first", ["upload", "live"])
 @pytest.mark.parametrize("wanted", [live, upload, long_upload])
 def test_one_after_a_program_that_faults_at_once_is_done(first: str, wanted: Ask) -> None:
-    session, robot = greeted()
+    session, robot = open_session()
     faulty = image(FAULTS)
     begun = session.live(faulty.code) if first == "live" else session.upload(faulty)
     request = wanted(session)
@@ -96,7 +96,7 @@ def test_one_after_a_program_that_faults_at_once_is_done(first: str, wanted: Ask
 
 
 def test_a_stop_after_that_fault_voids_it() -> None:
-    session, robot = greeted()
+    session, robot = open_session()
     assert robot.until(session, session.live(image(FAULTS_SOON).code)) == OK
     session.fetch()
     assert session.poll(robot.now_ms)
@@ -118,7 +118,7 @@ def test_a_stop_that_is_told_before_the_first_step_with_an_effect_voids_it() -> 
     """HELLO was sent for it, or PING, and then the robot says that it was stopped."""
     session, robot = running()
     request = session._queue_exchange(two_steps())
-    assert session.poll(robot.now_ms)  # nobody hears it
+    assert session.poll(robot.now_ms)  # no client hears it
     stopped = robot.step(flags=1) + robot.wait(100)
     session.receive(stopped, robot.now_ms)
     assert [event.name for event in session.events()] == ["STOPPED"]

@@ -8,7 +8,7 @@ from tiniscript.link.wire import MOST_BYTES, Wire
 
 
 class Port:
-    """As much of pyserial as a wire uses: `answers` come one for each wait."""
+    """The part of pyserial that a wire uses: `answers` arrive one for each wait."""
 
     def __init__(self, *answers: bytes) -> None:
         self.answers = list(answers)

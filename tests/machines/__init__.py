@@ -12,7 +12,7 @@ from tiniscript.vm.runner import MAX_STEPS
 
 
 class Senses(NamedTuple):
-    """What a run is told: readings in thousandths by sensor name, and its limits."""
+    """The input of a run: readings in thousandths by sensor name, and its limits."""
 
     readings: Mapping[str, Sequence[int]] = {}
     max_ms: int = 60_000
@@ -27,5 +27,5 @@ MACHINES: dict[str, Machine] = {"python": run_python, "wasm": wasm.run_wasm}
 if not host.missing():
     MACHINES["host"] = host.run_host
 
-# Of the random programs, a machine that is slow to call runs one in so many.
+# Slow machines run one in so many of the random programs.
 ONE_IN = {"wasm": 5}

@@ -12,7 +12,15 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tests.machines.host import SOURCES, WARNINGS, Ran, cached, contents, ran, run_request
+from tests.machines.host import (
+    SOURCES,
+    WARNINGS,
+    Ran,
+    build_cached,
+    contents,
+    parse_run,
+    run_request,
+)
 from tests.machines.pace import AT_ONCE, Pace
 from tiniscript.base.kit import Kit
 from tools.bench import avr_bench
@@ -26,7 +34,7 @@ BUILT = {
     UNO: ("atmega328p", "-Dtiniscript_with_tasks"),
     NANO: ("atmega328p",),
     PORTABLE: ("atmega328p", "-Dtiniscript_with_tasks", "-Dtiniscript_portable"),
-    # some of the variables lie behind a border of 256 bytes
+    # Some variables lie after a border of 256 bytes.
     MEGA: ("atmega2560", "-Wl,--section-start=.data=0x8002c0"),
 }
 FLAGS = ("-std=c++11", "-Os", "-flto", "-fno-exceptions", "-fno-rtti")
@@ -41,10 +49,12 @@ def program(chip: str) -> bytes:
     code = sorted(str(path) for folder in folders for path in folder.glob("*.[cS]*"))
     mcu, *more = BUILT[chip]
     flags = (f"-mmcu={mcu}", *more, *FLAGS, *WARNINGS)
-    return compiled("the C++ machine", flags, code, made_from).read_bytes()
+    return compile_sources("the C++ machine", flags, code, made_from).read_bytes()
 
 
-def compiled(what: str, flags: Sequence[str], code: Sequence[str], made_from: list[bytes]) -> Path:
+def compile_sources(
+    what: str, flags: Sequence[str], code: Sequence[str], made_from: list[bytes]
+) -> Path:
     """Return the program of sources; what has not changed is used again."""
 
     def make(path: Path) -> None:
@@ -52,7 +62,7 @@ def compiled(what: str, flags: Sequence[str], code: Sequence[str], made_from: li
         completed = subprocess.run(words, capture_output=True, text=True)
         assert completed.returncode == 0, f"avr-g++ refuses {what}:\n{completed.stderr[:4000]}"
 
-    return cached("avr-g++", flags, made_from, make)
+    return build_cached("avr-g++", flags, made_from, make)
 
 
 def ran_on(
@@ -66,10 +76,10 @@ def ran_on(
 ) -> Ran:
     """Run an image, which is read and verified by the simulated chip."""
     request = run_request(image, kit, senses, not_ready, begin_ms)
-    return ran(answer(chip, b"P" + pace.packed(kit) + request))
+    return parse_run(answer(chip, b"P" + pace.pack(kit) + request))
 
 
 def answer(chip: str, request: bytes, most_seconds: int = 120) -> str:
-    """Return what the program says about a request. Raises TimeoutExpired."""
+    """Return the program's answer to a request. Raises TimeoutExpired."""
     lines = avr_bench.run(program(chip), request, BUILT[chip][0], most_seconds)
     return "".join(f"{line}\n" for line in lines)

@@ -16,7 +16,7 @@ from itertools import chain, repeat
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.machines.host import SOURCES, cached, contents
+from tests.machines.host import SOURCES, build_cached, contents
 from tests.support.needs import need
 from tiniscript import compile_text
 from tiniscript.robots import firmware
@@ -38,18 +38,18 @@ FLAGS = (
 )  # fmt: skip
 CPP = ("-std=gnu++11", "-fno-exceptions", "-fno-threadsafe-statics")
 
-# The registers of PWM: control, and what connects a channel.
+# The registers of PWM: control, and the connection of a channel.
 CONTROLS = {0: 0x44, 1: 0x80, 2: 0xB0, 3: 0x90, 4: 0xA0, 5: 0x120}
 CONNECTIONS = {"a": 0x80, "b": 0x20, "c": 0x08}
 PORTS = {
     "a": 0x22, "b": 0x25, "c": 0x28, "d": 0x2B, "e": 0x2E, "f": 0x31, "g": 0x34,
     "h": 0x102, "j": 0x105, "k": 0x108, "l": 0x10B,
 }  # fmt: skip
-LINKED = ("uart.cpp", "eeprom.cpp")  # what only the firmware needs
+LINKED = ("uart.cpp", "eeprom.cpp")  # files that only the firmware needs
 BUILT_IN = "SB|F(1, 60);B(1, 60);BEEP(0.2, 880)"
 
 
-# Of an ATmega2560, simavr leaves out changes of ports J and K, and the analog inputs of port K.
+# Gaps of simavr for the ATmega2560: changes of ports J and K, and the analog inputs of port K.
 _LEFT_OUT = {"echo": "jk", "analog": "k"}
 
 
@@ -59,7 +59,7 @@ def simulates(board: str, pin: int, ability: str) -> bool:
 
 
 def missing() -> str:
-    """Return why there is no simulated board, or nothing."""
+    """Return the reason why there is no simulated board, or ""."""
     names = [name for name in ("avr-g++", "gcc") if not shutil.which(name)]
     names += [str(path) for path in (ARDUINO, SIMAVR) if not path.exists()]
     return f"no {' and no '.join(names)} on this computer: no simulated board" if names else ""
@@ -76,7 +76,7 @@ def simulator() -> Path:
     source = Path(__file__).with_name("simulated_board.c")
     words = ("-O2", str(source), "-lsimavr", "-lelf")
     made_from = [source.read_bytes(), SIMAVR.read_bytes()]
-    return cached("gcc", words, made_from, lambda path: run("gcc", *words, "-o", path))
+    return build_cached("gcc", words, made_from, lambda path: run("gcc", *words, "-o", path))
 
 
 @lru_cache(maxsize=8)
@@ -102,7 +102,7 @@ def library(sources: Sequence[Path], flags: Sequence[str]) -> Path:
                 run(*compiler, *flags, "-w", "-c", source, "-o", target)
             run("avr-gcc-ar", "rcs", path, *sorted(Path(name).glob("*.o")))
 
-    return cached("avr-g++", (*flags, *map(str, sources)), contents(ARDUINO / "cores"), make)
+    return build_cached("avr-g++", (*flags, *map(str, sources)), contents(ARDUINO / "cores"), make)
 
 
 def flags_of(board: str, flags: Sequence[str]) -> tuple[str, ...]:
@@ -115,16 +115,16 @@ def flags_of(board: str, flags: Sequence[str]) -> tuple[str, ...]:
 
 
 def flags_for(header: str) -> tuple[str, ...]:
-    """Return what platformio.ini defines for the robot of a header."""
+    """Return the definitions in platformio.ini for the robot of a header."""
     has_discs = "tiniscript_discs" in header
     return ("-Dtiniscript_with_tasks", "-Dtiniscript_with_discs") if has_discs else ()
 
 
 @lru_cache(maxsize=32)
-def built(header: str, board: str, more: str = "") -> bytes:
+def build_sketch(header: str, board: str, more: str = "") -> bytes:
     """Return the sketch for the robot of a header, an ELF file; `more` is a file beside it."""
     main = Path(__file__).with_name("board_main.cpp")
-    alone = "-Dtiniscript_without_breakpoints"  # nobody is told where it halts, nor what it reads
+    alone = "-Dtiniscript_without_breakpoints"  # no events about halts or readings
     flags = (*flags_of(board, FLAGS), *flags_for(header), alone, *CPP, "-Wall", "-Wextra",
              "-Werror", "-Wl,--gc-sections")  # fmt: skip
     made_from = [header.encode(), more.encode(), main.read_bytes(), bytes(core(board))]
@@ -132,7 +132,9 @@ def built(header: str, board: str, more: str = "") -> bytes:
     def make(path: Path) -> None:
         _build(header, more, (*flags, main, core(board)), path)
 
-    return cached("avr-g++", flags, [*made_from, *contents(SOURCES / "src")], make).read_bytes()
+    return build_cached(
+        "avr-g++", flags, [*made_from, *contents(SOURCES / "src")], make
+    ).read_bytes()
 
 
 def _build(header: str, more: str, words: Sequence[object], path: Path) -> None:
@@ -163,7 +165,7 @@ class Change(NamedTuple):
 
 
 class Simulated:
-    """A sketch on the board of a robot: what comes to it from outside, and what is looked at."""
+    """A sketch on the board of a robot: its inputs, and the watched outputs."""
 
     def __init__(self, robot: Robot) -> None:
         need(missing())
@@ -173,7 +175,7 @@ class Simulated:
         self.script: list[str] = []
         self.watched: set[int] = set()
         self.events: list[tuple[int, int, bool]] = []
-        self.level(0, robot.board.start_button, True)  # by its pull-up
+        self.level(0, robot.board.start_button, True)  # level of its pull-up
 
     def bit(self, pin: int) -> Bit:
         return self.avr.bit_by_pin[pin]
@@ -202,7 +204,9 @@ class Simulated:
         widths_us: Iterable[float],
         glitches_us: Iterable[tuple[float, float]] = (),
     ) -> None:
-        """Say what a sensor answers to its pings; glitches are when after a ping, and how long."""
+        """Set a sensor's answers to its pings; glitches are the times after a ping, and their
+        lengths.
+        """
         trigger_bit, echo_bit = self.bit(trigger), self.bit(echo)
         none = repeat((0.0, 0.0))
         for width_us, (at_us, span_us) in zip(widths_us, chain(glitches_us, none), strict=False):
@@ -213,8 +217,8 @@ class Simulated:
                 f" {echo_bit.port.upper()} {echo_bit.bit} {cycles}"
             )
 
-    def simulated(self, elf: Path, ms: float) -> str:
-        """Run it for so long; return what the simulator tells."""
+    def simulate(self, elf: Path, ms: float) -> str:
+        """Run it for so long; return the simulator's output."""
         lines = [f"watch {address}" for address in sorted(self.watched)]
         for cycle, pin, is_high in sorted(self.events, key=lambda event: event[0]):
             port, bit = self.bit(pin)
@@ -235,15 +239,15 @@ class Board(Simulated):
 
     def __init__(self, robot: Robot, text: str = BUILT_IN, more: str = "") -> None:
         super().__init__(robot)
-        elf = built(firmware.header([robot], "the tests."), self.board, more)
-        compiled = compile_text(text, robot.kit)
-        assert compiled.image, compiled.diagnostics
-        before = compile_text(BUILT_IN, robot.kit).image
-        at = elf.index(before)
-        self.elf = elf[:at] + compiled.image + b"\0" * 4 + elf[at + len(compiled.image) + 4 :]
+        elf = build_sketch(firmware.header([robot], "the tests."), self.board, more)
+        compilation = compile_text(text, robot.kit)
+        assert compilation.image, compilation.diagnostics
+        image_before = compile_text(BUILT_IN, robot.kit).image
+        at = elf.index(image_before)
+        self.elf = elf[:at] + compilation.image + b"\0" * 4 + elf[at + len(compilation.image) + 4 :]
         self.changes: list[Change] = []
         self.copies: list[dict[int, int]] = []  # watched registers at the end of each
-        self.quiet_us = 0.0  # for how long interrupts were off, at most
+        self.quiet_us = 0.0  # longest time with interrupts off
         for pin in self.motor_pins():
             self.watch(pin)
 
@@ -269,11 +273,11 @@ class Board(Simulated):
         span = round(span_us * 16)
         self.script.append(f"sweep {step} {count} {span} {port.upper()} {bit}")
 
-    def ran(self, ms: float) -> Board:
+    def run_for(self, ms: float) -> Board:
         with tempfile.TemporaryDirectory() as name:
             program = Path(name) / "firmware.elf"
             program.write_bytes(self.elf)
-            trace = self.simulated(program, ms)
+            trace = self.simulate(program, ms)
         rows = [line.split() for line in trace.splitlines()]
         ends = [row for row in rows if row[1:2] == ["END"]]
         assert ends and int(ends[0][0]) >= round(ms * MS), trace
@@ -290,7 +294,7 @@ class Board(Simulated):
         return self
 
     def register(self, address: int, ms: float) -> int:
-        """Return what was in a watched register at a time."""
+        """Return the value of a watched register at a time."""
         assert address in self.watched
         value = 0
         for change in self.changes:
@@ -338,7 +342,7 @@ class Board(Simulated):
     def motors(self, ms: float) -> tuple[str, ...]:
         return tuple(self.pin(pin, ms) for pin in self.motor_pins())
 
-    def moved(self) -> list[int]:
+    def list_motor_changes(self) -> list[int]:
         """Return the cycles in which a motor pin was written high or got PWM."""
         positions = []
         for change in self.changes:

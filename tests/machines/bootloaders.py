@@ -40,7 +40,7 @@ def _folder() -> tempfile.TemporaryDirectory[str]:
 
 
 def optiboot(folder: Path, text: str) -> Path:
-    """Return what becomes of a source of Optiboot."""
+    """Build a source of Optiboot; return the file."""
     source, elf, file = (folder / f"optiboot.{kind}" for kind in ("c", "elf", "hex"))
     source.write_text(text, encoding="utf-8")
     beside = f"-I{FOLDER / 'optiboot'}"
@@ -57,7 +57,7 @@ def _optiboot() -> Path:
 
 
 def bootloader(board: str) -> Bootloader:
-    """Return what an `uno`, an old `nano` or a `mega` has."""
+    """Return the bootloader of an `uno`, an old `nano` or a `mega`."""
     if board == "uno":
         return Bootloader("uno", _optiboot(), "arduino", "m328p", 115_200)
     if board == "nano":

@@ -1,4 +1,4 @@
-"""What a chip is for tests, whichever chip it is."""
+"""The interface of chips for tests."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ class Chip(NamedTuple):
 
     missing: str
     run: Callable[[bytes, Kit, Senses], Ran]
-    most_bytes: int = CODE_BYTES + HEADER_BYTES  # of an image
+    most_bytes: int = CODE_BYTES + HEADER_BYTES  # most bytes of an image
 
 
-def agrees(ran: Ran, want: Ran, max_ms: int) -> bool:
-    """Whether a chip has done what the machine in Python has.
+def agrees(run: Ran, want: Ran, max_ms: int) -> bool:
+    """Return whether a chip has done the same as the machine in Python.
 
     It counts jumps back and calls: a limit of steps cuts later than elsewhere.
     """
-    before, _, last = want.trace.removesuffix("\n").rpartition("\n")
+    text_before, _, last = want.trace.removesuffix("\n").rpartition("\n")
     if last.endswith(" LIMIT") and last != f"{max_ms} LIMIT":
-        return ran.trace.startswith(before)
-    return ran._replace(steps=0) == want._replace(steps=0) and ran.steps <= want.steps
+        return run.trace.startswith(text_before)
+    return run._replace(steps=0) == want._replace(steps=0) and run.steps <= want.steps

@@ -11,7 +11,7 @@ from pathlib import Path
 from struct import pack
 from typing import NamedTuple
 
-from tests.machines.host import SOURCES, Process, compiled, first_number, first_text
+from tests.machines.host import SOURCES, Process, compile_program, first_number, first_text
 
 FLAGS = ("-std=c++11", "-O2")
 LARGE = ("-Dtiniscript_like_esp32",)
@@ -30,9 +30,9 @@ class CppDamage(Process):
     """`sources` is a folder like `vm_arduino`. A line is determined by a seed and its number."""
 
     def __init__(self, sources: Path = SOURCES, is_large: bool = False) -> None:
-        super().__init__([built(sources, is_large)], "the receiver in C++")
+        super().__init__([build_damage_tool(sources, is_large)], "the receiver in C++")
 
-    def judged(self, seed: int, line: int, lines: int) -> int:
+    def damage_frames(self, seed: int, line: int, lines: int) -> int:
         """Damage frames of so many lines; return how many. Raise what must not be."""
         answer = self.ask(b"J", pack("<III", seed, line, lines))
         wrong = answer[8:].decode()
@@ -70,7 +70,7 @@ class CppDamage(Process):
         return damaged_line
 
 
-def built(sources: Path, is_large: bool) -> Path:
+def build_damage_tool(sources: Path, is_large: bool) -> Path:
     code = (
         "src/link/receiver.cpp", "src/link/typed_stop.cpp", "src/link/frames.cpp",
         "src/vm/crc32.cpp", "src/vm/find_word.cpp",
@@ -78,7 +78,7 @@ def built(sources: Path, is_large: bool) -> Path:
     inputs = [sources / name for name in (*code, "extras/damage/main.cpp", "extras/host/wire.h")]
     for folder in ("vm", "link", "boards/esp32"):
         inputs += sorted((sources / "src" / folder).glob("*.h"))
-    return compiled(inputs, (*FLAGS, *LARGE * is_large))
+    return compile_program(inputs, (*FLAGS, *LARGE * is_large))
 
 
 @lru_cache(maxsize=2)

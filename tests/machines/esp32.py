@@ -20,9 +20,9 @@ from tests.machines.host import (
     SOURCES,
     WARNINGS,
     Process,
+    compile_once,
     first_number,
     first_text,
-    made,
     objects_of,
     texts,
 )
@@ -41,20 +41,20 @@ SIMULATED = (
     "simulated_tls.cpp",
     "tasks_in_turn.cpp",
     "wires.cpp",
-)  # of extras: the others are programs of their own
+)  # extras that are not programs of their own
 HAS_TLS = Path("/usr/include/mbedtls/ssl.h").exists()
 TLS = ("-lmbedtls", "-lmbedx509", "-lmbedcrypto") if HAS_TLS else ()
 POWER_ON, EXTERNAL, TASK_WATCHDOG, BROWN_OUT = 1, 2, 6, 9  # esp_reset_reason_t
-CLOSED, NUMBERS, BLOBS = 1, 2, 3  # what NVS refuses: NvsFault of `simulated_chip.h`
-US_PER_CM = 58.309  # of an echo
+CLOSED, NUMBERS, BLOBS = 1, 2, 3  # faults of NVS: NvsFault in `simulated_chip.h`
+US_PER_CM = 58.309  # echo time per centimetre
 
 
 class Kept(NamedTuple):
-    """What a reset leaves alone: entries of NVS, and bytes that are not initialised."""
+    """The data that survives a reset: entries of NVS, and uninitialized memory."""
 
     noinit: bytes
     entries: dict[bytes, bytes]
-    writes: int  # of NVS, since the reset
+    writes: int  # writes to NVS since the reset
 
 
 EMPTY = Kept(b"", {}, 0)
@@ -64,22 +64,24 @@ class Esp32Robot(HostFirmware):
     """A robot after a reset. It has the pins of a profile for an ESP32."""
 
     def __init__(
-        self, robot: Robot | None = None, kept: Kept = EMPTY, reset: int = POWER_ON,
+        self, robot: Robot | None = None, kept_memory: Kept = EMPTY, reset: int = POWER_ON,
         seed: int = 0x12345678, major: int = 2, nvs_fault: int = 0,
         mac: bytes = bytes(6),
     ) -> None:  # fmt: skip
         self.robot = robot or robots.load("tinibot32")
-        program = built(firmware.header([self.robot], "a test."), self.robot.board.chip, major)
+        program = build_esp32(
+            firmware.header([self.robot], "a test."), self.robot.board.chip, major
+        )
         Process.__init__(self, [program], "the C++ robot with an ESP32")
         self.now_ms = 0
         self.did: list[str] = []
         self.is_lit, self.is_latched = False, True
-        entries = texts(*(data for item in kept.entries.items() for data in item))
-        head = pack("<BI", reset, seed) + texts(kept.noinit)
+        entries = texts(*(data for item in kept_memory.entries.items() for data in item))
+        head = pack("<BI", reset, seed) + texts(kept_memory.noinit)
         rest = bytes([nvs_fault]) + mac
-        self.ask(b"B", head + pack("<I", len(kept.entries)) + entries + rest)
+        self.ask(b"B", head + pack("<I", len(kept_memory.entries)) + entries + rest)
 
-    def kept(self) -> Kept:
+    def read_kept(self) -> Kept:
         noinit, answer = first_text(self.ask(b"E", b""))
         count, answer = first_number(answer)
         entries = {}
@@ -89,19 +91,20 @@ class Esp32Robot(HostFirmware):
         return Kept(noinit, entries, first_number(answer)[0])
 
     def hang(self, milliseconds: int) -> None:
-        """Let the main loop stand still."""
+        """Stop the main loop for a while."""
         self.ask(b"H", pack("<I", milliseconds))
         self.now_ms += milliseconds
 
     def analog(self, pin: int, value: int) -> None:
-        """Let a pin have 0 to 4095."""
+        """Set the analog value of a pin, 0 to 4095."""
         self.ask(b"A", pack("<BH", pin, value))
 
     def digital(self, pin: int, level: bool) -> None:
         self.ask(b"D", pack("<BB", pin, level))
 
     def edges(self, *changes: tuple[int, int, bool]) -> tuple[int, int]:
-        """Let pins change, each some microseconds after the one before: these, pin and level.
+        """Change pins in sequence: the microseconds since the previous change, the pin and its
+        level.
 
         Return how many edges of the left and right disc the board has counted, modulo 2**16.
         """
@@ -110,45 +113,46 @@ class Esp32Robot(HostFirmware):
         return counts
 
     def hold_line(self, is_low: bool = True) -> None:
-        """Let the line of the cable go low for longer than a byte, or high again."""
+        """Hold the cable's line low for longer than a byte, or release it."""
         self.ask(b"C", pack("<B", is_low))
 
     def spoil_byte(self) -> None:
-        """Let the next byte of the cable have a framing error."""
+        """Give the next byte of the cable a framing error."""
         self.ask(b"C", b"\2")
 
     def sonar(self, trigger: int, echo: int, distance_cm: float) -> None:
-        """Let a sensor hear something at a distance, or nothing at 0."""
+        """Set the distance of a sensor's obstacle, or none with 0."""
         self.ask(b"U", pack("<BBI", trigger, echo, round(distance_cm * US_PER_CM)))
 
     def output(self, pin: int) -> int:
-        """Return what a pin has: 0 to 255, PWM as its share."""
+        """Return the output of a pin: 0 to 255, PWM as its share."""
         return self.ask(b"O", pack("<B", pin))[0]
 
     def panic(self) -> None:
-        """Let the chip do what it does first in a panic. Only its pins count from then on."""
+        """Start a panic of the chip, after which only its pins count."""
         self.ask(b"X", b"")
 
     def stick_ledc(self) -> None:
-        """Let LEDC go on with what it does, whatever is asked of it."""
+        """Make LEDC ignore all further commands."""
         self.ask(b"L", b"")
 
     def radio(self, what: str, data: bytes = b"") -> bytes:
-        """Let something happen on the other side of a radio: `answer_radio` of `main.cpp`."""
+        """Cause an event on the other side of a radio: `answer_radio` of `main.cpp`."""
         return self.ask(b"R", what.encode() + data)
 
-    def moved(self) -> tuple[int, float]:
-        """Return after how many turns of the main loop, and microseconds of this computer, a motor
-        pin changed in the last step."""
+    def measure_motor_delay(self) -> tuple[int, float]:
+        """Return the turns of the main loop, and the microseconds of this computer, before a motor
+        pin changed in the last step.
+        """
         turns, ns, _ = unpack("<III", self.ask(b"M", b""))
         return turns, ns / 1000
 
     def rests(self) -> int:
-        """Return how many times the main loop has left its turn to the idle task."""
+        """Return how many times the main loop has yielded to the idle task."""
         return int.from_bytes(self.ask(b"M", b"")[8:12], "little")
 
     def erase(self, milliseconds: int) -> None:
-        """Let each write of NVS stop the chip for so long."""
+        """Make each write of NVS stop the chip for so long."""
         self.ask(b"Z", pack("<I", milliseconds))
 
     def fill_nvs(self, room: int = 0) -> None:
@@ -157,7 +161,7 @@ class Esp32Robot(HostFirmware):
 
 
 def flags_of(chip: str, major: int) -> tuple[str, ...]:
-    """Return what a compiler of Espressif's core would be told for a chip."""
+    """Return the compiler flags of Espressif's core for a chip."""
     return (
         "-DARDUINO=10805", "-DARDUINO_ARCH_ESP32", f"-DESP_ARDUINO_VERSION_MAJOR={major}",
         f"-D{ESP32S[chip]}=1", f"-isystem{STAND_INS / 'core'}",
@@ -165,13 +169,13 @@ def flags_of(chip: str, major: int) -> tuple[str, ...]:
 
 
 @lru_cache
-def built(header: str, chip: str, major: int) -> Path:
+def build_esp32(header: str, chip: str, major: int) -> Path:
     """Return the program for the robot of a header; what was made before is used again.
 
     Only what knows the robot's pins is compiled for each robot.
     """
     own = BUILDS / f"own-{sha256(header.encode()).hexdigest()[:16]}.h"
-    if not own.exists():  # another worker may look for it, too
+    if not own.exists():  # another worker may look for the file too
         draft = own.with_suffix(f".{os.getpid()}")
         draft.write_text(header, encoding="utf-8")
         draft.replace(own)
@@ -194,7 +198,9 @@ def built(header: str, chip: str, major: int) -> Path:
 
     used = {path: text for path, text in files.items() if not is_other(path)}
     objects = objects_of("g++", BUILDS, used, flags)
-    return made("g++", BUILDS, "", usual, [name.encode() for name in objects], [*objects, *TLS])
+    return compile_once(
+        "g++", BUILDS, "", usual, [name.encode() for name in objects], [*objects, *TLS]
+    )
 
 
 assert TICKS == 20  # turns in a millisecond, as `main.cpp` has them

@@ -34,12 +34,12 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 SOURCES = ROOT / "vm_arduino"
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
 FLAGS = ("-std=c++11", "-O1", "-g1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
-# As Python's machine does; a chip counts jumps back and calls.
+# Like Python's machine; a chip counts backward jumps and calls.
 COUNTS_INSTRUCTIONS = "-Dtiniscript_counts_instructions"
 
 LINE_MARKER_FOLDER = re.compile(
     rb'^(# \d+ ")[^"\n]*/', re.M
-)  # of a line that says where the next are from
+)  # line that names the source of the next lines
 # Whose builds are used: root's tests in CI compile nothing that the user's have compiled.
 USER = os.getuid() if hasattr(os, "getuid") else None
 if USER == 0:
@@ -64,7 +64,7 @@ REFUSAL_NAMES = {number: name for name, (number, _) in REFUSALS.items()}
 
 
 def missing() -> str:
-    """Return why there is no host machine, or nothing."""
+    """Return the reason why there is no host machine, or ""."""
     return "" if shutil.which("g++") else "no g++ on this computer: the C++ machine is not built"
 
 
@@ -102,7 +102,7 @@ class Process:
 
     @property
     def pipes(self) -> tuple[IO[bytes], IO[bytes]]:
-        """What it reads, and what it writes."""
+        """Return its input and its output."""
         assert self._process.stdin and self._process.stdout
         return self._process.stdin, self._process.stdout
 
@@ -117,13 +117,13 @@ class Process:
         """Run an image, or raise what refuses it."""
         raise NotImplementedError
 
-    def agrees(self, ran: Ran, want: Ran, max_ms: int) -> bool:
-        """Whether it has done what the machine in Python has."""
-        return ran == want
+    def agrees(self, run: Ran, want: Ran, max_ms: int) -> bool:
+        """Return whether it has done the same as the machine in Python."""
+        return run == want
 
     def run_at(self, pace: Pace, image: bytes, kit: Kit, senses: Senses) -> Ran:
         """Run an image on a robot that is called at a pace, and that some readings keep waiting."""
-        return ran(self.ask(b"P", pace.packed(kit) + run_request(image, kit, senses)).decode())
+        return parse_run(self.ask(b"P", pace.pack(kit) + run_request(image, kit, senses)).decode())
 
     def verdicts(
         self, codes: Sequence[bytes], sensors: int, actuators: int, needs: int = 0
@@ -169,7 +169,7 @@ class Host(Process):
     """
 
     def __init__(self, sources: Path = SOURCES, builds: Path = BUILDS) -> None:
-        super().__init__([built(sources, builds)], "the C++ machine")
+        super().__init__([build_machine(sources, builds)], "the C++ machine")
 
     def run(
         self, image: bytes, kit: Kit, senses: Senses, not_ready: int = 0, begin_ms: int = 0
@@ -180,11 +180,11 @@ class Host(Process):
         clock of the machine says at the beginning.
         """
         request = run_request(image, kit, senses, not_ready, begin_ms)
-        return ran(self.ask(b"R", request).decode())
+        return parse_run(self.ask(b"R", request).decode())
 
     def run_unverified(self, code: bytes, kit: Kit, senses: Senses) -> Ran:
         """Run code whatever it is: it must end in a fault or go on, never outside its memory."""
-        return ran(self.ask(b"U", run_request(code, kit, senses)).decode())
+        return parse_run(self.ask(b"U", run_request(code, kit, senses)).decode())
 
     def run_late(self, image: bytes, kit: Kit, senses: Senses, late_ms: Sequence[int]) -> str:
         """Return the trace where the tick after each wait comes so late; after the last it ends."""
@@ -193,7 +193,7 @@ class Host(Process):
         return self.ask(b"L", request).decode()
 
     def all_of_three(self, first: int, sensors: int, actuators: int) -> tuple[int, int, int]:
-        """Verify all codes of three bytes that begin with `first`, and run what is accepted.
+        """Verify all codes of three bytes that begin with `first`, and run the accepted ones.
 
         Return how many are accepted, how many of these fail a run-time check, and the CRC-32 of
         all verdicts: number of the rule and offset, 0 and 0 for what is accepted.
@@ -212,15 +212,15 @@ def run_request(
     parts = [pack("<IIII", *limits), bytes((len(kit.readings),))]
     for sensor in kit.readings:
         values = senses.readings.get(sensor.name, ())
-        parts += [_named(sensor, next(hashes)), pack(f"<H{len(values)}i", len(values), *values)]
+        parts += [_pack_name(sensor, next(hashes)), pack(f"<H{len(values)}i", len(values), *values)]
     parts.append(bytes((len(kit.actuators),)))
     for actuator in kit.actuators:
-        parts += [_named(actuator, next(hashes)), pack("<ii", actuator.low, actuator.high)]
+        parts += [_pack_name(actuator, next(hashes)), pack("<ii", actuator.low, actuator.high)]
     parts.append(pack("<III", kit.speed, kit.turn, not_ready))
     return b"".join(parts) + texts(data)
 
 
-def _named(device: Device, hashed: int) -> bytes:
+def _pack_name(device: Device, hashed: int) -> bytes:
     return texts(device.name.encode()) + pack("<BH", device.is_yes_no, hashed)
 
 
@@ -235,12 +235,12 @@ def first_number(answer: bytes) -> tuple[int, bytes]:
 
 
 def first_text(answer: bytes) -> tuple[bytes, bytes]:
-    """Return what is after its length at the beginning of an answer, and the rest."""
+    """Return the length-prefixed text at the start of an answer, and the rest."""
     length, rest = first_number(answer)
     return rest[:length], rest[length:]
 
 
-def ran(answer: str) -> Ran:
+def parse_run(answer: str) -> Ran:
     """Return the run that an answer tells of, or raise what refuses the image."""
     trace, _, last = answer.removesuffix("\n").rpartition("\n")
     words = last.split()
@@ -254,10 +254,10 @@ def ran(answer: str) -> Ran:
     return Ran(first, second, trace + "\n")
 
 
-def built(sources: Path, builds: Path = BUILDS) -> Path:
+def build_machine(sources: Path, builds: Path = BUILDS) -> Path:
     """Return the program made from `sources`, a folder like `vm_arduino`."""
     inputs = files_in(sources, "src", "src/vm", "extras/chip", "extras/host")
-    return compiled(inputs, (*FLAGS, COUNTS_INSTRUCTIONS), builds)
+    return compile_program(inputs, (*FLAGS, COUNTS_INSTRUCTIONS), builds)
 
 
 def files_in(sources: Path, *folders: str) -> list[Path]:
@@ -266,7 +266,7 @@ def files_in(sources: Path, *folders: str) -> list[Path]:
     return sorted(path for path in paths if path.suffix in (".h", ".cpp"))
 
 
-def compiled(inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS) -> Path:
+def compile_program(inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS) -> Path:
     """Return the program made from sources and headers; what has not changed is used again.
 
     Workers may build at the same time: each object that two build at once is built twice, and the
@@ -278,10 +278,10 @@ def compiled(inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS
 def built_by(
     compiler: str, inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS
 ) -> Path:
-    """The same with any compiler, and with all of its flags."""
+    """Build with any compiler, and with all of its flags."""
     texts = {path: path.name.encode() + path.read_bytes() for path in inputs}
     objects = objects_of(compiler, builds, texts, lambda _: flags)
-    return made(compiler, builds, "", flags, [name.encode() for name in objects], objects)
+    return compile_once(compiler, builds, "", flags, [name.encode() for name in objects], objects)
 
 
 def objects_of(
@@ -296,7 +296,7 @@ def objects_of(
     sources = [path for path in texts if path.suffix == ".cpp"]
     is_other_end = os.environ.get("PYTEST_XDIST_WORKER", "gw0")[-1] in "13579"
     objects = {
-        path: made(
+        path: compile_once(
             compiler, builds, ".o", flags_of(path), [*headers, texts[path]], ["-c", str(path)]
         )
         for path in (reversed(sources) if is_other_end else sources)
@@ -304,25 +304,25 @@ def objects_of(
     return [str(objects[path]) for path in sources]
 
 
-def made(
+def compile_once(
     compiler: str, builds: Path, suffix: str, flags: Sequence[str], made_from: Iterable[bytes],
     words: list[str],
 ) -> Path:  # fmt: skip
-    """Return what the compiler makes of `words`, named after all that it is made from."""
+    """Return the compiler's output for `words`, named after all its inputs."""
     path = builds / (_key(compiler, flags, made_from) + suffix)
     if not path.exists():
-        same = _preprocessed(compiler, builds, flags, words) if suffix == ".o" else path
-        once(same, lambda own: _compiled(compiler, [*flags, *words, "-o", str(own)]))
+        same = _preprocess(compiler, builds, flags, words) if suffix == ".o" else path
+        once(same, lambda own: _run_compiler(compiler, [*flags, *words, "-o", str(own)]))
         if same != path:
             own = path.with_suffix(f".{os.getpid()}-{get_ident()}")
             own.hardlink_to(same)
             own.replace(path)
-            own.unlink(missing_ok=True)  # it stays where both are one file already
+            own.unlink(missing_ok=True)  # a hard link to the same file remains
     return path
 
 
 def once(path: Path, make: Callable[[Path], object]) -> Path:
-    """Return what `make` writes into the place that it is given, which is there as a whole or not.
+    """Return the file that `make` writes, which appears as a whole or not at all.
 
     Of several workers that need it one makes it, and the others wait.
     """
@@ -339,7 +339,7 @@ def once(path: Path, make: Callable[[Path], object]) -> Path:
     return path
 
 
-def cached(
+def build_cached(
     compiler: str, flags: Sequence[str], made_from: Iterable[bytes], make: Callable[[Path], object]
 ) -> Path:
     """Return a program that is made `once` from the same by the same compiler, in any run."""
@@ -347,7 +347,7 @@ def cached(
 
 
 def contents(*folders: Path) -> list[bytes]:
-    """Return what is in the sources and headers of folders, each after its path."""
+    """Return the contents of the sources and headers in folders, each after its path."""
     paths = (path for folder in folders for path in folder.rglob("*.[chS]*"))
     return [part for path in sorted(paths) for part in (bytes(path), path.read_bytes())]
 
@@ -361,24 +361,24 @@ def _key(compiler: str, flags: Sequence[str], made_from: Iterable[bytes]) -> str
 
 @lru_cache
 def _version(compiler: str) -> bytes:
-    """Return what a compiler says that it is: another one makes other objects."""
+    """Return the version of a compiler: another one makes other objects."""
     need("" if shutil.which(compiler) else f"no {compiler} on this computer")
-    return _compiled(compiler, ["--version"])
+    return _run_compiler(compiler, ["--version"])
 
 
-def _preprocessed(compiler: str, builds: Path, flags: Sequence[str], words: list[str]) -> Path:
-    """Return the place of an object, named after what its source is behind the preprocessor.
+def _preprocess(compiler: str, builds: Path, flags: Sequence[str], words: list[str]) -> Path:
+    """Return the path of an object, named after its preprocessed source.
 
     Most files of a robot are the same for all chips, headers and sizes that macros choose.
     """
-    text = _compiled(compiler, [*flags, *(word for word in words if word != "-c"), "-E"])
+    text = _run_compiler(compiler, [*flags, *(word for word in words if word != "-c"), "-E"])
     kept_flags = [flag for flag in flags if not flag.startswith(("-D", "-isystem"))]
     key = hashlib.sha256(repr((_version(compiler), kept_flags)).encode())
     key.update(LINE_MARKER_FOLDER.sub(rb"\1", text))  # a copy of the sources is the same elsewhere
     return builds / f"same-{key.hexdigest()[:16]}.o"
 
 
-def _compiled(compiler: str, words: Sequence[str]) -> bytes:
+def _run_compiler(compiler: str, words: Sequence[str]) -> bytes:
     completed = subprocess.run([compiler, *words], capture_output=True)
     errors = completed.stderr.decode(errors="replace")[:4000]
     assert completed.returncode == 0, f"{compiler} refuses the C++ sources:\n{errors}"

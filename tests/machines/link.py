@@ -13,17 +13,25 @@ from pathlib import Path
 from struct import pack
 from typing import NamedTuple
 
-from tests.machines.host import FLAGS, SOURCES, Process, compiled, files_in, first_text, texts
+from tests.machines.host import (
+    FLAGS,
+    SOURCES,
+    Process,
+    compile_program,
+    files_in,
+    first_text,
+    texts,
+)
 from tiniscript import robots
 from tiniscript.robots.kit_words import kit_words
 
-# of the machine
+# Results of the machine.
 VERIFIER = ("bytecode", "crc32", "decode_form", "find_word", "image", "verify")
 LIBRARY = ("-std=c++11", "-O1", "-shared", "-fPIC")
 
 
 class Step(NamedTuple):
-    """What the robot has sent, and what it has done, a line each."""
+    """The bytes that the robot has sent, and its actions, one per line."""
 
     sent: bytes
     did: list[str]
@@ -60,16 +68,18 @@ class CppLink:
         """
         how = 2 if is_slow else is_late
         answer = self.ask(b"S", pack("<IBI", now_ms, how, len(data)) + data)
-        sent, rest = first_text(answer)
+        sent_bytes, rest = first_text(answer)
         did, _ = first_text(rest)
-        return Step(sent, did.decode().splitlines())
+        return Step(sent_bytes, did.decode().splitlines())
 
     def happens(self, letter: str, value: int = 0) -> bool:
         """Something happens to the robot: done, fault, show, button, run by the button, wait."""
         return bool(self.ask(b"R", letter.encode() + pack("<I", value & 0xFFFFFFFF))[0])
 
     def packets(self, stream: Sequence[tuple[int, int]], held: int = 0) -> list[str]:
-        """Return what a receiver finds in times and bytes, as `packets_of` says it."""
+        """Return the packets that a receiver finds in times and bytes, in the form of
+        `packets_of`.
+        """
         parts = b"".join(pack("<HB", now_ms & 0xFFFF, byte) for now_ms, byte in stream)
         packets, _ = first_text(self.ask(b"I", pack("<BI", held, len(stream)) + parts))
         return packets.decode().splitlines()
@@ -77,7 +87,7 @@ class CppLink:
     def siphash(self, key: bytes, message: bytes) -> bytes:
         return self.ask(b"H", key + texts(message))
 
-    def sealed(self, key: bytes, origin: bytes, heard: int, sent: int, frame: bytes) -> bytes:
+    def seal(self, key: bytes, origin: bytes, heard: int, sent: int, frame: bytes) -> bytes:
         """Return a frame of the robot, from its type to its MAC; nothing if no counter is left."""
         body = b"\0" + frame[:3] + bytes(5) + frame[3:]
         answer = self._seal(key, origin, heard, sent, body, b"")
@@ -88,20 +98,20 @@ class CppLink:
         return bool(self._seal(key, origin, heard, 0, bytes(9), b"\0" + frame)[-1])
 
     def _seal(
-        self, key: bytes, origin: bytes, heard: int, sent: int, own: bytes, given: bytes
+        self, key: bytes, origin: bytes, heard: int, sent: int, own: bytes, given_bytes: bytes
     ) -> bytes:
-        return self.ask(b"X", key + origin + pack("<II", heard, sent) + texts(own, given))
+        return self.ask(b"X", key + origin + pack("<II", heard, sent) + texts(own, given_bytes))
 
-    def held(self) -> bytes:
+    def fetch_image(self) -> bytes:
         """Return the image that the robot holds."""
         return first_text(self.ask(b"M", b""))[0]
 
 
 class LinkProcess(Process, CppLink):
-    """With sanitizers. `sources` is a folder like `vm_arduino`."""
+    """A link process with sanitizers. `sources` is a folder like `vm_arduino`."""
 
     def __init__(self, sources: Path = SOURCES, is_large: bool = False) -> None:
-        super().__init__([built(sources, is_large)], "the C++ link")
+        super().__init__([build_link(sources, is_large)], "the C++ link")
         self.is_large = is_large
 
 
@@ -110,25 +120,25 @@ class LinkLibrary(CppLink):
 
     def __init__(self, is_large: bool = False) -> None:
         self.is_large = is_large
-        library = ctypes.CDLL(str(built(SOURCES, is_large, LIBRARY)))
+        library = ctypes.CDLL(str(build_link(SOURCES, is_large, LIBRARY)))
         self._answer = library.link_answer
         self._answer.restype = ctypes.c_void_p
 
     def ask(self, letter: bytes, request: bytes) -> bytes:
-        asked, length = letter + request, ctypes.c_uint32()
-        answer = self._answer(asked, len(asked), ctypes.byref(length))
+        asked_bytes, length = letter + request, ctypes.c_uint32()
+        answer = self._answer(asked_bytes, len(asked_bytes), ctypes.byref(length))
         return ctypes.string_at(answer, length.value)
 
 
 @lru_cache
-def built(sources: Path, is_large: bool = False, flags: tuple[str, ...] = FLAGS) -> Path:
+def build_link(sources: Path, is_large: bool = False, flags: tuple[str, ...] = FLAGS) -> Path:
     """Return the program or the library made from `sources`, or what was made from the same."""
     inputs = files_in(sources, "src/vm", "src/link", "src/text", "extras/link")
     inputs.append(sources / "extras/host" / "wire.h")
     # the machine is not asked here, only its verifier and its checksum
     flags = (*flags, "-Dtiniscript_like_esp32") if is_large else flags
     paths = [path for path in inputs if path.parent.name != "vm" or is_asked(path)]
-    return compiled(paths, flags)
+    return compile_program(paths, flags)
 
 
 def is_asked(path: Path) -> bool:

@@ -1,4 +1,4 @@
-"""When a machine is called, and which readings keep it waiting: the same for every machine.
+"""The times of a machine's calls, and the readings that delay it: the same for every machine.
 
 `vm_arduino/extras/chip/runner.cpp` does in C++ what `trace_at` does here.
 """
@@ -33,8 +33,8 @@ class Pace(NamedTuple):
     from_ms: int = 0
     to_ms: int = 0
 
-    def packed(self, kit: Kit) -> bytes:
-        """Return it as the request of a machine in C++ begins with it."""
+    def pack(self, kit: Kit) -> bytes:
+        """Return the start of a request to a machine in C++."""
         names = [sensor.name for sensor in kit.readings]
         slow = sum(1 << names.index(name) for name in self.slow)
         return pack("<5I", self.every_ms, slow, self.period_ms, self.from_ms, self.to_ms)
@@ -62,7 +62,7 @@ class PacedRobot(TracedRobot):
     def __init__(self, pace: Pace, kit: Kit, senses: Senses) -> None:
         super().__init__(kit, lists_of(kit, senses))
         self.pace = pace
-        self.was_slow = False  # in this call
+        self.was_slow = False  # whether the current call was slow
 
     def read(self, sensor: int) -> int | None:
         if self.pace.is_slow(self.kit.readings[sensor].name, self.now_ms):

@@ -17,7 +17,16 @@ from typing import TYPE_CHECKING
 
 from tests.machines import host
 from tests.machines.chips import agrees
-from tests.machines.host import SOURCES, WARNINGS, Process, Ran, cached, contents, ran, run_request
+from tests.machines.host import (
+    SOURCES,
+    WARNINGS,
+    Process,
+    Ran,
+    build_cached,
+    contents,
+    parse_run,
+    run_request,
+)
 from tests.machines.text_reader import Answer
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import STARTS
@@ -28,17 +37,17 @@ from tools.builds import chips
 if TYPE_CHECKING:
     from tests.machines import Senses
 
-MOST_SECONDS = 60  # for one answer
+MOST_SECONDS = 60  # timeout of one answer
 QUIET = ("-m", "16M", "-nodefaults", "-display", "none", "-serial", "none", "-monitor", "none")
 
 
 def missing(name: str) -> str:
-    """Return why there is no such chip, or nothing."""
+    """Return the reason why there is no such chip, or ""."""
     return chips.why_missing(chips.CHIPS[name], can_run=True)
 
 
 class Emulated(Process):
-    """One emulator. `program` is what `built` returns."""
+    """An emulator process. `program` is a result of `build_chip_program`."""
 
     def __init__(self, name: str, program: Path) -> None:
         words = [*chips.CHIPS[name].emulator, *QUIET]
@@ -46,13 +55,13 @@ class Emulated(Process):
         super().__init__([*words, *load], chips.CHIPS[name].board)
 
     def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
-        return ran(self.ask(b"R", run_request(image, kit, senses)).decode())
+        return parse_run(self.ask(b"R", run_request(image, kit, senses)).decode())
 
-    def agrees(self, ran: Ran, want: Ran, max_ms: int) -> bool:
-        return agrees(ran, want, max_ms)
+    def agrees(self, run: Ran, want: Ran, max_ms: int) -> bool:
+        return agrees(run, want, max_ms)
 
     def read(self, texts: Sequence[bytes], kit: Kit, room: int) -> list[Answer]:
-        """Return what the reader of text says of each."""
+        """Return the reader's answer to each text."""
         data = host.texts(kit_words(kit), *texts)
         bytes_io = BytesIO(self.ask(b"T", pack("<H", room) + data))
         answers = [_answer(bytes_io) for _ in texts]
@@ -80,7 +89,7 @@ def _answer(bytes_io: BytesIO) -> Answer:
 
 
 @lru_cache(maxsize=2 * len(chips.CHIPS))
-def built(name: str, sources: Path = SOURCES) -> Path:
+def build_chip_program(name: str, sources: Path = SOURCES) -> Path:
     """Return the program of a chip made from `sources`, a folder like `vm_arduino`."""
     folders = [sources / folder for folder in ("src/vm", "src/text", "extras/chip", "extras/qemu")]
     code = [path for folder in folders for path in sorted(folder.glob("*.cpp"))]
@@ -88,7 +97,7 @@ def built(name: str, sources: Path = SOURCES) -> Path:
     chip = chips.CHIPS[name]
     made_from = [*contents(sources / "src", *folders), (folders[-1] / "chip.ld").read_bytes()]
     words = (*chips.COMMON_FLAGS, *WARNINGS, *map(str, chip))
-    return cached(
+    return build_cached(
         chip.compiler[0], words, made_from, lambda path: chips.build(chip, code, path, *WARNINGS)
     )
 
@@ -96,10 +105,10 @@ def built(name: str, sources: Path = SOURCES) -> Path:
 _running: dict[str, Emulated] = {}
 
 
-def emulated(name: str) -> Emulated:
+def start_emulator(name: str) -> Emulated:
     """Return the emulator that all tests of a worker share, or a new one where it has ended."""
     if name in _running and _running[name].has_ended():
         _running.pop(name).close()
     if name not in _running:
-        _running[name] = Emulated(name, built(name))
+        _running[name] = Emulated(name, build_chip_program(name))
     return _running[name]

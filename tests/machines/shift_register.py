@@ -8,19 +8,19 @@ are the longest that the data sheets of Nexperia (74HC595) and Texas Instruments
 from __future__ import annotations
 
 SET_UP_NS = 25.0  # data is steady before the clock rises
-HOLD_NS = 3.0  # and after
-PULSE_NS = 24.0  # clock and latch are high, and low, for at least so long
-LATCH_NS = 19.0  # from the clock's rise to the latch's
+HOLD_NS = 3.0  # hold time after the edge
+PULSE_NS = 24.0  # shortest time for which clock and latch are high, and low
+LATCH_NS = 19.0  # time from the clock's rising edge to the latch's
 
 INPUTS = ("data", "clock", "latch", "enable")
 
 
 class WrongTiming(AssertionError):
-    """An edge that came too early for the part, or none that it wants."""
+    """Raised for an edge that is too early for the part, or missing."""
 
 
 class ShiftRegister:
-    """The register's two rows of bits; those of the second are what is seen at its outputs.
+    """The register's two rows of bits; the second one is at its outputs.
 
     What they are when power comes is not known: None.
     """
@@ -28,7 +28,7 @@ class ShiftRegister:
     def __init__(self) -> None:
         self.levels: dict[str, bool] = dict.fromkeys(INPUTS, False)
         self.changed_ns: dict[str, float] = dict.fromkeys(INPUTS, -1e9)
-        self.clocked_ns = -1e9  # when the clock last rose
+        self.clocked_ns = -1e9  # time of the clock's last rising edge
         self._shifted: list[bool | None] = [None] * 8
         self._latched: list[bool | None] = [None] * 8
 

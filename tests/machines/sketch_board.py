@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tests.machines import board as boards
 from tests.machines.board import ARDUINO, CONNECTIONS, CONTROLS, CPP, HERTZ, MS, PORTS, run
-from tests.machines.host import cached
+from tests.machines.host import build_cached
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.driver import Bridge
 from tiniscript.robots.drivers import motors_of
@@ -29,13 +29,13 @@ Signal = list[tuple[float, tuple[int, ...]]]  # values, each from a time on
 
 
 class Ran(NamedTuple):
-    """What a sketch did."""
+    """The observed actions of a sketch."""
 
     motors: Signal  # left and right, in percent
     tones: Signal  # hertz, or 0
     pins: dict[int, Signal]  # 0 or 1
     text: str
-    sent_ms: list[float]  # when each byte was on its way
+    sent_ms: list[float]  # time at which each byte was sent
 
 
 @lru_cache(maxsize=4)
@@ -45,7 +45,7 @@ def core(board: str) -> Path:
     return boards.library(sources, boards.flags_of(board, FLAGS))
 
 
-def built(sketch: str, board: str) -> Path:
+def build_sketch(sketch: str, board: str) -> Path:
     """Return the ELF file of a sketch, which must compile without a warning."""
     words = (*boards.flags_of(board, FLAGS), *CPP, "-Wall", "-Wextra", "-Werror",
              "-Wl,--gc-sections")  # fmt: skip
@@ -56,8 +56,8 @@ def built(sketch: str, board: str) -> Path:
             file.write_text(sketch, encoding="utf-8")
             run("avr-g++", *words, file, core(board), "-o", path)
 
-    elf = cached("avr-g++", words, [sketch.encode(), bytes(core(board))], make)
-    if board != "mega":  # it fits an Uno, with room for the stack
+    elf = build_cached("avr-g++", words, [sketch.encode(), bytes(core(board))], make)
+    if board != "mega":  # the sketch must fit an Uno, with room for the stack
         text, data, zeros = map(int, run("avr-size", elf).splitlines()[1].split()[:3])
         assert text + data <= 32_256 and data + zeros <= 1_700, (text, data, zeros)
     return elf
@@ -68,15 +68,15 @@ class SketchBoard(boards.Simulated):
 
     def __init__(self, robot: Robot, sketch: str) -> None:
         super().__init__(robot)
-        self.elf = built(sketch, self.board)
+        self.elf = build_sketch(sketch, self.board)
         self.script.append("uart")
 
     def count(self, pin: int, counts: list[int]) -> None:
-        """Say what conversions of a pin find, the last one for good."""
+        """Set the results of a pin's conversions; the last one repeats."""
         channel = pin - (CHIPS[self.board].first_analog or 0)
         self.script += [f"next {channel} {-(-count * 5000 // 1023)}" for count in counts]
 
-    def ran(self, ms: float) -> Ran:
+    def run_for(self, ms: float) -> Ran:
         board = self.robot.board
         devices = [actuator.pins["pin"] for actuator in board.actuators]
         devices += [
@@ -85,27 +85,27 @@ class SketchBoard(boards.Simulated):
         self.watched |= set(TIMER_2.values())
         for pin in {*board.motors.pins.values(), *devices}:
             self.watch(pin)
-        return self._seen(self.simulated(self.elf, ms), devices)
+        return self._parse_output(self.simulate(self.elf, ms), devices)
 
-    def _seen(self, printed: str, devices: list[int]) -> Ran:
+    def _parse_output(self, printed_text: str, devices: list[int]) -> Ran:
         now: dict[int, int] = {}
-        ran = Ran([], [], {pin: [] for pin in devices}, "", [])
+        run = Ran([], [], {pin: [] for pin in devices}, "", [])
         letters = bytearray()
-        for line in printed.splitlines():
+        for line in printed_text.splitlines():
             words = line.split()
             if not words or not words[0].isdigit():
                 continue
             if words[1] == "UART":
                 letters.append(int(words[2]))
-                ran.sent_ms.append(int(words[0]) / MS)
+                run.sent_ms.append(int(words[0]) / MS)
             elif words[1] != "END":
                 now[int(words[1])] = int(words[2])
                 ms = int(words[0]) / MS
-                _note(ran.motors, ms, self._motors(now))
-                _note(ran.tones, ms, (self._hertz(now),))
+                _note(run.motors, ms, self._motors(now))
+                _note(run.tones, ms, (self._hertz(now),))
                 for pin in devices:
-                    _note(ran.pins[pin], ms, (self._level(now, pin),))
-        return ran._replace(text=letters.decode("ascii"))
+                    _note(run.pins[pin], ms, (self._level(now, pin),))
+        return run._replace(text=letters.decode("ascii"))
 
     def _level(self, now: dict[int, int], pin: int) -> int:
         """Return 0 to 255: what a pin does on the average."""

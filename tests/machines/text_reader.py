@@ -9,7 +9,7 @@ import subprocess
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.machines.host import FLAGS, SOURCES, Process, compiled, files_in, texts
+from tests.machines.host import FLAGS, SOURCES, Process, compile_program, files_in, texts
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import STARTS
 from tiniscript.codegen.text.problems import PROBLEM_NAMES
@@ -20,7 +20,7 @@ NO_DEFS = ("-Dtiniscript_no_defs",)  # flags of a reader like an Uno's
 
 
 class Answer(NamedTuple):
-    """What the reader says: `code` of a program, or a problem; neither: a block is open."""
+    """The reader's answer: `code` of a program, or a problem; neither if a block is open."""
 
     start: str = ""
     code: bytes = b""
@@ -37,7 +37,7 @@ class TextReader(Process):
 
     def __init__(self, kit: Kit, room: int = LARGEST_ROOM, flags: tuple[str, ...] = ()) -> None:
         words = kit_words(kit).hex()
-        super().__init__([built(flags), str(room), words, "whole"], "the reader of text")
+        super().__init__([build_reader(flags), str(room), words, "whole"], "the reader of text")
 
     def read(self, text: bytes) -> Answer:
         pipe_in, pipe_out = self.pipes
@@ -49,9 +49,12 @@ class TextReader(Process):
 
 
 def read_lines(kit: Kit, data: bytes, room: int = LARGEST_ROOM) -> list[Answer]:
-    """Return what a robot would answer to these bytes, line by line."""
+    """Return a robot's answers to these bytes, line by line."""
     completed = subprocess.run(
-        [built(), str(room), kit_words(kit).hex()], input=data, capture_output=True, check=True
+        [build_reader(), str(room), kit_words(kit).hex()],
+        input=data,
+        capture_output=True,
+        check=True,
     )
     return [answer(line) for line in completed.stdout.decode().splitlines()]
 
@@ -66,9 +69,9 @@ def answer(line: str) -> Answer:
     return Answer()
 
 
-def built(flags: tuple[str, ...] = ()) -> Path:
+def build_reader(flags: tuple[str, ...] = ()) -> Path:
     """Return the program made from the reader and `extras/text`."""
     inputs = files_in(SOURCES, "src/text", "extras/text")
     vm = SOURCES / "src" / "vm"
     inputs += [*sorted(vm.glob("*.h")), vm / "crc32.cpp", vm / "find_word.cpp"]
-    return compiled(inputs, (*FLAGS, *flags))
+    return compile_program(inputs, (*FLAGS, *flags))

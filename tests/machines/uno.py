@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
-from tests.machines.avr import BUILT, FLAGS, UNO, compiled
+from tests.machines.avr import BUILT, FLAGS, UNO, compile_sources
 from tests.machines.avr import missing as no_compiler
 from tests.machines.host import WARNINGS
 from tests.support.needs import need
@@ -14,16 +14,16 @@ from tools import uno
 SOURCES = Path(__file__).resolve().parent.parent / "uno"
 
 
-def needed() -> None:
-    """Skip a test where there is no simulated Uno or nothing to build firmwares with."""
+def skip_unless_available() -> None:
+    """Skip a test if there is no simulated Uno or nothing to build firmwares with."""
     need(uno.missing() or no_compiler())
 
 
 @lru_cache(maxsize=16)
-def built(name: str, **constants: int) -> Path:
+def build_uno(name: str, **constants: int) -> Path:
     """Return `tests/uno/NAME.cpp` as an ELF file, with these constants in it."""
-    needed()
-    given = [f"-Dk{constant}={value}L" for constant, value in constants.items()]
+    skip_unless_available()
+    given_words = [f"-Dk{constant}={value}L" for constant, value in constants.items()]
     source = SOURCES / f"{name}.cpp"
-    flags = (f"-mmcu={BUILT[UNO][0]}", *FLAGS, *WARNINGS, "-DF_CPU=16000000L", *given)
-    return compiled(source.name, flags, [str(source)], [source.read_bytes()])
+    flags = (f"-mmcu={BUILT[UNO][0]}", *FLAGS, *WARNINGS, "-DF_CPU=16000000L", *given_words)
+    return compile_sources(source.name, flags, [str(source)], [source.read_bytes()])

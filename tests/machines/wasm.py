@@ -18,7 +18,7 @@ def run_wasm(image: bytes, kit: Kit, senses: Senses) -> str:
     """Return the trace of an image, which is read and verified by the C++ machine."""
     from tiniscript.vm.wasm import WasmImage
 
-    loaded = WasmImage(image, kit)
+    wasm_image = WasmImage(image, kit)
     events = run(
         image[HEADER_BYTES:],
         kit,
@@ -26,6 +26,6 @@ def run_wasm(image: bytes, kit: Kit, senses: Senses) -> str:
         senses.max_ms,
         senses.max_steps,
         senses.seed,
-        loaded.machine,
+        wasm_image.machine,
     )
     return "".join(f"{event}\n" for event in events if not isinstance(event, Ending))

@@ -31,8 +31,8 @@ class Wired:
             self.uno.run_ms(1)
             new = self.uno.events[self._seen :]
             self._seen += len(new)
-            sent = bytes(event["byte"] for event in new if event.kind == "sent")
-            self.session.receive(sent, self.now_ms)
+            sent_bytes = bytes(event["byte"] for event in new if event.kind == "sent")
+            self.session.receive(sent_bytes, self.now_ms)
 
     def until(self, request: PendingRequest[Any], limit_ms: int = 20_000) -> int:
         """Run until a request is over; return how that ended."""

@@ -20,32 +20,32 @@ from tiniscript.link.modules.talk import Module, find_module
 of_each = pytest.mark.parametrize("kind", KINDS)
 
 
-def met(wire: SimulatedWire) -> Module:
+def find_only_module(wire: SimulatedWire) -> Module:
     module = find_module(wire)
     assert module is not None
     return module
 
 
-def ended(
-    wire: SimulatedWire, wanted: WantedSettings, module: Module | None = None
+def set_up_module(
+    wire: SimulatedWire, settings: WantedSettings, module: Module | None = None
 ) -> list[Outcome]:
     """Set up the module that is met at the other end."""
-    module = module or met(wire)
-    reported: list[Outcome] = []
+    module = module or find_only_module(wire)
+    reported_outcomes: list[Outcome] = []
     outcomes = set_up.apply_steps(
-        wire, module, set_up.plan_steps(wanted, module.dialect), reported.append
+        wire, module, set_up.plan_steps(settings, module.dialect), reported_outcomes.append
     )
-    assert reported == outcomes
+    assert reported_outcomes == outcomes
     return outcomes
 
 
 def all_wanted(wire: SimulatedWire, end: Simulated, name: str, baud: int) -> Module:
     """Set up everything; return the module as it was met, which has it all now."""
-    module = met(wire)
-    wanted = WantedSettings(name, "135790"[: module.dialect.pin_digits], baud)
-    outcomes = ended(wire, wanted, module)
+    module = find_only_module(wire)
+    settings = WantedSettings(name, "135790"[: module.dialect.pin_digits], baud)
+    outcomes = set_up_module(wire, settings, module)
     assert [outcome.status in set_up.GOOD_OUTCOMES for outcome in outcomes] == [True] * 3
-    assert (end.name, end.pin, end.data_baud) == wanted
+    assert (end.name, end.pin, end.data_baud) == settings
     return module
 
 
@@ -75,12 +75,12 @@ class Odd:
     def step(self, data: bytes) -> bytes:
         self._now_ms += 1
         self._heard += data
-        before = len(self.module.commands)
+        count_before = len(self.module.commands)
         reply = self.module.step(data)
-        if len(self.module.commands) > before:
-            asked, self._heard = self._heard, b""
+        if len(self.module.commands) > count_before:
+            asked_bytes, self._heard = self._heard, b""
             is_deaf = self.deaf in self.module.commands[-1]
-            reply = b"" if is_deaf else (asked + reply if self.echoes else reply)
+            reply = b"" if is_deaf else (asked_bytes + reply if self.echoes else reply)
         if reply:
             self._later.append((self._now_ms + self.late_ms, reply))
         if self._later and self._later[0][0] <= self._now_ms:
@@ -93,7 +93,7 @@ class Odd:
 def test_a_module_that_echoes_or_is_late_is_the_same(kind: str, late_ms: int) -> None:
     end: Simulated = KINDS[kind]()
     wire = SimulatedWire(Odd(end, echoes=True, late_ms=late_ms))
-    plain = met(SimulatedWire(KINDS[kind]()))
+    plain = find_only_module(SimulatedWire(KINDS[kind]()))
     module = all_wanted(wire, end, "Tini-7F3A", 9600)
     assert (module.dialect.name, module.version[:2]) == (kind, plain.version[:2])
 
@@ -102,11 +102,11 @@ def test_a_module_that_echoes_or_is_late_is_the_same(kind: str, late_ms: int) ->
 def test_a_module_that_says_no_version_is_found_all_the_same(kind: str) -> None:
     end: Simulated = KINDS[kind]()
     wire = SimulatedWire(Odd(end, deaf="VER"))
-    module = met(wire)
+    module = find_only_module(wire)
     assert (module.dialect.name, module.version) == (kind, "")
     assert [
         outcome.status in set_up.GOOD_OUTCOMES
-        for outcome in ended(wire, WantedSettings("Tini"), module)
+        for outcome in set_up_module(wire, WantedSettings("Tini"), module)
     ] == [True]
     assert end.name == "Tini"
 
@@ -119,7 +119,7 @@ def test_nobody_and_a_wire_that_only_echoes_are_no_module() -> None:
             return data
 
         def restart(self) -> None:
-            """Nobody is there."""
+            """Do nothing, because no module is there."""
 
     assert find_module(SimulatedWire(Echo())) is None
     end = Hc06()
@@ -134,7 +134,7 @@ def test_every_dialect_has_a_simulated_module() -> None:
 @of_each
 def test_a_module_is_told_from_all_others(kind: str) -> None:
     wire = SimulatedWire(KINDS[kind]())
-    module = met(wire)
+    module = find_only_module(wire)
     assert (module.dialect.name, module.baud) == (kind, wire.end.baud)
     assert module.version and "\r" not in module.version
 
@@ -142,7 +142,7 @@ def test_a_module_is_told_from_all_others(kind: str) -> None:
 @pytest.mark.parametrize("baud", BAUDS)
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if not kind.startswith("HC-05")])
 def test_a_module_is_found_at_any_speed(kind: str, baud: int) -> None:
-    module = met(SimulatedWire(KINDS[kind](baud)))
+    module = find_only_module(SimulatedWire(KINDS[kind](baud)))
     assert (module.dialect.name, module.baud) == (kind, baud)
 
 
@@ -152,7 +152,7 @@ def test_name_pin_and_speed_are_what_was_wanted_and_else_stay(kind: str, baud: i
     end: Simulated = KINDS[kind]()
     wire = SimulatedWire(end)
     before = end.name, end.pin, end.data_baud
-    assert ended(wire, WantedSettings()) == []
+    assert set_up_module(wire, WantedSettings()) == []
     assert (end.name, end.pin, end.data_baud) == before
     all_wanted(wire, end, "Tini-7F3A", baud)
     end.power_on()
@@ -162,7 +162,7 @@ def test_name_pin_and_speed_are_what_was_wanted_and_else_stay(kind: str, baud: i
 def test_an_old_hc_05_gets_its_pin_without_quotes_and_a_new_one_with() -> None:
     for end in (Hc05(), Hc05New()):
         wire = SimulatedWire(end)
-        (outcome,) = ended(wire, WantedSettings(pin="4711"))
+        (outcome,) = set_up_module(wire, WantedSettings(pin="4711"))
         assert (end.pin, outcome.status) == ("4711", set_up.DONE)
 
 
@@ -171,9 +171,9 @@ def test_quotes_that_a_module_has_kept_are_not_taken_for_the_pin() -> None:
     end = Hc05()
     end.version = "3.0-clone"
     wire = SimulatedWire(end)
-    module = met(wire)
+    module = find_only_module(wire)
     assert module.dialect.name == "HC-05 3.x"
-    (outcome,) = ended(wire, WantedSettings(pin="4711"), module)
+    (outcome,) = set_up_module(wire, WantedSettings(pin="4711"), module)
     assert (end.pin, outcome.status) == ("4711", set_up.DONE)
 
 
@@ -182,20 +182,20 @@ def test_a_module_that_sleeps_is_woken() -> None:
     end.is_asleep = True
     wire = SimulatedWire(end)
     assert find_module(wire, wakes=False) is None
-    assert met(wire).dialect.name == "HM-10"
+    assert find_only_module(wire).dialect.name == "HM-10"
 
 
 def test_a_speed_that_was_set_before_a_restart_is_found_again() -> None:
     """Somebody pulled the plug between the command and the restart: the next run finds it."""
     end = Hm10()
     wire = SimulatedWire(end)
-    module = met(wire)
+    module = find_only_module(wire)
     end.breaks_after = len(end.commands) + 1  # AT+BAUD is the last one that it hears
-    outcomes = ended(wire, WantedSettings(baud=115200), module)
+    outcomes = set_up_module(wire, WantedSettings(baud=115200), module)
     assert outcomes[-1].status == set_up.LOST
     end.breaks_after = None
     end.power_on()
-    assert met(wire).baud == 115200
+    assert find_only_module(wire).baud == 115200
 
 
 @pytest.mark.parametrize("commands", range(12))
@@ -203,9 +203,9 @@ def test_a_speed_that_was_set_before_a_restart_is_found_again() -> None:
 def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, commands: int) -> None:
     end = KINDS[kind]()
     wire = SimulatedWire(end)
-    module = met(wire)
+    module = find_only_module(wire)
     end.breaks_after = len(end.commands) + commands
-    outcomes = ended(
+    outcomes = set_up_module(
         wire, WantedSettings("ANA", "135790"[: module.dialect.pin_digits], 57600), module
     )
     is_whole = end.is_on
@@ -214,29 +214,29 @@ def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, comman
     )
     end.breaks_after = None
     if kind.startswith("HC-05"):
-        end.is_on = True  # its button is still held
+        end.is_on = True  # the button is still held
     else:
         end.power_on()
     all_wanted(wire, end, "ANA", 57600)
 
 
 def test_a_clone_whose_numbers_are_others_is_found_where_it_went() -> None:
-    """It says CC41-A and counts as an MLT-BT05: it is at another speed, and that is said."""
+    """Such a clone reports CC41-A and counts as an MLT-BT05 at another speed, which is reported."""
 
     class Liar(Cc41):
         bauds = Bt05.bauds
 
     end = Liar()
     wire = SimulatedWire(end)
-    module = met(wire)
+    module = find_only_module(wire)
     assert module.dialect.name == "CC41-A"
     end.data_baud = 38400
-    (outcome,) = ended(wire, WantedSettings(baud=9600), module)
+    (outcome,) = set_up_module(wire, WantedSettings(baud=9600), module)
     assert (outcome.status, end.baud) == (set_up.DONE, 9600)
-    outcomes = ended(wire, WantedSettings(baud=57600))
+    outcomes = set_up_module(wire, WantedSettings(baud=57600))
     assert outcomes[-1].status == set_up.REFUSED
     end.bauds = Hm10.bauds
-    outcomes = ended(wire, WantedSettings(baud=9600))
+    outcomes = set_up_module(wire, WantedSettings(baud=9600))
     assert (outcomes[-1].status, outcomes[-1].answer) == (set_up.ELSEWHERE, "115200")
     assert end.baud == 115200
 
@@ -248,7 +248,7 @@ def test_a_module_that_refuses_is_not_said_to_have_done_it() -> None:
 
     end = Stubborn()
     wire = SimulatedWire(end)
-    outcomes = ended(wire, WantedSettings("ANA", "1111", 115200))
+    outcomes = set_up_module(wire, WantedSettings("ANA", "1111", 115200))
     assert [outcome.status for outcome in outcomes] == [set_up.UNSEEN, set_up.REFUSED]
     assert outcomes[-1].answer == "ERROR:(7)"
     assert (end.pin, end.baud) == ("1234", 9600)
@@ -267,14 +267,14 @@ def test_what_is_told_of_a_pin_is_what_the_module_has(
         def answer(self, command: str) -> str:
             if not command.startswith("AT+PSWD="):
                 return str(super().answer(command))
-            sent = command.partition("=")[2]
-            does = forms[sent[:1] != '"']
+            sent_text = command.partition("=")[2]
+            does = forms[sent_text[:1] != '"']
             if does in ("keeps", "cuts"):
-                self.pin = sent[: 3 if does == "cuts" else None]
+                self.pin = sent_text[: 3 if does == "cuts" else None]
             return {"refuses": "ERROR:(1D)\r\n", "is silent": ""}.get(does, "OK\r\n")
 
     end = Quirky()
-    (outcome,) = ended(SimulatedWire(end), WantedSettings(pin="4321"))
+    (outcome,) = set_up_module(SimulatedWire(end), WantedSettings(pin="4321"))
     has = end.pin.strip('"') if kind is Hc05New else end.pin
     if outcome.status == set_up.DONE:
         assert has == "4321"
@@ -292,12 +292,12 @@ def test_a_module_that_cuts_a_name_is_seen_to_have_done_so() -> None:
             return answer
 
     wire = SimulatedWire(Short())
-    (outcome,) = ended(wire, WantedSettings("Tini-7F3A"))
+    (outcome,) = set_up_module(wire, WantedSettings("Tini-7F3A"))
     assert (outcome.status, outcome.answer) == (set_up.DIFFERS, "Tini")
 
 
 @each_row(
-    "wanted, dialect, what",
+    "settings, dialect, what",
     [
         (WantedSettings("x" * 20), "HC-06", ""),
         (WantedSettings("x" * 21), "HC-06", "name"),
@@ -319,10 +319,10 @@ def test_a_module_that_cuts_a_name_is_seen_to_have_done_so() -> None:
     ],
 )
 def test_what_a_module_cannot_have_is_known_before(
-    wanted: WantedSettings, dialect: str, what: str
+    settings: WantedSettings, dialect: str, what: str
 ) -> None:
     (found_dialect,) = (other for other in DIALECTS if other.name == dialect)
-    assert set_up.unsupported_setting(wanted, found_dialect) == what
+    assert set_up.unsupported_setting(settings, found_dialect) == what
 
 
 def test_a_name_from_an_id_fits_each() -> None:
@@ -340,8 +340,10 @@ def test_what_was_sent_before_is_no_part_of_a_command(kind: str, seed: int) -> N
     chance = random.Random(f"{kind} {seed}")
     end: Simulated = KINDS[kind](*([chance.choice(BAUDS)] if not kind.startswith("HC-05") else []))
     wire = SimulatedWire(end, end.baud)
-    plain = met(SimulatedWire(KINDS[kind](*([end.baud] if not kind.startswith("HC-05") else []))))
+    plain = find_only_module(
+        SimulatedWire(KINDS[kind](*([end.baud] if not kind.startswith("HC-05") else [])))
+    )
     command = chance.choice(["AT", "AT+", "AT+VERSION", "AT+ROLE?", "AT\r", "A", "w" * 20, "\0"])
     wire.send(command.encode())
     wire.receive(chance.choice([1, 10, 100, 900]))
-    assert met(wire) == plain
+    assert find_only_module(wire) == plain

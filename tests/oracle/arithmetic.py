@@ -23,7 +23,7 @@ class Fault(Exception):
     """OVERFLOW, DIVIDE_BY_ZERO or NO_POWER."""
 
 
-def divided(number: int, by: int) -> int:
+def divide(number: int, by: int) -> int:
     """The nearest integer to a quotient, half away from zero."""
     size = (abs(number) * 2 + abs(by)) // (2 * abs(by))
     return size if (number < 0) == (by < 0) else -size
@@ -31,7 +31,7 @@ def divided(number: int, by: int) -> int:
 
 def whole(value: int) -> int:
     """The nearest whole number."""
-    return divided(value, 1000)
+    return divide(value, 1000)
 
 
 def fits(value: int) -> int:
@@ -46,14 +46,14 @@ def within(value: int, low: int, high: int) -> int:
     return min(max(value, low), high)
 
 
-def printed(value: int) -> str:
+def print_number(value: int) -> str:
     """The shortest decimal."""
     sign, size = "-" * (value < 0), abs(value)
     return (f"{sign}{size // 1000}." + f"{size % 1000:03d}").rstrip("0").rstrip(".")
 
 
 def answer(value: int) -> str:
-    """How a yes/no value is printed."""
+    """Return the printed form of a yes-no value."""
     return "TRUE" if value != 0 else "FALSE"
 
 
@@ -64,7 +64,7 @@ def time8(operand: int) -> int:
     return 1000 + 100 * (operand - 100) if operand < 200 else 11_000 + 1000 * (operand - 200)
 
 
-def stepped(state: int) -> int:
+def next_state(state: int) -> int:
     """The next state of RANDOM."""
     state ^= state << 13 & (WRAP - 1)
     state ^= state >> 17
@@ -77,7 +77,7 @@ def random_between(a: int, b: int, state: int) -> int:
     return fits(1000 * (low + state % (high - low + 1)))
 
 
-def calculated(name: str, a: int, b: int = 0) -> int:
+def calculate(name: str, a: int, b: int = 0) -> int:
     """The rows of the table that have an `a` and perhaps a `b`."""
     if name in ("DIV", "MOD") and b == 0:
         raise Fault("DIVIDE_BY_ZERO")
@@ -87,9 +87,9 @@ def calculated(name: str, a: int, b: int = 0) -> int:
         case "SUB":
             return fits(a - b)
         case "MUL":
-            return fits(divided(a * b, 1000))
+            return fits(divide(a * b, 1000))
         case "DIV":
-            return fits(divided(a * 1000, b))
+            return fits(divide(a * 1000, b))
         case "MOD":
             return a - b * (a // b)
         case "NEG":
@@ -100,8 +100,8 @@ def calculated(name: str, a: int, b: int = 0) -> int:
             return min(a, b) if name == "MIN" else max(a, b)
         case "ROUND":
             places = whole(b)
-            unit = 10 ** min(max(3 - places, 0), 11)  # half of which is more than any value
-            return a if places >= 3 else fits(divided(a, unit) * unit)
+            unit = 10 ** min(max(3 - places, 0), 11)  # half of this is larger than any value
+            return a if places >= 3 else fits(divide(a, unit) * unit)
         case "AND":
             return int(a != 0 and b != 0)
         case "OR":

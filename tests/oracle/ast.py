@@ -48,7 +48,7 @@ class Do:
 
 @dataclass
 class Arm:
-    """One arm of an IF: its condition (None for ELSE) and what it does."""
+    """An arm of an IF: its condition (None for ELSE) and its body."""
 
     condition: Expression | None
     body: list[Statement]
@@ -104,7 +104,7 @@ class Program:
 
 
 class Facts(NamedTuple):
-    """What a call of a DEF brings along."""
+    """The effects of calling a DEF."""
 
     nesting: int  # blocks open in it at once
     calling: int  # DEFs that it has open at once, itself not counted
@@ -112,7 +112,7 @@ class Facts(NamedTuple):
 
 
 def stack_need(expression: Expression) -> int:
-    """How many values the text of an expression keeps at once."""
+    """Return the number of values that an expression keeps at once."""
     return max([1, *(i + stack_need(part) for i, part in enumerate(expression.parts))])
 
 

@@ -36,7 +36,7 @@ class Author(ValueAuthor):
         self.say(word, "(", *time, *power, ")", *until)
 
     def way(self, word: str) -> Tokens:
-        """How far a move goes, with its unit."""
+        """Return the distance of a move, with its unit."""
         words = ("CM", "cm") if word in "FB" else ("DEG", "deg", "°", "º")
         roll = self.rng.random()
         if roll < 0.6:
@@ -73,12 +73,12 @@ class Author(ValueAuthor):
         size = self.rng.choice((0, 1, 2, 3))
         value = self.yes_no(size) if kind else self.number(size)
         if not kind and self.chance(0.01):
-            value = self.crowded()
+            value = self.write_deep_number()
         self.constant = False
         self.variables[name] = kind
         self.say(name, "=", *value)
 
-    def crowded(self) -> Tokens:
+    def write_deep_number(self) -> Tokens:
         """A number that needs nearly all or all of the stack."""
         leaves = self.rng.randint(MAX_STACK - 3, MAX_STACK)
         tokens = self.leaf()
@@ -267,7 +267,7 @@ class Author(ValueAuthor):
         kinds = {name: self.chance(0.3) for name in names}
         self.kinds[name] = tuple(kinds.values())
         self.given += len(names)
-        deepest, called = self.deepest, self.called
+        deepest, call_depth = self.deepest, self.called
         self.deepest, self.called, self.in_def = 0, 0, True
         self.variables |= kinds
         for _ in range(self.rng.randint(0, 4)):
@@ -275,9 +275,9 @@ class Author(ValueAuthor):
         for value_name in names:
             del self.variables[value_name]
         self.defs[name] = (self.deepest, self.called)
-        self.deepest, self.called, self.in_def = deepest, called, False
+        self.deepest, self.called, self.in_def = deepest, call_depth, False
         self.say(self.rng.choice(("END_DEF", "ENDDEF")))
-        if any(kinds.values()):  # the first call decides; its values come from nothing inside
+        if any(kinds.values()):  # the first call decides; its values do not use the DEF's own
             self.constant = True
             self.say_call(name)
             self.constant = False
@@ -291,23 +291,23 @@ class Author(ValueAuthor):
 
     @property
     def has_room(self) -> bool:
-        """Whether there may be one variable more."""
+        """Return whether there is room for another variable."""
         return len(self.variables) + self.given < MAX_VARIABLES
 
     def chain(self) -> None:
         """DEFs that call each other, as deep as they may."""
-        before = ""
+        text_before = ""
         for number in range(self.rng.randint(2, MAX_CALLS)):
             name = f"CHAIN{number}"
             self.say("DEF", name)
-            self.say(before) if before else self.show()
+            self.say(text_before) if text_before else self.show()
             self.say("END_DEF")
             self.defs[name], self.kinds[name] = (0, number), ()
-            before = name
-        self.say(before)
+            text_before = name
+        self.say(text_before)
 
     def crowd(self) -> None:
-        """As many variables as there may be."""
+        """Add the largest number of variables."""
         for number in range(MAX_VARIABLES - len(self.variables) - self.given):
             name = f"MANY{number}"
             self.say(name, "=", str(number))

@@ -10,7 +10,7 @@ from tests.oracle.words import Kit
 Tokens = list[str]
 
 VARIABLES = ("X", "Y", "Z", "COUNT", "SPEED", "D", "A1", "T_2", "NEAR", "FOUND", "I", "OLD__D_")
-VALUES = ("SIZE", "POWER", "K", "ON", "HOW_OFTEN", "W1")  # of DEFs
+VALUES = ("SIZE", "POWER", "K", "ON", "HOW_OFTEN", "W1")  # names of DEF parameters
 PROCEDURES = ("TURN", "LOOK", "DANCE", "SQUARE", "P1", "GO_ON", "BACK_OFF", "TELL", "Q")
 
 TIMES = ("0", "0.02", "0.05", ".1", "0.25", "0.033", "0.5", "1", "1.5", "0.001", "2.0")
@@ -24,7 +24,7 @@ _PLAIN = re.compile(r"-?[0-9.]+")
 
 
 def plain(tokens: Tokens) -> bool:
-    """Whether an argument is just one number, with or without a minus."""
+    """Return whether an argument is a single number, with or without a minus."""
     return _PLAIN.fullmatch("".join(tokens)) is not None
 
 
@@ -37,14 +37,14 @@ class ValueAuthor:
         self.kit = kit
         self.page: list[Tokens] = []
         self.instructions_left = 0  # instructions still to write
-        taken = {device.name for device in (*kit.readings, *kit.actuators)}
+        used_names = {device.name for device in (*kit.readings, *kit.actuators)}
         remote = [device.name for device in kit.readings[len(kit.sensors) :]]
         own = rng.sample(remote, min(len(remote), rng.choice((0, 0, 0, 1, 2, 4))))  # give way
         self.sensors = [device for device in kit.readings if device.name not in own]
-        self.names = [name for name in VARIABLES if name not in taken] + own[::3]
-        self.free_defs = [name for name in PROCEDURES if name not in taken] + own[1::3]
+        self.names = [name for name in VARIABLES if name not in used_names] + own[::3]
+        self.free_defs = [name for name in PROCEDURES if name not in used_names] + own[1::3]
         self.values = [*VALUES, *own[2::3]]
-        self.taken = taken | set(VARIABLES) | set(PROCEDURES)
+        self.taken = used_names | set(VARIABLES) | set(PROCEDURES)
         self.variables: dict[str, bool] = {}
         self.counters: set[str] = set()
         self.defs: dict[str, tuple[int, int]] = {}  # blocks and DEFs open in it at once
@@ -78,7 +78,7 @@ class ValueAuthor:
             return [self.rng.choice(LONG)]
         return [self.rng.choice(BIG)] if self.chance(0.7) else [LEAST]
 
-    def named(self, is_yes_no: bool) -> Tokens | None:
+    def choose_name(self, is_yes_no: bool) -> Tokens | None:
         """A variable or a sensor of the kind, if there is one."""
         variables = [name for name, kind in self.variables.items() if kind == is_yes_no]
         sensors = [sensor.name for sensor in self.sensors if sensor.is_yes_no == is_yes_no]
@@ -89,7 +89,7 @@ class ValueAuthor:
         if not self.constant and self.chance(0.55):
             if self.chance(0.12):
                 return ["TIME"]
-            return self.named(False) or self.literal()
+            return self.choose_name(False) or self.literal()
         return self.literal()
 
     def number(self, size: int = 2) -> Tokens:
@@ -120,7 +120,7 @@ class ValueAuthor:
     def yes_no(self, size: int = 2) -> Tokens:
         roll = self.rng.random()
         if size <= 0 or roll < 0.12:
-            names = None if self.constant or self.chance(0.3) else self.named(True)
+            names = None if self.constant or self.chance(0.3) else self.choose_name(True)
             return names or [self.rng.choice(("TRUE", "FALSE"))]
         if roll < 0.2:
             return ["NOT", *self.yes_no(size - 1)]
@@ -143,7 +143,7 @@ class ValueAuthor:
         self.constant = False
         return ["(", *tokens, ")"]
 
-    def computed(self) -> Tokens:
+    def write_computed_number(self) -> Tokens:
         """A number that is not checked against a range before the program runs."""
         self.constant = self.chance(0.15)
         tokens = self.number(self.rng.choice((1, 2, 2, 3)))
@@ -153,7 +153,7 @@ class ValueAuthor:
     def within(self, low: int, high: int) -> Tokens:
         """A lone number from low to high, or something computed."""
         if self.chance(0.3):
-            return self.computed()
+            return self.write_computed_number()
         value = self.rng.choice((low, high, *(self.rng.randint(low, high) for _ in range(6))))
         if self.chance(0.1) and low < value < high:
             return [*(["-"] if value < 0 else []), f"{abs(value)}.{self.rng.randint(1, 999):03}"]
@@ -168,4 +168,4 @@ class ValueAuthor:
             return ["MIN", "(", *self.number(1), ",", self.rng.choice(TIMES), ")"]
         if roll < 0.96:
             return ["(", *self.number(1), ")", "/", "100"]
-        return self.computed()
+        return self.write_computed_number()

@@ -15,7 +15,7 @@ _WORDS = (
 )  # fmt: skip
 
 
-def broken(rng: random.Random, text: str) -> str:
+def break_text(rng: random.Random, text: str) -> str:
     """The text with a few pieces lost, doubled, swapped or replaced, or with stray characters."""
     pieces = _PIECES.findall(text)
     for _ in range(rng.choice((1, 1, 1, 2, 3))):

@@ -31,7 +31,7 @@ class ExpressionParser:
                 del self.sensors[device.name]
                 self.text.sensors.discard(device.name)
         self.open_def = ""  # the DEF that is being read
-        self.own: dict[str, bool] = {}  # its values: is it a yes/no value
+        self.own: dict[str, bool] = {}  # its values, and whether each is a yes-no value
         self.in_task = False  # a TASK or WHEN is being read
         self.tasks: list[Task] = []
         self.loops = 0  # loops open here, in this DEF or in the program
@@ -49,7 +49,7 @@ class ExpressionParser:
         raise Mistake(f"line {self.token.line}: {why}")
 
     def next_is(self, *texts: str) -> bool:
-        """Whether the next token is one of these words or signs."""
+        """Return whether the next token is one of these words or signs."""
         return self.token.kind in ("word", "symbol") and self.token.text in texts
 
     def accept(self, *texts: str) -> str:

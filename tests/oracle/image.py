@@ -38,7 +38,7 @@ def version(code: bytes, needs: int) -> tuple[int, int]:
     """Return the lowest version that has all of verified code, and of what it needs."""
     at, names = 0, set()
     while at < len(code):
-        name, at = spec_tables.instruction_at(code, at).name, spec_tables.decoded(code, at)[2]
+        name, at = spec_tables.instruction_at(code, at).name, spec_tables.decode(code, at)[2]
         names.add(name)
     added = (
         number

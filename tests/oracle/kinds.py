@@ -38,7 +38,7 @@ class Text:
                 now = NOWHERE
 
     def names_after(self, at: int) -> tuple[str, ...]:
-        """The names in the brackets that begin here, none where there are none."""
+        """The names in the brackets that begin here, none if there are none."""
         names = []
         if self.tokens[at].text == "(":
             while self.tokens[at].text not in (")", "") and self.tokens[at].kind != "newline":
@@ -48,24 +48,26 @@ class Text:
         return tuple(names)
 
     def begins(self, at: int) -> bool:
-        """Whether an instruction begins with this token."""
+        """Return whether an instruction begins with this token."""
         return at == 0 or self.tokens[at - 1].kind == "newline" or self.tokens[at - 1].text in ";|"
 
     def gives_way(self, name: str) -> bool:
-        """Whether a word of the remote control is a name of the program, by its first place."""
+        """Return whether a word of the remote control is a name of the program, by its first
+        place.
+        """
         at = next((k for k, token in enumerate(self.tokens) if token.text == name), None)
         if at is None:
             return False
         if self.tokens[at - 1].text == "DEF" and at > 0:
             return True
-        if name in self.around[at].values:  # it stands in the brackets: before the body
+        if name in self.around[at].values:  # the name is in the brackets before the body
             return True
         is_set = self.begins(at) and self.tokens[at + 1].text == "="
         value = self.tokens[at + 2 : self.end(at + 2)] if is_set else []
         return is_set and all(token.text != name for token in value)
 
     def assigned_outside(self, name: str) -> bool:
-        """Whether a variable of the whole program has this name."""
+        """Return whether a variable of the whole program has this name."""
         return any(
             token.text == name and self.tokens[at + 1].text == "=" and self.begins(at)
             and name not in self.around[at].values
@@ -73,7 +75,7 @@ class Text:
         )  # fmt: skip
 
     def is_yes_no(self, name: str, around: Def, names: tuple[tuple[str, str], ...] = ()) -> bool:
-        """Whether a name is a yes/no value, inside this DEF."""
+        """Return whether a name is a yes-no value inside this DEF."""
         own = name in around.values
         key = (name, around.name if own else "")
         if key in names:
@@ -81,18 +83,18 @@ class Text:
         for at, token in enumerate(self.tokens[:-1]):
             if not self.begins(at):
                 continue
-            after = self.tokens[at + 1].text
-            if own and token.text == around.name and after == "(":
+            text_after = self.tokens[at + 1].text
+            if own and token.text == around.name and text_after == "(":
                 places = self.arguments(at + 1)
                 k = around.values.index(name)
                 return k < len(places) and self.answers(*places[k], (*names, key))
-            is_set = token.text == name and after == "="
+            is_set = token.text == name and text_after == "="
             if not own and is_set and name not in self.around[at].values:
                 return self.answers(at + 2, self.end(at + 2), (*names, key))
         return name in self.sensors
 
     def answers(self, start: int, end: int, names: tuple[tuple[str, str], ...]) -> bool:
-        """Whether the expression from `start` to before `end` is a yes/no value."""
+        """Return whether the expression from `start` to `end` is a yes-no value."""
         depth = 0
         while end - start > 2 and self.tokens[start].text == "(" and self.closes(start) == end - 1:
             start, end = start + 1, end - 1
@@ -105,7 +107,7 @@ class Text:
         return is_name and self.is_yes_no(self.tokens[start].text, self.around[start], names)
 
     def closes(self, at: int) -> int:
-        """Where the bracket that is opened here is closed."""
+        """Return the index of the closing bracket."""
         depth = 0
         for place in range(at, len(self.tokens)):
             depth += {"(": 1, ")": -1}.get(self.tokens[place].text, 0)
@@ -114,13 +116,13 @@ class Text:
         return len(self.tokens) - 1
 
     def end(self, at: int) -> int:
-        """Where the instruction around this token ends."""
+        """Return the end of the instruction around this token."""
         while self.tokens[at].kind not in ("newline", "end") and self.tokens[at].text != ";":
             at += 1
         return at
 
     def arguments(self, at: int) -> list[tuple[int, int]]:
-        """Where each value of the brackets that begin here begins and ends."""
+        """Return the ranges of the values in the brackets that begin here."""
         last, spans, depth = self.closes(at), [], 0
         begun = at + 1
         for place in range(at + 1, last):

@@ -34,7 +34,7 @@ class Layout:
         return "".join(self.rng.choice((c.upper(), c.lower())) for c in token)
 
     def gap(self, left: str, right: str, in_parentheses: bool) -> str:
-        """What stands between two tokens of an instruction."""
+        """Return the text between two tokens of an instruction."""
         rng = self.rng
         wordy = left[-1] not in "(),=<>+-*/%" and right[0] not in "(),=<>+-*/%"
         if self.ends != "one line" and in_parentheses and rng.random() < 0.02:
@@ -56,7 +56,7 @@ class Layout:
         return text
 
     def end(self) -> str:
-        """What ends an instruction: at least one ; or end of line, and perhaps empty ones."""
+        """Return the end of an instruction: at least one ; or line end, and perhaps empty ones."""
         rng = self.rng
         if self.ends == "one line":
             return rng.choice((";", ";", ";", "; ", ";;" if rng.random() < 0.1 else ";"))
@@ -82,10 +82,10 @@ class Layout:
         if rng.random() < 0.5:
             text = text.rstrip(" ;\t\r\n\u00a0")
         if rng.random() < 0.1:
-            text = self.newline.join(map(self.checked, text.split(self.newline)))
+            text = self.newline.join(map(self.add_checksum, text.split(self.newline)))
         return ("\ufeff" if rng.random() < 0.03 else "") + text
 
-    def checked(self, line: str) -> str:
+    def add_checksum(self, line: str) -> str:
         """A line with its checksum, or without one."""
         if self.rng.random() < 0.5:
             return line

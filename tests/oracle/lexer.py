@@ -32,13 +32,13 @@ _TOKEN = re.compile(
 
 def without_checksum(line: str) -> str:
     """A line without the checksum at its first ~, if there is one; it must fit."""
-    before, _, after = line.partition("~")
-    digits = after.rstrip(" \t\u00a0\u202f")
+    text_before, _, text_after = line.partition("~")
+    digits = text_after.rstrip(" \t\u00a0\u202f")
     if not re.fullmatch(r"[0-9A-Fa-f]{8}", digits):
         return line
-    if int(digits, 16) != zlib.crc32(before.encode()):
+    if int(digits, 16) != zlib.crc32(text_before.encode()):
         raise Mistake(f"{line!r} does not fit its checksum")
-    return before
+    return text_before
 
 
 def tokens_of(text: str) -> list[Token]:
@@ -61,7 +61,7 @@ def tokens_of(text: str) -> list[Token]:
             kind, word = "word", "DEG"
         if word in FIXED:
             names, meaning = FIXED[word]
-            values, at = _given(text, at, len(names)) if names else ([], at)
+            values, at = _read_values(text, at, len(names)) if names else ([], at)
             for token in tokens_of(meaning)[:-1]:
                 given = dict(zip(names, values, strict=True)).get(token.text, [token])
                 tokens += (one._replace(line=line) for one in given)
@@ -73,7 +73,7 @@ def tokens_of(text: str) -> list[Token]:
     return tokens
 
 
-def _given(text: str, at: int, count: int) -> tuple[list[list[Token]], int]:
+def _read_values(text: str, at: int, count: int) -> tuple[list[list[Token]], int]:
     """The tokens of each value in the brackets that begin here, and where these end."""
     match = re.compile(r"\s*\(").match(text, at)
     if match is None:

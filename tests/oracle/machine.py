@@ -15,25 +15,25 @@ from tests.oracle.arithmetic import (
     WRAP,
     Fault,
     answer,
-    calculated,
-    divided,
+    calculate,
+    divide,
     fits,
-    printed,
+    next_state,
+    print_number,
     random_between,
-    stepped,
     time8,
     whole,
     within,
 )
-from tests.oracle.spec_tables import Instruction, decoded
+from tests.oracle.spec_tables import Instruction, decode
 from tests.oracle.words import ACTS, TIME, Device, Kit
 
-TOO_MANY = "TOO MANY STEPS"  # the last line of a run that this machine gives up
+TOO_MANY = "TOO MANY STEPS"  # the last line of a run without a result
 
 WAYS = {"F": (1, 1), "B": (-1, -1), "L": (-1, 1), "R": (1, -1)}
 
 
-def always_ready(sensor: int, passed: int) -> bool:
+def always_ready(sensor: int, passed_ms: int) -> bool:
     return False
 
 
@@ -61,13 +61,13 @@ class Run:
     max_ms: int
     random: int
     max_steps: int
-    late: Callable[[int, int], int]  # how much later the call comes: see `trace`
+    late: Callable[[int, int], int]  # delay of the call; see `trace`
     begin_ms: int = 0
     is_slow: Callable[[int, int], bool] = always_ready
-    waited: int = 0  # how many times
+    waited: int = 0  # number of waits
     lines: list[str] = field(default_factory=list)
     taken: dict[int, int] = field(default_factory=dict)
-    passed: int = 0  # since the start; what `now` is without wrapping around
+    passed: int = 0  # time since the start; `now` without wrapping around
     pc: int = 0
     stack: list[int] = field(default_factory=list)
     variables: list[int] = field(default_factory=lambda: [0] * 32)
@@ -105,7 +105,7 @@ class Run:
             self.note("LIMIT")
 
     def wait_for_the_clock(self) -> None:
-        """Let the time pass, unless that of the run is over before."""
+        """Advance time to the clock, unless the run's time is over."""
         passes = (self.clock - self.now) % WRAP
         if passes >= WRAP // 2:  # the clock was reached before
             passes = 0
@@ -115,7 +115,7 @@ class Run:
         self.waits = ""
 
     def wait_to(self, reached: int) -> None:
-        """Let the time pass to the next call that is not before `reached`."""
+        """Advance time to the first call at or after `reached`."""
         self.waited += 1
         reached += self.late(self.waited, reached)
         if reached > self.max_ms:
@@ -123,17 +123,17 @@ class Run:
         self.passed = reached
 
     def step(self) -> None:
-        row, operands, after, to = decoded(self.code, self.pc)
+        row, operands, after, to = decode(self.code, self.pc)
         self.pc = after
         self.do(row, row.stem, operands, to)
 
     def do(self, row: Instruction, name: str, operands: Sequence[int], to: int) -> None:
-        """What an instruction does; short and far forms do the same as the others."""
-        taken = [self.stack.pop() for _ in range(row.takes)][::-1]
+        """Execute an instruction; short and far forms act like the others."""
+        popped_values = [self.stack.pop() for _ in range(row.takes)][::-1]
         family, _, last = name.rpartition("_")
         if family in ("IF8", "IF16", "UNTIL8", "UNTIL16", "IF_VAR8", "IF_VAR16"):
             *first, constant = operands[: 2 if family.startswith("IF_VAR") else 1]
-            value = self.variables[first[0]] if first else taken[0]
+            value = self.variables[first[0]] if first else popped_values[0]
             holds = COMPARE[last](value, 1000 * constant)
             if family.startswith("UNTIL"):
                 self.until(holds)
@@ -141,17 +141,19 @@ class Run:
                 self.pc = to
         elif last in WAYS:
             if "GO" in family:
-                taken[0] = self.way(taken[0], within(whole(taken[1]), 0, 100), last in "LR")
-            self.drive(family, WAYS[last], taken, operands)
+                popped_values[0] = self.way(
+                    popped_values[0], within(whole(popped_values[1]), 0, 100), last in "LR"
+                )
+            self.drive(family, WAYS[last], popped_values, operands)
         elif name in ("WATCH_WAIT", "WATCH_FOREVER_WAIT"):
-            self.watch(None, max(taken[0], 0) if taken else None)
+            self.watch(None, max(popped_values[0], 0) if popped_values else None)
         elif row.role == "value":
-            self.stack.append(self.value(name, taken, operands))
+            self.stack.append(self.value(name, popped_values, operands))
         else:
-            self.other(name, taken, operands, to)
+            self.other(name, popped_values, operands, to)
 
-    def value(self, name: str, taken: list[int], operands: Sequence[int]) -> int:
-        """What an instruction leaves that is part of an expression."""
+    def value(self, name: str, popped_values: list[int], operands: Sequence[int]) -> int:
+        """Return the result of an instruction in an expression."""
         match name:
             case "PUSH8" | "PUSH16" | "PUSH_NUM":
                 return 1000 * operands[0]
@@ -170,20 +172,20 @@ class Run:
             case "TIME":
                 return fits(self.passed)
             case "RANDOM":
-                self.random = stepped(self.random)
-                return random_between(taken[0], taken[1], self.random)
+                self.random = next_state(self.random)
+                return random_between(popped_values[0], popped_values[1], self.random)
             case _:
-                return calculated(name, *taken)
+                return calculate(name, *popped_values)
 
-    def other(self, name: str, taken: list[int], operands: Sequence[int], to: int) -> None:
+    def other(self, name: str, popped_values: list[int], operands: Sequence[int], to: int) -> None:
         """Instructions that are no part of an expression, and joins."""
         match name:
             case "AND_THEN" | "OR_ELSE":
-                if (taken[0] != 0) == (name == "OR_ELSE"):
-                    self.stack.append(taken[0])
+                if (popped_values[0] != 0) == (name == "OR_ELSE"):
+                    self.stack.append(popped_values[0])
                     self.pc = to
             case "SET_VAR":
-                self.variables[operands[0]] = taken[0]
+                self.variables[operands[0]] = popped_values[0]
             case "SET_VAR8":
                 self.variables[operands[0]] = 1000 * operands[1]
             case "ADD_VAR8" | "ADD_VAR" | "INC_VAR" | "DEC_VAR":
@@ -193,41 +195,46 @@ class Run:
             case "READ":
                 self.read(operands[0])
             case "SHOW" | "SHOW_YES_NO":
-                self.note(f"SHOW {printed(taken[0]) if name == 'SHOW' else answer(taken[0])}")
+                write = print_number if name == "SHOW" else answer
+                self.note(f"SHOW {write(popped_values[0])}")
             case "SET":
-                self.set(self.kit.actuators[operands[0]], taken[0])
+                self.set(self.kit.actuators[operands[0]], popped_values[0])
             case "WAIT" | "WAIT8":
-                self.wait(time8(operands[0]) if operands else max(taken[0], 0), "PAUSE")
+                self.wait(time8(operands[0]) if operands else max(popped_values[0], 0), "PAUSE")
             case "UNTIL":
-                self.until(taken[0] != 0)
+                self.until(popped_values[0] != 0)
             case "STOP":
                 self.motors((0, 0))
             case "MOTORS" | "MOTORS8":
-                left, right = operands or (within(whole(value), -100, 100) for value in taken)
+                left, right = operands or (
+                    within(whole(value), -100, 100) for value in popped_values
+                )
                 self.motors((left, right))
             case _ if name.removesuffix("8") in ACTS:
                 act = ACTS[name.removesuffix("8")]
-                operands_and_ranges = zip(operands, act.ranges, strict=not taken)
+                operands_and_ranges = zip(operands, act.ranges, strict=not popped_values)
                 values = [
                     time8(value) if of == TIME else 1000 * value
                     for value, of in operands_and_ranges
                 ]
-                act_values = act.values(taken or values)
+                act_values = act.values(popped_values or values)
                 self.note(act.note.format(*act_values))
                 if act.waits:
                     self.wait(act_values[0], "PAUSE")
             case _:
-                self.control(name, taken, operands, to)
+                self.control(name, popped_values, operands, to)
 
-    def control(self, name: str, taken: list[int], operands: Sequence[int], to: int) -> None:
+    def control(
+        self, name: str, popped_values: list[int], operands: Sequence[int], to: int
+    ) -> None:
         match name:
             case "FOREVER" | "WHILE":
                 pass
             case "IF" | "IF_NOT":
-                if (taken[0] != 0) == (name == "IF_NOT"):
+                if (popped_values[0] != 0) == (name == "IF_NOT"):
                     self.pc = to
             case "LOOP8" | "LOOP":
-                times = whole(taken[0]) if taken else operands[0]
+                times = whole(popped_values[0]) if popped_values else operands[0]
                 if times < 1:
                     self.pc = to
                 else:
@@ -256,7 +263,7 @@ class Run:
         self.note(f"MOTORS {powers[0]} {powers[1]}")
 
     def read(self, number: int) -> int:
-        while self.is_slow(number, self.passed):  # nothing of the instruction has happened
+        while self.is_slow(number, self.passed):  # no part of the instruction has been done
             self.wait_to(self.passed + 1)
         sensor = self.kit.readings[number]
         values = self.readings.get(sensor.name) or (0,)
@@ -264,18 +271,20 @@ class Run:
         self.taken[number] = count + 1
         value = values[min(count, len(values) - 1)]
         self.kept[number] = value
-        self.note(f"READ {sensor.name} {answer(value) if sensor.is_yes_no else printed(value)}")
+        self.note(
+            f"READ {sensor.name} {answer(value) if sensor.is_yes_no else print_number(value)}"
+        )
         return value
 
     def set(self, actuator: Device, value: int) -> None:
-        rounded = within(1000 * whole(value), actuator.low, actuator.high)
-        text = answer(value) if actuator.is_yes_no else printed(rounded)
+        rounded_value = within(1000 * whole(value), actuator.low, actuator.high)
+        text = answer(value) if actuator.is_yes_no else print_number(rounded_value)
         self.note(f"SET {actuator.name} {text}")
 
     # Time
 
     def begin(self) -> None:
-        """At the clock, or now if that is more than 20 ms ago."""
+        """Begin at the clock, or now if the clock is more than 20 ms late."""
         if (self.now - self.clock) % WRAP > 20:
             self.clock = self.now
 
@@ -285,14 +294,14 @@ class Run:
         self.waits = what
 
     def drive(
-        self, family: str, way: tuple[int, int], taken: list[int], operands: Sequence[int]
+        self, family: str, way: tuple[int, int], popped_values: list[int], operands: Sequence[int]
     ) -> None:
         """MOVE and WATCH in one of the four directions."""
-        power = operands[-1] if operands else within(whole(taken[-1]), 0, 100)
+        power = operands[-1] if operands else within(whole(popped_values[-1]), 0, 100)
         powers = way[0] * power, way[1] * power
         time = None
         if "FOREVER" not in family:
-            time = time8(operands[0]) if operands else max(taken[0], 0)
+            time = time8(operands[0]) if operands else max(popped_values[0], 0)
         if family.startswith("WATCH"):
             self.watch(powers, time)
         else:
@@ -301,13 +310,13 @@ class Run:
             self.wait(time, "MOVE")
 
     def way(self, way: int, power: int, turns: bool) -> int:
-        """How many milliseconds a way takes."""
+        """Return the duration of a move by distance, in milliseconds."""
         if way <= 0:
             return 0
         per_second = (self.kit.turn if turns else self.kit.speed) * power
         if per_second == 0:
             raise Fault("NO_POWER")
-        return fits(divided(100_000 * way, per_second))
+        return fits(divide(100_000 * way, per_second))
 
     def watch(self, powers: tuple[int, int] | None, time: int | None) -> None:
         """Keep a prepared move; its check begins after the instruction."""
@@ -346,11 +355,11 @@ def trace(
     max_ms: int = 60_000,
     seed: int = 1,
     max_steps: int = 10_000,
-    late: Callable[[int, int], int] = lambda waited, reached: 0,
+    late: Callable[[int, int], int] = lambda waited_ms, reached: 0,
     begin_ms: int = 0,
     is_slow: Callable[[int, int], bool] = always_ready,
 ) -> str:
-    """Return what a run of verified code prints; `max_steps` instructions run at most.
+    """Return the trace of a run of verified code; at most `max_steps` instructions run.
 
     On a robot that is `late`, the call after each wait comes some milliseconds after the clock: it
     is given which wait it is, from 1, and when the clock is reached. `is_slow` says whether a

@@ -9,7 +9,7 @@ from __future__ import annotations
 import random
 
 from tests.oracle.author import Author
-from tests.oracle.breaking import broken
+from tests.oracle.breaking import break_text
 from tests.oracle.layout import Layout
 from tests.oracle.words import PAPER_KIT, Device, Kit
 
@@ -54,4 +54,4 @@ def senses(rng: random.Random, kit: Kit) -> dict[str, list[int]]:
     return readings_by_sensor
 
 
-__all__ = ["WIDE_KIT", "broken", "program", "senses"]
+__all__ = ["WIDE_KIT", "break_text", "program", "senses"]

@@ -16,12 +16,12 @@ def inner_blocks(statement: Statement) -> list[list[Statement]]:
 
 
 def depths(body: list[Statement], defs: Mapping[str, Facts]) -> tuple[int, int]:
-    """How many blocks, and DEFs, a body has open at once; a call adds those of its DEF."""
+    """Return the open blocks and DEFs of a body at once; a call adds those of its DEF."""
     nesting = calling = 0
     for statement in body:
         for inner in inner_blocks(statement):
-            nested, called = depths(inner, defs)
-            nesting, calling = max(nesting, 1 + nested), max(calling, called)
+            nesting_depth, call_depth = depths(inner, defs)
+            nesting, calling = max(nesting, 1 + nesting_depth), max(calling, call_depth)
         if isinstance(statement, Do) and statement.word == "CALL":
             facts = defs[statement.name]
             nesting, calling = max(nesting, facts.nesting), max(calling, 1 + facts.calling)
@@ -29,10 +29,10 @@ def depths(body: list[Statement], defs: Mapping[str, Facts]) -> tuple[int, int]:
 
 
 def fit(program: Program) -> bool:
-    """Whether a machine has room for the values that each task has of its own."""
-    calls = {name: set(called(body)) for name, body in program.defs.items()}
+    """Return whether a machine has room for each task's own values."""
+    calls = {name: set(list_called_defs(body)) for name, body in program.defs.items()}
     bodies = [program.main, *(task.body for task in program.tasks)]
-    reached = [set(called(body)) for body in bodies]
+    reached = [set(list_called_defs(body)) for body in bodies]
     owning: set[str] = set()
     for name in program.defs:  # calls only look back
         if program.values[name] or calls[name] & owning:
@@ -49,13 +49,13 @@ def fit(program: Program) -> bool:
     return variables <= MAX_VARIABLES and defs <= MAX_DEFS
 
 
-def called(body: list[Statement]) -> Iterator[str]:
+def list_called_defs(body: list[Statement]) -> Iterator[str]:
     """The DEFs that a body calls itself."""
     for statement in body:
         if isinstance(statement, Do) and statement.word == "CALL":
             yield statement.name
         for inner in inner_blocks(statement):
-            yield from called(inner)
+            yield from list_called_defs(inner)
 
 
 def settle_readings(
@@ -67,26 +67,28 @@ def settle_readings(
     been read after it is returned. Only `X;` makes X surely read.
     """
 
-    def missing(expressions: Iterable[Expression | None], known: frozenset[str]) -> tuple[str, ...]:
-        return tuple(name for name in sensors_in(expressions) if name not in known)
+    def missing(
+        expressions: Iterable[Expression | None], known_names: frozenset[str]
+    ) -> tuple[str, ...]:
+        return tuple(name for name in sensors_in(expressions) if name not in known_names)
 
     nothing: frozenset[str] = frozenset()
     for statement in body:
         if isinstance(statement, Do):
             statement.reads = missing(statement.arguments, sure)
-            # UNTIL is there to watch: it takes every sensor of its condition at every check.
+            # UNTIL watches: it reads every sensor of its condition at every check.
             statement.until_reads = sensors_in((statement.until,))
             if statement.word == "READ":
                 sure |= {statement.name}
             elif statement.word == "CALL":
-                # A DEF's body begins with nothing surely read, and a call adds what it leaves.
+                # A DEF's body begins without known readings, and a call adds its results.
                 sure |= defs[statement.name].surely_read
         elif isinstance(statement, If):
-            taken = sure  # what this chain need not take (again)
+            used_names = sure  # sensors that this chain need not read again
             ends: list[frozenset[str]] = []
             for arm in statement.arms:
-                arm.reads = missing((arm.condition,), taken)
-                taken |= set(arm.reads)
+                arm.reads = missing((arm.condition,), used_names)
+                used_names |= set(arm.reads)
                 # The readings for conditions are the compiler's: they make nothing surely read.
                 ends.append(settle_readings(arm.body, sure, defs))
             if statement.arms[-1].condition is not None:

@@ -1,4 +1,5 @@
-"""What a robot has, and what an instruction does at once: readings, values, actuators, the trace.
+"""The parts of a robot, and the immediate effects of instructions: readings, values, actuators, the
+trace.
 
 Numbers are Python integers that count thousandths; yes/no values are bools.
 """
@@ -11,19 +12,19 @@ from dataclasses import dataclass, field
 from tests.oracle.arithmetic import (
     Fault,
     answer,
-    calculated,
-    divided,
+    calculate,
+    divide,
     fits,
-    printed,
+    next_state,
+    print_number,
     random_between,
-    stepped,
     whole,
     within,
 )
 from tests.oracle.ast import Do, Expression, Program, Value
 from tests.oracle.words import Kit
 
-# What the words and signs of the language calculate.
+# The operations of the language's words and signs.
 NAMES = {
     "+": "ADD", "-": "SUB", "*": "MUL", "/": "DIV", "%": "MOD", "MINUS": "NEG",
     "=": "EQ", "<>": "NE", "<": "LT", ">": "GT", "<=": "LE", ">=": "GE",
@@ -39,9 +40,9 @@ class Break(Exception):
     """BREAK, on its way to the loop that it leaves."""
 
 
-def written(value: Value) -> str:
+def print_value(value: Value) -> str:
     """A value as the run prints it."""
-    return answer(value) if isinstance(value, bool) else printed(value)
+    return answer(value) if isinstance(value, bool) else print_number(value)
 
 
 # --- Runs -------------------------------------------------------------------------------------
@@ -62,7 +63,7 @@ class Robot:
     trace: list[str] = field(default_factory=list)
     variables: dict[str, Value] = field(default_factory=dict)
     kept: dict[str, Value] = field(default_factory=dict)
-    taken: dict[str, int] = field(default_factory=dict)  # how many readings so far
+    taken: dict[str, int] = field(default_factory=dict)  # number of readings so far, by sensor
 
     def run(self) -> None:
         for name, is_yes_no in self.program.variables.items():
@@ -101,7 +102,7 @@ class Robot:
         self.taken[name] = count + 1
         raw = values[min(count, len(values) - 1)]
         self.kept[name] = bool(raw) if device.is_yes_no else raw
-        self.note(f"READ {name} {written(self.kept[name])}")
+        self.note(f"READ {name} {print_value(self.kept[name])}")
 
     # Statements
 
@@ -119,7 +120,7 @@ class Robot:
             if word == "=":
                 (self.own if "." in statement.name else self.variables)[statement.name] = value
             elif word == "SHOW":
-                self.note(f"SHOW {written(value)}")
+                self.note(f"SHOW {print_value(value)}")
             else:
                 self.set(statement.name, value)
 
@@ -133,7 +134,7 @@ class Robot:
             speed = self.kit.speed if statement.unit == "CM" else self.kit.turn
             if way > 0 and power == 0:
                 raise Fault("NO_POWER")
-            values[0] = fits(divided(1000 * way * 100, speed * power)) if way > 0 else 0
+            values[0] = fits(divide(1000 * way * 100, speed * power)) if way > 0 else 0
         return values
 
     def set(self, name: str, value: Value) -> None:
@@ -141,7 +142,7 @@ class Robot:
         device = next(device for device in self.kit.actuators if device.name == name)
         if not device.is_yes_no:
             value = within(1000 * whole(value), device.low, device.high)
-        self.note(f"SET {name} {written(value)}")
+        self.note(f"SET {name} {print_value(value)}")
 
     # Values
 
@@ -163,7 +164,7 @@ class Robot:
             return first  # the right side is not evaluated
         values = [first, *map(self.value, expression.parts[1:])]
         if operator == "RANDOM":
-            self.state = stepped(self.state)
+            self.state = next_state(self.state)
             return random_between(values[0], values[1], self.state)
-        result = calculated(NAMES[operator], *values)
+        result = calculate(NAMES[operator], *values)
         return bool(result) if expression.is_yes_no else result

@@ -30,7 +30,7 @@ class Operand(NamedTuple):
 
     @property
     def is_distance(self) -> bool:
-        """Whether it says where to jump."""
+        """Return whether it is the distance of a jump."""
         return self.kind in ("fwd8", "fwd16", "back8", "back16")
 
 
@@ -52,7 +52,7 @@ class Instruction(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many bytes it has, its opcode included."""
+        """Return the number of its bytes, including the opcode."""
         return self.code_size + sum(operand.size for operand in self.operands)
 
     def read(self, code: bytes, at: int) -> list[tuple[Operand, int]]:
@@ -65,12 +65,12 @@ class Instruction(NamedTuple):
         return operands
 
     def values(self, code: bytes, at: int) -> list[int]:
-        """Return what is no distance of a jump: implied, or read."""
+        """Return the values except distances of jumps: implied, or read."""
         read = [value for operand, value in self.read(code, at) if not operand.is_distance]
         return [value for _, value in self.implied] + read
 
     def target(self, code: bytes, at: int) -> int:
-        """Return where it jumps, or the next offset."""
+        """Return the target of a jump, or the next offset."""
         after = at + self.size
         distances = [part for part in self.read(code, at) if part[0].is_distance]
         return after + sum(-v if operand.kind[:4] == "back" else v for operand, v in distances)
@@ -88,7 +88,7 @@ def rows(name: str) -> list[list[str]]:
 
 @lru_cache(maxsize=1)
 def instructions() -> dict[int, Instruction]:
-    """Return what the page says of each opcode."""
+    """Return the specification of each opcode."""
     kinds = {}
     for kind, size, bounds, *_ in rows("operands"):
         low, high = bounds.split(" to ")
@@ -124,12 +124,12 @@ def code_at(code: bytes, at: int) -> int:
 
 
 def instruction_at(code: bytes, at: int) -> Instruction:
-    """Return what the page says of the instruction there."""
+    """Return the specification of the instruction there."""
     return instructions()[code_at(code, at)]
 
 
 @lru_cache(maxsize=1024)
-def decoded(code: bytes, at: int) -> tuple[Instruction, list[int], int, int]:
+def decode(code: bytes, at: int) -> tuple[Instruction, list[int], int, int]:
     """Return the instruction there, its values, where the next one begins, and where it jumps."""
     row = instruction_at(code, at)
     return row, row.values(code, at), at + row.size, row.target(code, at)
@@ -141,7 +141,7 @@ def _halves(word: str) -> tuple[str, str]:
 
 
 def versions() -> dict[tuple[int, int], tuple[set[str], tuple[int, ...]]]:
-    """Return what each version adds: names of instructions, and bits of `needs`."""
+    """Return the additions of each version: names of instructions, and bits of `needs`."""
     table = {}
     for number, names, bits in rows("versions"):
         major, minor = map(int, number.split("."))

@@ -23,7 +23,7 @@ class TaskAuthor:
         self.ways = ways  # some moves go by centimetres or degrees
         self.lines: list[str] = ["A = 0;N = 0"]
         self.defs: dict[str, list[str]] = {}  # the names of the values of each
-        self.own: list[str] = []  # those of the DEF that is being written
+        self.own: list[str] = []  # names of the DEF being written
         self.loops = 0
 
     def program(self) -> str:
@@ -36,7 +36,7 @@ class TaskAuthor:
             self.body(rng.randint(1, 2), DEPTH - 1)
             self.lines.append("END_DEF")
             self.defs[name], self.own = self.own, []
-            if YES_NO in self.defs[name]:  # the first call says what it is
+            if YES_NO in self.defs[name]:  # the first call determines its kind
                 self.lines += ["IF(FALSE)", self.call(name), "ENDIF"]
         tasks = rng.randint(1, MOST_TASKS)
         before = sorted(rng.randint(0, 3) for _ in range(tasks))
@@ -233,7 +233,7 @@ class SharedAuthor(TaskAuthor):
                 self.lines.append(f"SHOW({rng.choice(self.own)})")
             self.lines.append("END_DEF")
             self.defs[name], self.own = self.own, []
-            if YES_NO in self.defs[name]:  # the first call says what it is
+            if YES_NO in self.defs[name]:  # the first call determines its kind
                 self.lines += ["IF(FALSE)", self.call(name), "ENDIF"]
         for _ in range(rng.choice((1, 1, 2, 2, 3, 4))):
             self.task()

@@ -1,4 +1,4 @@
-"""How the instructions of a program follow each other, in one task or in several.
+"""The sequence of a program's instructions, in one task or in several.
 
 Written from the language reference, section "Tasks" too, and from nothing of the compiler or the
 machine: there a task is a record, here it is a generator that gives its place away whenever it has
@@ -16,7 +16,7 @@ from tests.oracle.ast import Do, If, Loop, Statement, Task, Value, While
 from tests.oracle.robot import Break, Ending, Robot
 from tests.oracle.words import ACTS, MOVES
 
-Turns = Generator[None, None, None]  # it gives its place away with `yield`
+Turns = Generator[None, None, None]  # a task gives up its turn with `yield`
 Powers = tuple[int, int]
 IsSlow = Callable[[str, int], bool]  # whether a sensor is not ready at a time
 LATE = 20  # more than this, and a task's clock does not catch up
@@ -30,18 +30,18 @@ def always_ready(name: str, now: int) -> bool:
 
 @dataclass(eq=False)
 class Runner:
-    """One task that runs. `due` is when its next turn is, None while it waits for the motors."""
+    """A running task. `due` is the time of its next turn, None while it waits for the motors."""
 
     rank: int
     is_when: bool
     clock: int = 0
     due: int | None = 0
     turns: Turns | None = None
-    waited: bool = False  # since it last went back to the start of a loop
-    # what it has to do with the motors
+    waited: bool = False  # whether it has waited since its loop last restarted
+    # The task's relation to the motors.
     m: Powers | None = None
     moving: bool = False
-    driving_until: int | None = None  # its move drives, to this time
+    driving_until: int | None = None  # time at which its move ends
     driving_forever: bool = False
     insists: bool = False  # a WHEN, until a look finds FALSE
     robbed_at: int | None = None  # a higher task has taken the motors then
@@ -50,17 +50,17 @@ class Runner:
 
     @property
     def wants(self) -> bool:
-        """Whether it wants the motors."""
+        """Return whether it wants the motors."""
         return self.moving or self.m is not None or self.insists
 
     @property
     def is_interrupted(self) -> bool:
-        """Whether its move has lost the motors, or an S has ended it."""
+        """Return whether its move has lost the motors, or an S has ended it."""
         return self.was_stopped or self.robbed_at is not None
 
     @property
     def drives(self) -> bool:
-        """Whether its move turns the wheels."""
+        """Return whether its move turns the wheels."""
         return self.driving_forever or self.driving_until is not None
 
 
@@ -69,12 +69,12 @@ class TaskRobot(Robot):
     """A robot that does several things at once."""
 
     runners: list[Runner] = field(default_factory=list)
-    who: Runner = field(default_factory=lambda: Runner(0, False))  # has its turn
-    owner: Runner | None = None  # of the motors
+    who: Runner = field(default_factory=lambda: Runner(0, False))  # the runner whose turn it is
+    owner: Runner | None = None  # owner of the motors
     wheels: Powers = (0, 0)
-    is_first_round: bool = True  # after the main task's first turn
+    is_first_round: bool = True  # whether this is the round after the main task's first turn
     is_slow: IsSlow = always_ready
-    every_ms: int = 1  # it goes on at multiples of this
+    every_ms: int = 1  # it resumes at multiples of this time
     was_slow: bool = False  # a reading was not ready in this round
 
     @property
@@ -194,7 +194,7 @@ class TaskRobot(Robot):
             yield
 
     def back_to_start(self) -> Turns:
-        """What going back to the start of a loop takes: a millisecond where there are tasks."""
+        """Return to the start of a loop, which takes a millisecond if there are tasks."""
         me = self.who
         self.step()
         if not me.waited and self.program.tasks:
@@ -212,7 +212,7 @@ class TaskRobot(Robot):
 
     @property
     def is_outranked(self) -> bool:
-        """Whether a higher task has the motors."""
+        """Return whether a higher task has the motors."""
         return self.owner is not None and self.owner.rank < self.who.rank
 
     def seize(self) -> None:
@@ -220,18 +220,18 @@ class TaskRobot(Robot):
         loser = self.owner
         if loser is not None and loser is not self.who and loser.drives:
             if loser.driving_until is not None and loser.driving_until <= self.now:
-                loser.moving = False  # it is over
+                loser.moving = False  # the move is over
                 loser.m = None
             else:
                 loser.due = None
             loser.robbed_at = self.now
-            loser.driving_until, loser.driving_forever = None, False  # it stands still
+            loser.driving_until, loser.driving_forever = None, False  # the robot stands still
         self.owner = self.who
 
     # -- statements ---------------------------------------------------------------------------
 
     def watching(self, task: Task) -> Turns:
-        """A WHEN: looks for ever."""
+        """A WHEN: looks forever."""
         assert task.condition is not None
         me = self.who
         while True:
@@ -328,7 +328,7 @@ class TaskRobot(Robot):
                 owner.moving = False
                 owner.was_stopped = True
                 owner.due = self.now
-                # it drives no more, so nobody can take the motors from it
+                # Its move has ended, so nobody can take the motors from it.
                 owner.driving_until, owner.driving_forever = None, False
         if me.is_when:
             self.seize()
@@ -359,12 +359,12 @@ class TaskRobot(Robot):
                 me.moving = False
                 return
             if self.is_outranked:
-                continue  # they have been taken while it looked
+                continue  # the motors were lost while it looked
             me.m, me.moving, me.insists = None, True, me.is_when
             self.seize()
             self.motors(*powers)
             self.begin()
-            started = me.clock
+            started_count = me.clock
             yield from self.driving(statement, time_left)
             if me.was_stopped:
                 me.was_stopped = False
@@ -374,7 +374,7 @@ class TaskRobot(Robot):
                 me.robbed_at = None
                 return
             if time_left is not None:
-                time_left -= me.robbed_at - started
+                time_left -= me.robbed_at - started_count
             me.robbed_at = None
             me.clock = self.now
 

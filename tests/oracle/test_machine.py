@@ -13,7 +13,7 @@ import pytest
 from tests.machines import Senses
 from tests.machines.python import run_python
 from tests.oracle import machine, programs
-from tests.support.campaign import wanted
+from tests.support.campaign import make_options
 from tests.support.cpp_checks import check_round, python_verdict, run_late
 from tests.support.images import image_for
 from tests.support.kits import KITS
@@ -45,7 +45,7 @@ def assert_same_trace(code: bytes, number: int, readings: dict[str, list[int]], 
 def codes(seed: int, count: int) -> Iterator[tuple[bytes, int, dict[str, list[int]], int]]:
     """Yield random programs and random code that is accepted, each with a robot's readings."""
     rng = random.Random(seed)
-    damaged = random_codes(seed, 10**9)
+    damaged_bytes = random_codes(seed, 10**9)
     for number in range(count):
         which = number % 2
         theirs, kit = KITS[which]
@@ -53,7 +53,7 @@ def codes(seed: int, count: int) -> Iterator[tuple[bytes, int, dict[str, list[in
         if rng.random() < 0.5:
             code = compile_text(programs.program(rng, theirs), kit).code
         else:
-            code = next(code for code in damaged if python_verdict(code, *sizes) == (0, 0))
+            code = next(code for code in damaged_bytes if python_verdict(code, *sizes) == (0, 0))
         yield code, which, dict(programs.senses(rng, theirs)), rng.randrange(1, 2**32)
 
 
@@ -71,7 +71,7 @@ def test_random_numbers(seed: int) -> None:
 
 
 def test_late_calls() -> None:
-    """From 0 to 40 ms: up to 20 of them a program's own clock catches up."""
+    """Delays from 0 to 40 ms, of which a program's own clock makes up 20."""
     lines = 0
     late_ms = [waited * 7 % 41 for waited in range(1, MAX_STEPS)]
     for code, number, readings, seed in codes(2, 500):
@@ -79,7 +79,13 @@ def test_late_calls() -> None:
         senses = Senses(readings, MAX_MS, seed=seed)
         ours = run_late(image_for(code, kit), kit, senses, late_ms).splitlines()
         trace = machine.trace(
-            code, theirs, readings, MAX_MS, seed, MAX_STEPS, lambda waited, _: late_ms[waited - 1]
+            code,
+            theirs,
+            readings,
+            MAX_MS,
+            seed,
+            MAX_STEPS,
+            lambda waited_ms, _: late_ms[waited_ms - 1],
         ).splitlines()
         assert trace[: len(ours)] == ours or trace[:-1] == ours[: len(trace) - 1], code.hex(" ")
         lines += min(len(ours), len(trace) - 1)
@@ -101,6 +107,6 @@ def test_a_watched_move_may_last_longer_than_the_clock() -> None:
 
 
 if __name__ == "__main__":
-    given = wanted(10_000, 5000)
-    for one in codes(given.seed, given.count):
+    options = make_options(10_000, 5000)
+    for one in codes(options.seed, options.count):
         assert_same_trace(*one)

@@ -20,7 +20,7 @@ def test_random_programs(monkeypatch: pytest.MonkeyPatch) -> None:
     def watch(name: str) -> None:
         does = getattr(TaskRobot, name)
 
-        def watched(self: TaskRobot, statement: Statement) -> Turns:
+        def watch_statement(self: TaskRobot, statement: Statement) -> Turns:
             word = statement.word if isinstance(statement, Do) else type(statement).__name__.upper()
             words_used.add(
                 f"{word} UNTIL" if isinstance(statement, Do) and statement.until else word
@@ -28,7 +28,7 @@ def test_random_programs(monkeypatch: pytest.MonkeyPatch) -> None:
             turns: Turns = does(self, statement)
             return turns
 
-        monkeypatch.setattr(TaskRobot, name, watched)
+        monkeypatch.setattr(TaskRobot, name, watch_statement)
 
     for name in ("doing", "choosing", "repeating"):
         watch(name)

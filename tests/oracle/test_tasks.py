@@ -13,7 +13,7 @@ import pytest
 
 from tests.machines import MACHINES
 from tests.oracle.interpreter import Mistake, run
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.rows import each_row
 from tests.support.task_agreement import KIT, compare_task_program
 from tiniscript import compile_text
@@ -84,7 +84,7 @@ def test_what_both_take(text: str) -> None:
 
 
 def test_programs_without_tasks_say_the_version_without_them() -> None:
-    """And those with one say the next, and what they need."""
+    """Programs with a task need the next version, and its feature."""
     with_tasks, without = (
         compile_text(text, KIT).image for text in ("TASK;END_TASK;F(1, 50)", "F(1, 50)")
     )
@@ -94,4 +94,4 @@ def test_programs_without_tasks_say_the_version_without_them() -> None:
 
 if __name__ == "__main__":
     both = [MACHINES[name] for name in ("python", "host")]
-    each_seed(partial(compare_task_program, machines=both), wanted(100_000, 0))
+    each_seed(partial(compare_task_program, machines=both), make_options(100_000, 0))

@@ -17,7 +17,7 @@ from tests.machines import MACHINES, Machine, Senses
 from tests.machines.python import run_python
 from tests.oracle.interpreter import PAPER_KIT, Mistake, run
 from tests.oracle.task_programs import shared_program
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tiniscript import compile_text, robots
 from tiniscript.base.source import Source
 from tiniscript.syntax.formatter import format_source
@@ -25,25 +25,25 @@ from tiniscript.syntax.formatter import format_source
 KIT = robots.load("tinibot").kit
 MAX_MS = 300
 BATCH = 50
-WHOLE_IN = 4  # of so many programs one is compiled without the optimiser, and formatted, too
+WHOLE_IN = 4  # one in so many programs is also compiled without the optimizer and formatted
 
 
 def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str:
     """Compare the traces of one random program on some machines; return how it ended."""
     rng = random.Random(seed)
     text, readings = shared_program(rng)
-    compiled = compile_text(text, KIT)
+    compilation = compile_text(text, KIT)
     try:
         want = run(text, PAPER_KIT, readings, MAX_MS)
-    except Mistake:  # called too deep, or more copies than a machine takes
-        assert not compiled.is_right, f"seed {seed}, the oracle refuses:\n{text}"
+    except Mistake:  # calls too deep, or more copies than a machine accepts
+        assert not compilation.is_right, f"seed {seed}, the oracle refuses:\n{text}"
         return "refused"
-    assert compiled.is_right, f"seed {seed}, the oracle accepts:\n{text}"
-    images = [compiled.image]
+    assert compilation.is_right, f"seed {seed}, the oracle accepts:\n{text}"
+    images = [compilation.image]
     if seed % WHOLE_IN == 0:
         images.append(compile_text(text, KIT, optimize=False).image)
         laid_out = format_source(Source(text))
-        assert compile_text(laid_out, KIT).image == compiled.image, f"seed {seed}, formatted"
+        assert compile_text(laid_out, KIT).image == compilation.image, f"seed {seed}, formatted"
     for image in dict.fromkeys(images):
         for machine in machines:
             actual = machine(image, KIT, Senses(readings, MAX_MS))
@@ -60,4 +60,4 @@ def test_random_programs(first: int) -> None:
 
 if __name__ == "__main__":
     both = [MACHINES[name] for name in ("python", "host")]
-    each_seed(partial(check_program, machines=both), wanted(100_000, 0))
+    each_seed(partial(check_program, machines=both), make_options(100_000, 0))

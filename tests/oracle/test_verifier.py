@@ -16,7 +16,7 @@ import pytest
 
 from tests.machines.host import host, missing
 from tests.oracle import spec_tables, verifier
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.casefile import ROOT, Case, all_cases
 from tests.support.cpp_checks import python_verdict
 from tests.support.random_codes import random_codes, task_codes
@@ -54,7 +54,7 @@ def compare(codes: Iterable[bytes], sensors: int = SENSORS, actuators: int = ACT
     if not missing():
         theirs = host().verdicts(codes, sensors, actuators)
         for code, verdict, (rule, offset) in zip(codes, without, theirs, strict=True):
-            ours = rule, offset if rule else 0  # of accepted code, the offset is its length
+            ours = rule, offset if rule else 0  # for accepted code, the offset is its length
             assert ours == verdict, f"{code.hex(' ')}: C++ says {ours}, the page {verdict}"
     return {rule for rule, _ in own_verdicts}
 
@@ -64,13 +64,15 @@ def every_program() -> list[bytes]:
     """Return the code of all programs in cases and documents that compile for the usual robot."""
     kit = load(DEFAULT).kit
     texts = [case.parts["tiniscript"] for case in all_cases() if "tiniscript" in case.parts]
-    compiled = [compile_text(text, kit) for text in texts]
+    compiled_compilations = [compile_text(text, kit) for text in texts]
     return [
-        compilation.code for compilation in compiled if compilation.is_right and compilation.code
+        compilation.code
+        for compilation in compiled_compilations
+        if compilation.is_right and compilation.code
     ]
 
 
-def damaged(programs: list[bytes], seed: int, count: int) -> Iterator[bytes]:
+def damage_programs(programs: list[bytes], seed: int, count: int) -> Iterator[bytes]:
     """Yield programs with one to three bytes that are changed, lost, doubled or cut off."""
     rng = random.Random(seed)
     for _ in range(count):
@@ -134,7 +136,7 @@ def test_damaged_programs() -> None:
     programs = every_program()
     assert len(programs) > 100
     assert compare(programs) == {0}
-    assert len(compare(damaged(programs, 1, 5000))) > 15
+    assert len(compare(damage_programs(programs, 1, 5000))) > 15
 
 
 def test_the_steps_name_every_rule_and_every_role() -> None:
@@ -155,7 +157,7 @@ def test_code_may_be_as_long_as_the_limit() -> None:
 
 
 def test_no_device_has_a_number_above_31() -> None:
-    """Whoever says that a kit has more hears it before code runs: a machine keeps 32 readings."""
+    """A kit with more is refused before code runs: a machine keeps 32 readings."""
     codes = {name: code for code, row in spec_tables.instructions().items() for name in [row.name]}
     for many in (32, 33, 255):
         for name, number in (("READ", 31), ("READ", 32), ("PUSH_SENSOR", 32), ("PUSH_READ", 255)):
@@ -172,14 +174,14 @@ CHECKS = ("spec_tables", "verifier", "arithmetic", "machine")
 @each_row("name", [*READS, *CHECKS])
 def test_it_knows_nothing_of_the_package(name: str) -> None:
     text = (ROOT / "tests" / "oracle" / f"{name}.py").read_text(encoding="utf-8")
-    imported = {
+    imported_modules = {
         alias.name if isinstance(node, ast.Import) else str(node.module)
         for node in ast.walk(ast.parse(text))
         if isinstance(node, (ast.Import, ast.ImportFrom))
         for alias in node.names
     }
-    assert not {module for module in imported if module.startswith("tiniscript")}
-    others = {module for module in imported if module.startswith("tests")}
+    assert not {module for module in imported_modules if module.startswith("tiniscript")}
+    others = {module for module in imported_modules if module.startswith("tests")}
     upstream = ("spec_tables", "arithmetic", "words") if name in CHECKS else (*READS, "arithmetic")
     assert others <= {f"tests.oracle.{module}" for module in upstream}
 
@@ -192,11 +194,11 @@ BATCH = 10_000
 
 def check_batch(seed: int) -> int:
     """Compare two batches; return how many rules they break."""
-    codes = (*random_codes(seed, BATCH), *damaged(every_program(), seed, BATCH))
+    codes = (*random_codes(seed, BATCH), *damage_programs(every_program(), seed, BATCH))
     return len(compare(codes) - {0})
 
 
 if __name__ == "__main__":
-    given = wanted(100_000, 2000)
-    given.count = -(-given.count // (2 * BATCH))
-    each_seed(check_batch, given)
+    options = make_options(100_000, 2000)
+    options.count = -(-options.count // (2 * BATCH))
+    each_seed(check_batch, options)

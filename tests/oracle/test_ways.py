@@ -16,7 +16,7 @@ from tests.machines import MACHINES, Machine, Senses
 from tests.machines.python import run_python
 from tests.oracle import machine, programs
 from tests.oracle.interpreter import PAPER_KIT, Kit, Mistake, run
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.kits import KITS
 from tests.support.random_programs import MAX_MS, MAX_STEPS
 from tests.support.rows import each_row
@@ -136,7 +136,7 @@ def test_a_robot_whose_speed_is_not_known_has_no_such_moves() -> None:
 
 
 @each_row(
-    "text, code, shown",
+    "text, code, shown_text",
     [
         ("R(20, 60)", "TS811", "R(20 DEG, 60)"),
         ("L(90, 60)", "TS811", "L(90 DEG, 60)"),
@@ -149,10 +149,12 @@ def test_a_robot_whose_speed_is_not_known_has_no_such_moves() -> None:
         ("F(200 CM, 60);IF(DISTANCE < 9);S;ENDIF", "", ""),
     ],
 )
-def test_what_is_advised(text: str, code: str, shown: str) -> None:
+def test_what_is_advised(text: str, code: str, shown_text: str) -> None:
     diagnostics = compile_text(text, KITS[0][1]).diagnostics
     assert [diagnostic.code.number for diagnostic in diagnostics] == [code] * bool(code)
-    assert [diagnostic.values.get("way", "") for diagnostic in diagnostics] == [shown] * bool(code)
+    assert [diagnostic.values.get("way", "") for diagnostic in diagnostics] == [shown_text] * bool(
+        code
+    )
 
 
 def test_degrees_are_only_shown_where_the_robot_has_them() -> None:
@@ -168,4 +170,4 @@ def either(seed: int) -> str:
 
 
 if __name__ == "__main__":
-    each_seed(either, wanted(100_000, 0))
+    each_seed(either, make_options(100_000, 0))

@@ -60,7 +60,8 @@ class Parser(ExpressionParser):
         if self.token.kind != "end":
             self.fail(f"{self.token.text} without its beginning")
         facts: dict[str, Facts] = {}
-        for name, body in self.defs.items():  # in the order of the text: calls only look back
+        # In the order of the text, because calls only refer backwards.
+        for name, body in self.defs.items():
             facts[name] = self.settle(body, facts)
         together = [self.settle(main, facts)]
         for task in self.tasks:
@@ -78,12 +79,12 @@ class Parser(ExpressionParser):
 
     def settle(self, body: list[Statement], defs: Mapping[str, Facts]) -> Facts:
         """Settles the readings of the program or of a DEF and checks its depths."""
-        nested, called = depths(body, defs)
-        if nested > MAX_NESTING:
+        nesting_depth, call_depth = depths(body, defs)
+        if nesting_depth > MAX_NESTING:
             self.fail("blocks nested too deep")
-        if called > MAX_CALLS:
+        if call_depth > MAX_CALLS:
             self.fail("DEFs called too deep")
-        return Facts(nested, called, settle_readings(body, frozenset(), defs))
+        return Facts(nesting_depth, call_depth, settle_readings(body, frozenset(), defs))
 
     def ping(self) -> None:
         """PING|check_connection has nothing else but empty instructions."""
@@ -121,7 +122,7 @@ class Parser(ExpressionParser):
         return body
 
     def instruction(self) -> Statement | None:
-        """One instruction, with its block if it has one; None for START and DEF."""
+        """Return one instruction, with its block if it has one; None for START and DEF."""
         if self.token.kind != "word":
             self.fail(f"an instruction cannot begin with {self.token.text!r}")
         word = self.token.text
@@ -144,14 +145,14 @@ class Parser(ExpressionParser):
             return Do("S")
         if word == "SHOW":
             (value,) = self.arguments(1)
-            return self.checked(Do("SHOW", arguments=(value,)))
+            return self.check_stack(Do("SHOW", arguments=(value,)))
         if word == "BREAK":
             if self.loops == 0:
                 self.fail("BREAK outside a loop")
             return Do("BREAK")
         if word in RESERVED:
             self.fail(f"{word} cannot begin an instruction")
-        return self.named(word)
+        return self.parse_named(word)
 
     def definition(self) -> None:
         """DEF NAME … END_DEF: at the top level only; its name is callable after END_DEF."""
@@ -253,24 +254,24 @@ class Parser(ExpressionParser):
         has_tasks = any(token.text in TASK_WORDS for token in self.tokens)
         if arguments[0] is None and until is None and not has_tasks:
             self.fail("FOREVER needs UNTIL")
-        return self.checked(Do(word, arguments=arguments, until=until, unit=unit))
+        return self.check_stack(Do(word, arguments=arguments, until=until, unit=unit))
 
-    def named(self, name: str) -> Do:
+    def parse_named(self, name: str) -> Do:
         """An instruction that begins with a name: assignment, reading, call or actuator."""
         if self.accept("="):
             if name in (*self.sensors, *self.actuators, *self.defs, self.open_def):
                 self.fail(f"{name} is not a variable")
-            # The expression comes first: it may not use the variable that begins here.
+            # The expression comes first, because it may not use the new variable.
             value = self.expression()
             if name in self.own:
                 if self.own[name] != value.is_yes_no:
                     self.fail(f"{name} has the other kind")
-                return self.checked(Do("=", f"{self.open_def}.{name}", (value,)))
+                return self.check_stack(Do("=", f"{self.open_def}.{name}", (value,)))
             if self.variables.setdefault(name, value.is_yes_no) != value.is_yes_no:
                 self.fail(f"{name} has the other kind")
             if len(self.variables) > MAX_VARIABLES:
                 self.fail("too many variables")
-            return self.checked(Do("=", name, (value,)))
+            return self.check_stack(Do("=", name, (value,)))
         if name in self.actuators:
             device = self.actuators[name]
             (argument,) = self.arguments(1)
@@ -279,7 +280,7 @@ class Parser(ExpressionParser):
             else:
                 self.want_number(argument)
                 self.want_range(argument, device.low, device.high)
-            return self.checked(Do("SET", name, (argument,)))
+            return self.check_stack(Do("SET", name, (argument,)))
         if name in self.sensors:
             return Do("READ", name)
         if name in self.defs:
@@ -296,10 +297,10 @@ class Parser(ExpressionParser):
             assert argument is not None
             if argument.is_yes_no != self.text.is_yes_no(value, its):
                 self.fail(f"{value} has the other kind")
-        return self.checked(Do("CALL", name, arguments))
+        return self.check_stack(Do("CALL", name, arguments))
 
-    def checked(self, statement: Do) -> Do:
-        """The same instruction, if the stack holds its values."""
+    def check_stack(self, statement: Do) -> Do:
+        """Return the instruction if the stack holds its values."""
         self.want_stack(statement.arguments)
         return statement
 

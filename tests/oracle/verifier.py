@@ -63,10 +63,10 @@ def program(text: str) -> dict[str, Any]:
 
 
 def verdict(
-    code: bytes, sensors: int, actuators: int, needs: int = 0xFF, changed: str = ""
+    code: bytes, sensors: int, actuators: int, needs: int = 0xFF, changed_text: str = ""
 ) -> Verdict:
     """Return the first rule that is broken, and where; (0, 0) if none is."""
-    names = program(changed or text())
+    names = program(changed_text or text())
     try:
         names["verify"](code, sensors, actuators, needs)
     except Broken as broken:

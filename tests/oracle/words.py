@@ -1,4 +1,6 @@
-"""What a robot may have, and the words and limits of the language. Independent of the compiler."""
+"""The equipment of a robot, and the words and limits of the language, independent of the
+compiler.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,7 @@ MOST_BESIDE_REMOTE = 8  # sensors of a kit
 
 
 class Kit(NamedTuple):
-    """What a robot has, and how fast it is: thousandths of cm and of degrees in a second."""
+    """The equipment of a robot, and its speed in thousandths of cm and of degrees per second."""
 
     sensors: tuple[Device, ...]
     actuators: tuple[Device, ...]
@@ -43,7 +45,7 @@ class Kit(NamedTuple):
 
     @property
     def readings(self) -> tuple[Device, ...]:
-        """The sensors, and where there is room what a remote control says, by their numbers."""
+        """Return the sensors, and the remote control if there is room, by their numbers."""
         has_room = self.has_remote and len(self.sensors) <= MOST_BESIDE_REMOTE
         return self.sensors + (REMOTE if has_room else ())
 
@@ -70,7 +72,7 @@ MAX_VARIABLES = 32
 MAX_NESTING = 16
 MAX_STACK = 16
 MAX_DEFS = 16
-MAX_VALUES = 4  # of a DEF
+MAX_VALUES = 4  # most parameters of a DEF
 MAX_CALLS = 8
 MAX_TASKS = 4
 
@@ -93,7 +95,7 @@ BLOCK_WORDS = (
 )  # fmt: skip
 TASK_WORDS = ("TASK", "WHEN")
 LATER_WORDS = ("SEND",)
-UNITS = {"F": "CM", "B": "CM", "L": "DEG", "R": "DEG"}  # of a way in the place of a time
+UNITS = {"F": "CM", "B": "CM", "L": "DEG", "R": "DEG"}  # unit of a distance that replaces a time
 
 TIME = (0, HIGHEST)
 _POWER = (0, 100_000)
@@ -110,15 +112,17 @@ class Act(NamedTuple):
     note: str
     waits: bool
 
-    def values(self, given: Iterable[int]) -> list[int]:
-        """Return what the robot is told: milliseconds of a time, and whole numbers in range."""
+    def values(self, arguments: Iterable[int]) -> list[int]:
+        """Return the values sent to the robot: milliseconds for a time, and whole numbers in
+        range.
+        """
         return [
             max(0, value) if limits == TIME else within(whole(value), *(n // 1000 for n in limits))
-            for limits, value in zip(self.ranges, given, strict=True)
+            for limits, value in zip(self.ranges, arguments, strict=True)
         ]
 
 
-# The references say what each does: `docs/en/language.md`, and of its bytes `bytecode_spec.md`.
+# The references define each: `docs/en/language.md`, and for the bytes `bytecode_spec.md`.
 ACTS = {"BEEP": Act((TIME, (31_000, 20_000_000)), "BEEP {1} {0}", waits=True)}
 
 # Instructions with arguments in parentheses, and the range of each argument.

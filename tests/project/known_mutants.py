@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 
 class Known(NamedTuple):
-    """In a file the only place with `original` becomes something else; `test` then fails."""
+    """A mutant that replaces the only occurrence of `original` in a file; `test` then fails."""
 
     missing: str
     file: str

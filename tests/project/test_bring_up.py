@@ -37,7 +37,7 @@ def board(request: pytest.FixtureRequest) -> Iterator[PtyRobot]:
 
 
 def steps(path: Path) -> dict[str, tuple[str, str]]:
-    """Return what to do and what must be seen in each step, by its name."""
+    """Return the action and the expected observation of each step, by its name."""
     rows = re.findall(r"^\| \d+ \| (.+?) \| (.+?) \| (.+?) \|$", path.read_text("utf-8"), re.M)
     return {name: (do, expected) for name, do, expected in rows}
 
@@ -87,8 +87,8 @@ def test_who_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
     assert form[2:4] == ["robot: none responded", f"1. It responds: {BLANK_FIELD}"]
 
 
-@pytest.mark.parametrize("before", ["", "(\n"])
-def test_the_typed_stop_of_the_list(board: PtyRobot, before: str) -> None:
+@pytest.mark.parametrize("text_before", ["", "(\n"])
+def test_the_typed_stop_of_the_list(board: PtyRobot, text_before: str) -> None:
     typed = re.findall(r"`([^`]+)`", steps(LISTS["en"])["Typed stop"][0].replace("\\|", "|"))
     start, stop, bracket, second_stop = typed
     assert (bracket, second_stop) == ("(", stop)
@@ -96,7 +96,7 @@ def test_the_typed_stop_of_the_list(board: PtyRobot, before: str) -> None:
     try:
         os.write(port, f"{start}\n".encode())
         board.until(lambda: board.moves, "it drives")
-        os.write(port, f"{before}{stop}\n".encode())
+        os.write(port, f"{text_before}{stop}\n".encode())
         board.until(lambda: not board.moves, "it stands")
         data = b""
         while b"// " not in data:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.support.platformio import firmware, shared
+from tests.support.platformio import firmware, shared_folder
 from tools import uno
 from tools.bench import avr_bench, machine, sizes, sketch_cycles
 from tools.bench.workloads import MOST_CYCLES, WORKS, Work, WrongResult, check, expected_values
@@ -42,7 +42,7 @@ def test_the_shipped_sketch_takes_its_main_loop_more(
     """Its values are right; and the machine runs for so long that the rest costs little."""
     if uno.missing():
         pytest.skip(uno.missing())
-    sketch = firmware("uno", tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
+    sketch = firmware("uno", tmp_path_factory.mktemp("sketch"), shared_folder(tmp_path_factory))
     for work in WORKS:
         short = work._replace(loop_count=2000)
         alone = machine.per_iteration(short)

@@ -34,7 +34,7 @@ OF_AVR = {
     "reader_calls_avr.h",
     "receiver_avr.h",
     "link_avr.h",
-}  # for its compiler alone
+}  # only its compiler uses these
 ASSEMBLY_THAT_CHOOSES = {"bytecode_avr.S"}
 CONDITION = re.compile(r"#\s*(if|ifdef|ifndef|elif|else|endif)\b")
 HEADERS = sorted(path for part in ("src", "extras") for path in (SOURCES / part).rglob("*.h"))
@@ -43,7 +43,7 @@ BOARDS = sorted(
 )
 STRICT = ("-std=c++11", "-pedantic", "-fno-exceptions", "-fno-rtti", *WARNINGS, "-fsyntax-only")
 ALLOWED = {"<stdint.h>", "<stddef.h>", "<avr/pgmspace.h>"}
-ARDUINOS = {"HIGH", "LOW", "OUTPUT"}  # said by a header that is for sketches
+ARDUINOS = {"HIGH", "LOW", "OUTPUT"}  # defined by a header for sketches
 CHIP_OF_THE_CORE = "ARDUINO_ARCH_ESP32"  # defined on the command line, as __AVR__ is for an AVR
 FORBIDDEN = ("virtual", "new", "delete", "throw", "try", "float", "double", "goto", "malloc",
              "dynamic_cast", "typeid", "Arduino", "String")  # fmt: skip
@@ -52,9 +52,9 @@ FORBIDDEN = ("virtual", "new", "delete", "throw", "try", "float", "double", "got
 def shouting(path: Path) -> set[str]:
     """Return the names in capitals."""
     text = code_of(path)
-    shouted = set(re.findall(r"\b[A-Z][A-Z0-9_]*\b", text))
+    macro_names = set(re.findall(r"\b[A-Z][A-Z0-9_]*\b", text))
     arduinos = ARDUINOS if "#include <Arduino.h>" in text else set()
-    return shouted - {CHIP_OF_THE_CORE} - arduinos
+    return macro_names - {CHIP_OF_THE_CORE} - arduinos
 
 
 @each_row("path", FILES)
@@ -66,8 +66,8 @@ def test_nothing_shouts(path: Path) -> None:
 @each_row("path", PORTABLE)
 def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
-    included = re.findall(r"#include (<[^>]+>)", text)
-    assert set(included) <= ALLOWED
+    included_headers = re.findall(r"#include (<[^>]+>)", text)
+    assert set(included_headers) <= ALLOWED
     words = set(re.findall(r"\w+", code_of(path)))
     assert not words & set(FORBIDDEN)
 
@@ -125,12 +125,12 @@ def test_what_exists_in_assembly_too_exists_in_the_files_that_it_names(path: Pat
     twins = [path.parent / name for name in re.findall(r"`([\w/]+\.(?:cpp|h))`", same)]
     twins += [twin for row in twins if (twin := VM / row.name).exists()]
     code = "\n".join(code_of(twin) for twin in twins if twin.exists())
-    defined = set(re.findall(r"\b(\w+)\([^;{}()]*\)(?: const)? \{", code))
+    defined_names = set(re.findall(r"\b(\w+)\([^;{}()]*\)(?: const)? \{", code))
     text = path.read_text(encoding="utf-8")
-    mangled = re.findall(r"(?:\.global|^function) _ZNK?10tiniscript(\d\w+)", text, re.M)
-    names = [names_in(symbol)[-1] for symbol in mangled]
+    mangled_names = re.findall(r"(?:\.global|^function) _ZNK?10tiniscript(\d\w+)", text, re.M)
+    names = [names_in(symbol)[-1] for symbol in mangled_names]
     names += re.findall(r"^starts tiniscript_(\w+)", text, re.M)
-    assert names and set(names) <= defined, {*names} - defined
+    assert names and set(names) <= defined_names, {*names} - defined_names
 
 
 MUST_STAY = {"execute_avr.S", "number_avr.S"}  # the loop and the arithmetic: a factor of four
@@ -144,7 +144,7 @@ def test_what_exists_in_assembly_too_says_what_it_saves_and_when_it_may_go(path:
 
 @each_row("path", BOARDS)
 def test_nothing_on_a_board_waits(path: Path) -> None:
-    """Nor asks the core for what is done here by registers; it defines the clock alone."""
+    """Nothing asks the core for work done here by registers; the core defines the clock alone."""
     waiting = {"delay", "delayMicroseconds", "pulseIn", "_delay_ms", "_delay_us", "Serial", "tone",
                "noTone", "analogRead", "analogWrite", "digitalWrite", "digitalRead", "pinMode",
                "attachInterrupt", "Servo", "new", "malloc"}  # fmt: skip
@@ -156,12 +156,12 @@ def test_each_header_is_read_once(path: Path) -> None:
     assert code_of(path).split()[:2] == ["#pragma", "once"]
 
 
-def names_in(mangled: str) -> list[str]:
+def names_in(mangled_text: str) -> list[str]:
     """Return the names in a name of the linker: `8Receiver5watchEh` has `Receiver` and `watch`."""
     names, at = [], 0
-    while digits := re.match(r"\d+", mangled[at:]):
+    while digits := re.match(r"\d+", mangled_text[at:]):
         at += len(digits[0]) + int(digits[0])
-        names.append(mangled[at - int(digits[0]) : at])
+        names.append(mangled_text[at - int(digits[0]) : at])
     return names
 
 
@@ -169,15 +169,15 @@ def test_what_the_linker_places_by_name_has_that_name() -> None:
     """Else a function that was called otherwise lies somewhere, and its calls take more flash."""
     code = "\n".join(map(code_of, sorted((SOURCES / "src").rglob("*.[chS]*"))))
     order = (SOURCES / "src" / "boards" / "avr" / "order.ld").read_text(encoding="utf-8")
-    mangled = re.findall(r"\*\(\.text\._ZNK?10tiniscript(?:12_GLOBAL__N_1)?(\d\w+)", order)
-    assert len(mangled) > 100
-    for symbol in mangled:
+    mangled_names = re.findall(r"\*\(\.text\._ZNK?10tiniscript(?:12_GLOBAL__N_1)?(\d\w+)", order)
+    assert len(mangled_names) > 100
+    for symbol in mangled_names:
         *outer, name = names_in(symbol)
         places = [code]
         if outer:
             kind = outer[0]
-            begun = rf"(?:class|struct) {kind}\b[^;{{]*\{{.*?\n\}};|\b{kind}::[^;]*?\("
-            places = re.findall(begun, code, re.DOTALL)
+            begun_text = rf"(?:class|struct) {kind}\b[^;{{]*\{{.*?\n\}};|\b{kind}::[^;]*?\("
+            places = re.findall(begun_text, code, re.DOTALL)
         assert any(re.search(rf"\b{name}\b", place) for place in places), symbol
 
 

@@ -34,20 +34,20 @@ def test_no_circle_of_files() -> None:
 
 
 def test_the_road_needs_the_standard_library_alone() -> None:
-    """So that it runs in a browser, and starts fast."""
+    """Therefore it runs in a browser, and starts fast."""
     modules = modules_imported_by(
         "from tiniscript import compile_text, robots; "
         "assert compile_text('SI|F(5,80)', robots.load('tinibot').kit).image"
     )
-    unwanted = {"tomllib", "tomli", "rich", "platformdirs", "serial", "dataclasses",
+    unwanted_modules = {"tomllib", "tomli", "rich", "platformdirs", "serial", "dataclasses",
                 "argparse", "json", "difflib",
                 "tiniscript.diagnostics.rendering", "tiniscript.vm.machine",
                 "tiniscript.recovery", "tiniscript.diagnostics.fixing"}  # fmt: skip
-    assert not unwanted & modules
+    assert not unwanted_modules & modules
 
 
 def test_importing_the_package_imports_nothing_else() -> None:
-    """What the library offers is imported when it is asked for."""
+    """The library imports its parts on demand."""
     modules = {
         name for name in modules_imported_by("import tiniscript") if name.startswith("tiniscript")
     }
@@ -64,7 +64,7 @@ END_LOOP
 WHILE(TRUE); W(1) UNTIL(DISTANCE < SPEED); BREAK; END_WHILE
 LED(TRUE); GRIPPER(90); BEEP(1, 440); M(-5, 5); S
 """
-# And what only wrong ones need.
+# Modules that only wrong programs need.
 OF_WRONG = re.compile(
     r"tiniscript\.(base\.spelling|diagnostics\.(fixing|placing)|recovery"
     r"|semantics\.(wrong_|unknown_|joining)"
@@ -78,7 +78,7 @@ def test_a_right_program_loads_nothing_for_wrong_ones_or_other_verbs(
 ) -> None:
     program = tmp_path / "right.ts"
     program.write_text(RIGHT)
-    for language in languages():  # have what a command asks for made, as in a package
+    for language in languages():  # make the requirements of a command, as in a package
         for name in ("command", "messages"):
             catalogue(name, language)
     modules = modules_imported_by(
@@ -88,21 +88,21 @@ def test_a_right_program_loads_nothing_for_wrong_ones_or_other_verbs(
     own = {module for module in modules if module.startswith("tiniscript")}
     assert not {word for word in own if OF_WRONG.match(word)}
     assert len(own) <= 68
-    unwanted = {"cobs", "serial", "tomllib", "tomli", "rich", "dataclasses",
+    unwanted_modules = {"cobs", "serial", "tomllib", "tomli", "rich", "dataclasses",
                 "tiniscript.link", "tiniscript.base.translations",
                 "tiniscript.vm.machine", "tiniscript.vm.runner", "tiniscript.bytecode.disassembly",
                 "tiniscript.syntax.formatter"}  # fmt: skip
-    if sys.platform == "linux":  # and what only finds the cache
-        unwanted |= {"platformdirs", "tempfile", "shutil", "random"}
-    assert not unwanted & modules
+    if sys.platform == "linux":  # modules that only locate the cache
+        unwanted_modules |= {"platformdirs", "tempfile", "shutil", "random"}
+    assert not unwanted_modules & modules
 
 
 def test_programs_need_no_link() -> None:
     uses = "compile('SI|F(5,80)'), check('SI|F(5,'), run('SI|F(5,80)'), show('SI|F(5,80)')"
     modules = modules_imported_by(f"from tiniscript import check, compile, run, show; {uses}")
-    unwanted = {"serial", "cobs", "wasmtime", "tiniscript.link", "tiniscript.virtual",
+    unwanted_modules = {"serial", "cobs", "wasmtime", "tiniscript.link", "tiniscript.virtual",
                 "tiniscript.cli"}  # fmt: skip
-    assert not unwanted & modules
+    assert not unwanted_modules & modules
 
 
 def test_every_verb_is_there_without_the_extras() -> None:
@@ -147,7 +147,7 @@ def test_the_link_has_no_port_and_no_clock() -> None:
 
 
 def test_a_virtual_robot_without_a_terminal_loads_no_drawing() -> None:
-    """It moves when its thread has begun, and that would wait for it."""
+    """It moves as soon as its thread has begun, and an import would delay it."""
     modules = modules_imported_by(
         "from tiniscript.cli import main; "
         "assert main(['upload', '-e', 'SI|S', '--virtual', '--hurry', 'max']) == 0"
@@ -156,14 +156,14 @@ def test_a_virtual_robot_without_a_terminal_loads_no_drawing() -> None:
 
 
 def test_nothing_that_ctrl_c_may_interrupt_waits_in_python() -> None:
-    """It waits at a Bell: a Condition keeps its lock, or gives it back twice."""
+    """Waits use a Bell: an interrupted Condition keeps its lock, or releases it twice."""
     written_in_python = {"Barrier", "BoundedSemaphore", "Condition", "Event", "Semaphore", "Timer"}
     for stage in ("base", "cli", "doctor", "library", "link", "virtual"):
         for path in (PACKAGE / stage).rglob("*.py"):
-            imported = {
+            imported_modules = {
                 alias.name
                 for node in ast.walk(ast.parse(path.read_text("utf-8")))
                 if isinstance(node, ast.ImportFrom) and node.module == "threading"
                 for alias in node.names
             }
-            assert not imported & written_in_python, path
+            assert not imported_modules & written_in_python, path

@@ -82,10 +82,10 @@ def test_console(
     with redirect_stderr(sys.stdout):  # a terminal shows both in the order of their writing
         main(command.words)
     output = capsys.readouterr().out
-    printed = "\n".join(row.rstrip() for row in output.splitlines() if row.strip())
-    shown = "\n".join(row.rstrip() for row in command.shown.splitlines() if row.strip())
-    if shown:
-        assert printed == shown, f"{command.document.name}:{command.line}"
+    printed_text = "\n".join(row.rstrip() for row in output.splitlines() if row.strip())
+    shown_text = "\n".join(row.rstrip() for row in command.shown.splitlines() if row.strip())
+    if shown_text:
+        assert printed_text == shown_text, f"{command.document.name}:{command.line}"
 
 
 EXAMPLES = [
@@ -165,7 +165,7 @@ FILE_NAME = r"[\w-]+\.(?:py|md|cpp|h|c|S|ini|toml|ts|sh|wasm|ino)"
 
 
 def spans_of(path: Path) -> list[str]:
-    """Return what stands between backquotes, outside of fences."""
+    """Return the texts between backquotes, outside of fences."""
     text = path.read_text(encoding="utf-8")
     if path.suffix == ".md":
         text = re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE)
@@ -176,7 +176,7 @@ def modules_in(path: Path) -> list[str]:
     return re.findall(r"python -m ((?:tools|tests|tiniscript)[\w.]*\w)", path.read_text("utf-8"))
 
 
-# What a command makes in a clone: `.gitignore` has it.
+# Files that commands create in a clone, which `.gitignore` lists.
 BUILT = {"compiler/tiniscript/studio/page/", "tools/studio/node_modules"}
 
 
@@ -190,8 +190,13 @@ def test_files_that_are_named_exist(document: Path) -> None:
 
     `NAME.toml` and `tests/*.py` are no names.
     """
-    known = {path.name for path in (*SOURCES, *ROOT.glob("examples/*.ts"), *ROOT.iterdir())}
-    known |= OTHERS_FILES | {"machine.wasm", "robot.wasm", "robot_mega.wasm", "robot_esp32.wasm"}
+    known_names = {path.name for path in (*SOURCES, *ROOT.glob("examples/*.ts"), *ROOT.iterdir())}
+    known_names |= OTHERS_FILES | {
+        "machine.wasm",
+        "robot.wasm",
+        "robot_mega.wasm",
+        "robot_esp32.wasm",
+    }
     wrong = []
     for span in spans_of(document):
         is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in FOLDERS
@@ -199,14 +204,14 @@ def test_files_that_are_named_exist(document: Path) -> None:
         if is_path and "NAME" not in span and not exists(span):
             wrong.append(span)
         if document.parent == ROOT and re.fullmatch(FILE_NAME, span) and "NAME" not in span:
-            wrong += [] if span in known else [span]
-    if document.name != "CHANGELOG.md":  # it says what was, too
+            wrong += [] if span in known_names else [span]
+    if document.name != "CHANGELOG.md":  # the changelog also describes the past
         assert not wrong, "\n".join(wrong)
 
 
 def test_paths_in_sources_exist() -> None:
     """A path that a docstring or a comment names, as in a document."""
-    names = {path.name for path in SOURCES} | {"serial.py"}  # which a test writes
+    names = {path.name for path in SOURCES} | {"serial.py"}  # a test writes this file
     wrong = []
     for source in SOURCES:
         for span in spans_of(source):
@@ -250,7 +255,7 @@ def test_a_row_of_a_table_has_the_cells_of_its_heading(document: Path) -> None:
 
 
 def test_a_version_of_the_changelog_has_each_heading_once() -> None:
-    """Where two lines of work meet, each with a heading of its own, one of them is left over."""
+    """A merge of two branches with the same heading leaves one of them over."""
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     order = ["Breaking", "Added", "Changed", "Fixed"]
     _, *versions = re.split(r"(?m)^## ", text)
@@ -264,7 +269,7 @@ def test_a_version_of_the_changelog_has_each_heading_once() -> None:
 
 
 def test_modules_that_are_named_exist() -> None:
-    """What `python -m` is to run, in documents, sources and scripts, is a module."""
+    """Modules of `python -m` in documents, sources and scripts exist."""
     paths = [*DOCUMENTS, *SOURCES, *ROOT.glob("tools/*.sh"), *ROOT.glob(".ci/*")]
     named = {(path.name, module) for path in paths for module in modules_in(path)}
     assert ("CONTRIBUTING.md", "tools.generate") in named

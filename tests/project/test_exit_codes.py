@@ -1,4 +1,4 @@
-"""Where a step of `test.sh`, `try.sh`, a release or the generator fails, the whole fails.
+"""If a step of `test.sh`, `try.sh`, a release or the generator fails, so does the whole.
 
 Each step in its turn is one that fails; of the others nothing is there but their name.
 """
@@ -32,7 +32,7 @@ case "$1" in
 esac
 [ "$(grep -Fxc -- "$*" "$HERE/fails")" = 0 ] || exit "${CODE:-3}"
 """
-# A first look at what the tests say again, or at what the next step makes.
+# Previews of the tests' results, or of the next step's output.
 LOOKS = ("-m pytest --collect-only", "-m tools.builds.studio --check", "-m pip --version")
 
 
@@ -53,7 +53,7 @@ def folder_of(tmp_path: Path, *scripts: str) -> Path:
     return clone
 
 
-def ran(clone: Path, words: list[str], fails: str, ci: str) -> tuple[int, list[str]]:
+def run_script(clone: Path, words: list[str], fails: str, ci: str) -> tuple[int, list[str]]:
     """Run a script whose step `fails` does; return its exit code and all steps."""
     (clone / "steps").write_text("")
     (clone / "fails").write_text(f"{fails}\n")
@@ -72,11 +72,11 @@ def test_a_script_fails_where_a_step_of_it_fails(
     words: list[str], least: int, tmp_path: Path
 ) -> None:
     clone = folder_of(tmp_path, "venv.sh", "test.sh", "try.sh")
-    code, steps = ran(clone, words, "", "true")
+    code, steps = run_script(clone, words, "", "true")
     assert code == 0 and len(steps) >= least, steps
     for step in dict.fromkeys(steps):
         if not step.startswith(LOOKS):
-            code, _ = ran(clone, words, step, "true")
+            code, _ = run_script(clone, words, step, "true")
             assert code != 0, f"{step} fails, and nobody notices"
 
 
@@ -96,12 +96,12 @@ def test_without_ci_a_page_that_cannot_be_made_is_no_failure(tmp_path: Path) -> 
 
 @needs_sh
 def test_the_tests_tell_their_processor_time(tmp_path: Path) -> None:
-    """In CI they say, too, that it is more than people wait for."""
+    """In CI they also report when it exceeds the limit."""
     clone = folder_of(tmp_path, "venv.sh", "test.sh")
     for name in ("steps", "fails"):
         (clone / name).write_text("")
     usual = os.environ["PATH"]
-    much = tmp_path / "much" / "awk"  # as if it had counted that
+    much = tmp_path / "much" / "awk"  # a fake awk with a larger count
     much.parent.mkdir()
     much.write_text("#!/bin/sh\necho 24.0\n")
     much.chmod(0o755)
@@ -125,12 +125,12 @@ def test_a_test_that_fails_beside_others_is_tried_alone(
     fails_alone: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clone = folder_of(tmp_path, "venv.sh", "test.sh")
-    _, steps = ran(clone, ["tools/test.sh"], "", "true")
+    _, steps = run_script(clone, ["tools/test.sh"], "", "true")
     beside = next(step for step in steps if step.startswith("-m pytest -n 4"))
     alone = "-m pytest --last-failed --last-failed-no-failures none"
-    monkeypatch.setenv("CODE", "1")  # of pytest where tests fail
+    monkeypatch.setenv("CODE", "1")  # exit code of pytest after failures
     fails = f"{beside}\n{alone}" if fails_alone else beside
-    code, steps = ran(clone, ["tools/test.sh"], fails, "true")
+    code, steps = run_script(clone, ["tools/test.sh"], fails, "true")
     assert alone in steps and bool(code) == fails_alone
 
 

@@ -24,8 +24,8 @@ tools.bench.ways 20 --uno`), and `python -m tests.link.test_typed_stops 1000000`
 
 
 @pytest.fixture
-def ran(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
-    """What it runs, instead of running it: `ways` fails."""
+def commands_run(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
+    """The commands that would be run; `ways` fails."""
     rows: list[list[str]] = []
 
     def run(command: list[str], **_: Any) -> subprocess.CompletedProcess[str]:
@@ -37,18 +37,18 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
 
 
 def test_it_runs_what_the_page_names(
-    ran: list[list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    commands_run: list[list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     monkeypatch.setattr(bench, "PAGE", tmp_path / "figures.md")
     bench.PAGE.write_text(PAGE, encoding="utf-8")
     ways = [["tools.bench.ways"], ["tools.bench.ways", "20", "--uno"]]
     assert bench.main([]) == 1
-    assert ran == [["tools.bench.link"], *ways]
+    assert commands_run == [["tools.bench.link"], *ways]
     assert "not done: ways, ways 20 --uno" in capsys.readouterr().err
-    ran.clear()
+    commands_run.clear()
     assert bench.main(["link"]) == 0
-    assert ran == [["tools.bench.link"]]
+    assert commands_run == [["tools.bench.link"]]
     with pytest.raises(SystemExit):
         bench.main(["sizes"])
 
@@ -60,21 +60,21 @@ def test_all_that_the_page_names_is_there() -> None:
         assert find_spec(f"tools.bench.{name}"), name
 
 
-NO_TABLE = ("code_size",)  # it is one figure in a sentence
+NO_TABLE = ("code_size",)  # the figure is in a sentence, not a table
 FILLED = [name for name in dict.fromkeys(n for n, *_ in bench.commands()) if name not in NO_TABLE]
 
 
 @pytest.mark.parametrize("name", FILLED)
 def test_a_benchmark_fills_in_the_rows_of_its_tables(name: str) -> None:
-    """In their order; what follows those of a table was measured once."""
+    """The rows are in order; the text after a table was measured once."""
     module = import_module(f"tools.bench.{name}")
     known = module.page_rows() if name == "firmware_size" else module.ROWS
     rows = [*(known.values() if isinstance(known, dict) else known)]
     rows += module.OTHER_BOARDS.values() if name == "link" else ()
     tables = page.tables(name)
-    shown = [page.cells(row)[0] for table in tables for row in table.rows]
-    assert shown[: len(rows)] == rows
-    assert len(shown) == len(rows) or name == "machine"
+    shown_texts = [page.cells(row)[0] for table in tables for row in table.rows]
+    assert shown_texts[: len(rows)] == rows
+    assert len(shown_texts) == len(rows) or name == "machine"
 
 
 def test_the_last_row_of_the_history_of_an_uno_is_what_it_takes_now() -> None:

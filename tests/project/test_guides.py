@@ -20,7 +20,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.pty_robot import PtyRobot
-from tests.support.simulated_port import simulated
+from tests.support.simulated_port import simulate
 from tests.support.texts import catalogue_texts as command_texts
 from tiniscript import robots
 from tiniscript.cli import main
@@ -29,19 +29,19 @@ from tiniscript.link.ports import ListedPort
 from tools.site.documents import sources
 
 GUIDES = {value: ROOT / name for value, name in sources(ROOT, "docs/en/monday.md").items()}
-# The robot's port by cable, then by Bluetooth, and what Windows says of them.
+# The robot's port by cable, then by Bluetooth, and the Windows names.
 PORTS = {
     "COM3": "Arduino Uno (COM3)",
     "COM5": "Standard Serial over Bluetooth link (COM5)",
 }
-HAND_MS = 5000  # after which a hand is on the button
+HAND_MS = 5000  # time until the button is pressed
 LIGHT, DISTANCE = 500_000, 42_000  # thousandths
 
 each_guide = pytest.mark.parametrize(("language", "guide"), GUIDES.items(), ids=list(GUIDES))
 
 
 class Step(NamedTuple):
-    """A command and what is shown under it, or a file (`name`) and its `text`.
+    """A command with its output below, or a file (`name`) and its `text`.
 
     `first` and `last` are the rows of the guide that show something.
     """
@@ -70,13 +70,13 @@ def steps(guide: Path) -> list[Step]:
                 text=f"{step_list[-1].text}{row}\n", last=number + 1
             )
         elif not fence:
-            named = re.findall(r"`(\w+\.ts)`", row)
-            name = named[-1] if named else name
+            names = re.findall(r"`(\w+\.ts)`", row)
+            name = names[-1] if names else name
     return step_list
 
 
-def masked(text: str) -> str:
-    """Return what a command prints, without what is different each time."""
+def mask_output(text: str) -> str:
+    """Return the output of a command without its varying parts."""
     rows = [row.rstrip() for row in text.splitlines()]
     for varies in (
         r"\d+\.\d (?=ms)",
@@ -116,19 +116,20 @@ def test_what_a_guide_types_prints_what_it_shows(
             pty_robot.hold(after_ms=HAND_MS, times=3)  # a hand that tries again
         # In the robot's time, as a late answer counts as none; a terminal shows both streams in the
         # order of their writing.
-        with simulated(pty_robot), redirect_stderr(sys.stdout):
+        with simulate(pty_robot), redirect_stderr(sys.stdout):
             main([pty_robot.port if word in PORTS else word for word in step.words])
         pty_robot.let_go()
         printed.append((step, capsys.readouterr().out.replace(pty_robot.port, name)))
     assert len(printed) >= 10
     if request.config.getoption("--accept"):
-        for step, said_now in reversed(printed):  # from the end on: the rows before stay in place
-            if masked(step.text) != masked(said_now):
+        # From the end, so that earlier rows keep their places.
+        for step, said_now in reversed(printed):
+            if mask_output(step.text) != mask_output(said_now):
                 rows[step.first : step.last] = [row for row in said_now.splitlines() if row]
         guide.write_text("\n".join(rows) + "\n", encoding="utf-8")
         return
     for step, said_now in printed:
-        assert masked(said_now) == masked(step.text), f"{guide.name}:{step.first}"
+        assert mask_output(said_now) == mask_output(step.text), f"{guide.name}:{step.first}"
 
 
 # -- what the guides say of tsc
@@ -144,9 +145,9 @@ def _sentences(language: str) -> list[str]:
 @each_guide
 def test_the_sentences_of_the_table_are_those_of_tsc(language: str, guide: Path) -> None:
     *_, table = guide.read_text(encoding="utf-8").split("\n## ")
-    quoted = re.findall(r"^\| `([^`]+)` \|", table, re.M)
-    assert len(quoted) >= 5
-    for sentence in quoted:
+    quoted_texts = re.findall(r"^\| `([^`]+)` \|", table, re.M)
+    assert len(quoted_texts) >= 5
+    for sentence in quoted_texts:
         gaps = re.sub(r"COM\d|/dev/ttyUSB0", "{}", sentence)
         assert any(gaps in sentence for sentence in _sentences(language)), sentence
 

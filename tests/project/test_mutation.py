@@ -43,35 +43,45 @@ def test_what_is_listed_as_equivalent_is_still_there() -> None:
         assert old in {line.strip() for line in lines}, f"{file}: {old}"
 
 
-def tried(known: Known) -> Try:
-    text = (ROOT / known.file).read_text(encoding="utf-8")
-    assert text.count(known.original) == 1, f"{known.missing}: the code has changed: find it again"
-    return Try(known.file, text.replace(known.original, known.becomes), known.test)
+def make_try(known_mutant: Known) -> Try:
+    text = (ROOT / known_mutant.file).read_text(encoding="utf-8")
+    assert text.count(known_mutant.original) == 1, (
+        f"{known_mutant.missing}: the code has changed: find it again"
+    )
+    return Try(
+        known_mutant.file,
+        text.replace(known_mutant.original, known_mutant.becomes),
+        known_mutant.test,
+    )
 
 
 def test_known_mutants_are_of_code_and_tests_that_are_there() -> None:
-    for known in KNOWN:
-        file, _, name = tried(known).test.partition("::")
+    for known_mutant in KNOWN:
+        file, _, name = make_try(known_mutant).test.partition("::")
         texts = [path.read_text(encoding="utf-8") for path in (ROOT / file).parent.glob("*.py")]
-        assert (ROOT / file).exists(), known.test
-        assert any(f"def {name}(" in text for text in texts), known.test  # it may be imported
+        assert (ROOT / file).exists(), known_mutant.test
+        assert any(f"def {name}(" in text for text in texts), (
+            known_mutant.test
+        )  # modules that may be imported
 
 
 @pytest.mark.long
 def test_known_mutants_are_noticed(tmp_path: Path) -> None:
     copy = Copy(tmp_path)
-    tries = [tried(known) for known in KNOWN]
+    tries = [make_try(known) for known in KNOWN]
     answers = exchanged.answers(tries, tmp_path)
     skipped = []
-    for known, one, answer in zip(KNOWN, tries, answers, strict=True):
+    for known_mutant, one, answer in zip(KNOWN, tries, answers, strict=True):
         if answer == exchanged.SKIPS:
-            skipped.append(known.test)
+            skipped.append(known_mutant.test)
             continue
-        assert answer != exchanged.PASSES, f"no test notices {known.missing}"
+        assert answer != exchanged.PASSES, f"no test notices {known_mutant.missing}"
         if answer != exchanged.FAILS:
-            mutant = Mutant(known.file, 0, known.original, known.becomes, one.text)
-            noticed = copy.find_noticing_test(mutant, [known.test])
-            assert noticed.startswith(f"FAILED {known.test}"), (
-                f"{known.missing}: {answer}, {noticed}"
+            mutant = Mutant(
+                known_mutant.file, 0, known_mutant.original, known_mutant.becomes, one.text
+            )
+            noticed_text = copy.find_noticing_test(mutant, [known_mutant.test])
+            assert noticed_text.startswith(f"FAILED {known_mutant.test}"), (
+                f"{known_mutant.missing}: {answer}, {noticed_text}"
             )
     need(f"what these need is not on this computer: {', '.join(skipped)}" if skipped else "")

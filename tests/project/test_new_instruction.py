@@ -75,28 +75,28 @@ def tables(monkeypatch: pytest.MonkeyPatch) -> list[ModuleType]:
 
 
 def sketch(text: str) -> str:
-    compiled = compile_text(text, ROBOT.kit)
-    assert compiled.program is not None
-    return sketch_of(compiled.source, compiled.program, ROBOT, "en")
+    compilation = compile_text(text, ROBOT.kit)
+    assert compilation.program is not None
+    return sketch_of(compilation.source, compilation.program, ROBOT, "en")
 
 
 def test_few_tables_make_a_word(tables: list[ModuleType]) -> None:
-    compiled = compile_text(PROGRAM, ROBOT.kit)
-    assert not compiled.diagnostics and compiled.program is not None
-    assert "CHEEP" in disassemble(compiled.code)
-    assert compiled.image[2:4] == bytes([opcodes.ISA_MAJOR, NEXT_MINOR])
-    *events, _ = map(str, run(compiled.code, ROBOT.kit, lambda _: 0))
+    compilation = compile_text(PROGRAM, ROBOT.kit)
+    assert not compilation.diagnostics and compilation.program is not None
+    assert "CHEEP" in disassemble(compilation.code)
+    assert compilation.image[2:4] == bytes([opcodes.ISA_MAJOR, NEXT_MINOR])
+    *events, _ = map(str, run(compilation.code, ROBOT.kit, lambda _: 0))
     assert events[:3] == ["0 BEEP 440 250", "0 BEEP 20000 0", "0 MOTORS 50 50"]
     assert events == run_by_reference(PROGRAM).splitlines()
     assert "cheep(0.25, 440);" in sketch(PROGRAM) and "limited(" in sketch(PROGRAM)
-    assert "struct Number" in sketch("CHEEP(DISTANCE, 440)")  # else it would be rounded
+    assert "struct Number" in sketch("CHEEP(DISTANCE, 440)")  # otherwise the value would be rounded
     assert "struct Number" not in sketch("CHEEP(0.5, 440)")
 
 
 def test_the_tables_of_the_machine_in_c_have_its_instruction(
     tables: list[ModuleType], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What it does there is a `case` of `Machine::act`: without one a compiler warns."""
+    """Its action is a `case` of `Machine::act`, without which a compiler warns."""
     acts = tuple(op for op in opcodes.UNO_OPS if op.is_act)
     monkeypatch.setattr(cpp_header, "ACTS", acts)
     families = dict.fromkeys(op.family for op in acts)

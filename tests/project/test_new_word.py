@@ -61,9 +61,9 @@ def _new_words(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_it_does_what_it_stands_for() -> None:
-    compiled = compile_text(PROGRAM, KIT)
-    assert not compiled.diagnostics
-    assert compiled.image and compiled.image == compile_text(MEANT, KIT).image
+    compilation = compile_text(PROGRAM, KIT)
+    assert not compilation.diagnostics
+    assert compilation.image and compilation.image == compile_text(MEANT, KIT).image
     assert str(tiniscript.run(PROGRAM)) == run_by_reference(PROGRAM)
 
 
@@ -97,7 +97,7 @@ def test_what_is_wrong_with_it_is_said(program: str, code: codes.Code) -> None:
 
 
 @each_row(
-    "program, meant",
+    "program, meant_text",
     [
         ("WIGGLE(3)", "LOOP(3);L(0.2, 60);R(0.2, 60);END_LOOP"),
         ("N = 2;WIGGLE(N + 1)", "N = 2;LOOP(N + 1);L(0.2, 60);R(0.2, 60);END_LOOP"),
@@ -113,25 +113,25 @@ def test_what_is_wrong_with_it_is_said(program: str, code: codes.Code) -> None:
          "N = 2;BEEP(N + 1, 440);BEEP(0.5, 440);LOOP(N);L(0.2, 60);R(0.2, 60);END_LOOP"),
     ],
 )  # fmt: skip
-def test_a_word_with_a_value_does_what_its_instructions_do(program: str, meant: str) -> None:
+def test_a_word_with_a_value_does_what_its_instructions_do(program: str, meant_text: str) -> None:
     """Whatever the value is; in blocks, as text of a robot and in the reference it is its row."""
-    compiled = compile_text(program, KIT)
-    assert not compiled.diagnostics
-    assert compiled.image and compiled.image == compile_text(meant, KIT).image
-    assert line_of(compiled.source) == line_of(Source(meant))
+    compilation = compile_text(program, KIT)
+    assert not compilation.diagnostics
+    assert compilation.image and compilation.image == compile_text(meant_text, KIT).image
+    assert line_of(compilation.source) == line_of(Source(meant_text))
     assert str(tiniscript.run(program)) == run_by_reference(program)
-    assert compiled.program is not None
+    assert compilation.program is not None
     for level in LEVELS.values():
         lacking, as_written = (
             [
                 (misfit.code, misfit.values)
                 for misfit in find_misfits(its.source, its.program, KIT, level)
             ]
-            for its in (compiled, compile_text(meant, KIT))
+            for its in (compilation, compile_text(meant_text, KIT))
             if its.program is not None
         )
         assert lacking == as_written
-    sketch = sketch_of(compiled.source, compiled.program, ROBOT, "en")
+    sketch = sketch_of(compilation.source, compilation.program, ROBOT, "en")
     assert "turnLeft(" in sketch and WIGGLE.stands_for not in sketch
 
 
@@ -142,7 +142,7 @@ def test_a_value_is_named_where_it_is_wrong() -> None:
 
 
 def test_a_value_of_such_a_word_is_the_whole_of_one_value() -> None:
-    """Twice, a RANDOM in it would be two numbers, so what is needed twice is set to a variable.
+    """A repeated RANDOM would be two numbers, so a value needed twice goes into a variable.
 
     In `N * 2` it would need brackets. A name that is a word would mean the word: `F(TIME, 80)` goes
     as long as the program has run.
@@ -162,23 +162,23 @@ def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
     horn = form.body[0].bodies[0][0]
     assert (horn.kind, horn.word, horn.values) == ("plain", HORN.text, ())
     assert format_blocks(form).text == PROGRAM
-    compiled = compile_text(PROGRAM, KIT)
-    assert compiled.program is not None
-    sketch = sketch_of(compiled.source, compiled.program, ROBOT, "en")
+    compilation = compile_text(PROGRAM, KIT)
+    assert compilation.program is not None
+    sketch = sketch_of(compilation.source, compilation.program, ROBOT, "en")
     assert "beep(0.5, 440);" in sketch and "// HORN" in sketch
     assert HORN.text in [word["text"] for word in description()["words"]]
 
 
 @each_row("level", LEVELS.values())
 def test_a_robot_that_reads_text_gets_what_it_stands_for(level: Level) -> None:
-    compiled = compile_text(PROGRAM, KIT)
-    assert compiled.program is not None
-    assert find_misfits(compiled.source, compiled.program, KIT, level) == []
-    assert line_of(compiled.source) == line_of(Source(MEANT))
+    compilation = compile_text(PROGRAM, KIT)
+    assert compilation.program is not None
+    assert find_misfits(compilation.source, compilation.program, KIT, level) == []
+    assert line_of(compilation.source) == line_of(Source(MEANT))
     check_line("SI|HORN", KIT)
 
 
-# Of a process that knows the word before it imports what makes tables of all words.
+# For a process that adds the word before importing the tables of all words.
 FRESH = """
 import sys
 from pathlib import Path
@@ -205,10 +205,10 @@ print(json.dumps([block_kinds.table_data(), labels, text_tables.words_tables("a 
 
 
 def in_fresh_process(code: str, tmp_path: Path) -> Any:
-    """Return what code prints as JSON: its new word is in no table that is read already."""
+    """Return the JSON printed by code in a fresh process, whose tables do not have the new word."""
     command = [sys.executable, "-c", code, str(tmp_path / "said")]
-    ran = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
-    return json.loads(ran.stdout)
+    completed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
+    return json.loads(completed.stdout)
 
 
 def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) -> None:
@@ -219,7 +219,7 @@ def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) ->
     value = [["NAME", "X"], ["NUMBER", "2"], ["ADD", ""]]
     assert body == [["plain_1", WIGGLE.text, [value]]]
     assert printed == "SI|WIGGLE(X + 2)\n"
-    own = "{CHIME} CHIME = BEEP(0.5, 440)"  # the catalogue has nothing to say of it
+    own = "{CHIME} CHIME = BEEP(0.5, 440)"  # the catalogue has no text for it
     assert labels == [*(f"{{{HORN.text}}} {says}" for says in SAID.values()), own]
     packed, rows, ranges = tables.split("tini_progmem = {")[1:]
     for word in (HORN.text, WIGGLE.text):

@@ -20,7 +20,7 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.support.command import rest_of
 from tests.support.needs import need
-from tests.support.platformio import prepared
+from tests.support.platformio import prepare
 from tests.support.waiting import HANGS_S
 from tiniscript.base.languages import cache_files
 from tools.release import facts
@@ -29,15 +29,15 @@ SKIPPED = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__
            "page", "node_modules", "made",
            "machine.json", "link.json",
            ".*_cache", ".coverage", "own.h", "*.bin", "*.texts", "way.png")  # fmt: skip
-ADDED = {"PKG-INFO", "setup.cfg"}  # by setuptools
+ADDED = {"PKG-INFO", "setup.cfg"}  # files added by setuptools
 SOURCES = "tiniscript/flash/vm_arduino/"
-BUILT = "tiniscript/studio/page/index.html"  # by tools.builds.studio, before a wheel is made
-CASES = "tiniscript/conformance/machine.json"  # by tools.builds.conformance
+BUILT = "tiniscript/studio/page/index.html"  # built by tools.builds.studio before the wheel
+CASES = "tiniscript/conformance/machine.json"  # built by tools.builds.conformance
 URL = "https://example.org/tiniscript"
 EPOCH = "1700000000"
 BUILD = "import sys; from setuptools import build_meta; print(build_meta.{0}(sys.argv[1]))"
 
-# What a collection reads, without making each row a test.
+# Files that a collection reads, without a test for each row.
 IMPORT_ALL = """
 import importlib, pathlib, pytest
 for path in sorted(pathlib.Path("tests").rglob("*.py")):
@@ -66,11 +66,11 @@ def repo(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def repo_files(repo: Path) -> set[str]:
-    """What is in the repository, before anything is built there."""
+    """The files in the repository before any build."""
     return files_of(repo)
 
 
-def built(repo: Path, what: str, target: Path) -> Path:
+def build_package(repo: Path, what: str, target: Path) -> Path:
     completed = subprocess.run(
         [sys.executable, "-c", BUILD.format(what), str(target)],
         cwd=repo, capture_output=True, text=True, check=False,
@@ -100,8 +100,8 @@ def wheel(repo: Path, repo_files: set[str], tmp_path_factory: pytest.TempPathFac
     cases = repo / "compiler" / CASES
     cases.touch()
     folder = tmp_path_factory.mktemp("wheel")
-    with zipfile.ZipFile(built(repo, "build_wheel", folder)) as packed:
-        packed.extractall(folder / "unpacked")
+    with zipfile.ZipFile(build_package(repo, "build_wheel", folder)) as zip_file:
+        zip_file.extractall(folder / "unpacked")
     own.unlink()
     cases.unlink()
     shutil.rmtree(page.parent)
@@ -109,10 +109,12 @@ def wheel(repo: Path, repo_files: set[str], tmp_path_factory: pytest.TempPathFac
 
 
 @pytest.fixture(scope="module")
-def unpacked(repo: Path, repo_files: set[str], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def source_folder(
+    repo: Path, repo_files: set[str], tmp_path_factory: pytest.TempPathFactory
+) -> Path:
     """A source package, unpacked."""
     folder = tmp_path_factory.mktemp("sdist")
-    shutil.unpack_archive(built(repo, "build_sdist", folder), folder / "unpacked")
+    shutil.unpack_archive(build_package(repo, "build_sdist", folder), folder / "unpacked")
     path: Path
     (path,) = (folder / "unpacked").iterdir()
     return path
@@ -132,7 +134,7 @@ def python(*words: str, folder: Path, **variables: str) -> subprocess.CompletedP
 def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
     wheel: Path, repo_files: set[str]
 ) -> None:
-    packed = {name for name in files_of(wheel) if name.startswith("tiniscript/")}
+    packed_names = {name for name in files_of(wheel) if name.startswith("tiniscript/")}
     package = {
         name.removeprefix("compiler/") for name in repo_files if name.startswith("compiler/")
     }
@@ -148,7 +150,7 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
         if name.startswith("vm_arduino/src/")
         or name in ("vm_arduino/platformio.ini", "vm_arduino/partitions.csv")
     }
-    assert packed == package | sources | {BUILT, CASES}
+    assert packed_names == package | sources | {BUILT, CASES}
     assert len(sources) > 50
 
 
@@ -158,11 +160,11 @@ def test_a_wheel_says_its_licence_and_its_description_leads_to_files_wherever_it
     (about,) = wheel.glob("*.dist-info")
     assert (about / "licenses" / "LICENSE").read_text() == (ROOT / "LICENSE").read_text()
     text = (about / "METADATA").read_text(encoding="utf-8")
-    head, _, shown = text.partition("\n\n")
+    head, _, shown_text = text.partition("\n\n")
     for row in ("License-Expression: MIT", f"Project-URL: Source, {URL}", f"Author: {facts.PEOPLE}",
                 "Description-Content-Type: text/markdown"):  # fmt: skip
         assert f"\n{row}\n" in f"{head}\n"
-    links = re.findall(r"(!?)\[[^]]*\]\(([^)]+)\)", shown)
+    links = re.findall(r"(!?)\[[^]]*\]\(([^)]+)\)", shown_text)
     assert len(links) > 30
     ours = 0
     for is_picture, link in links:
@@ -178,7 +180,7 @@ def test_a_wheel_says_its_licence_and_its_description_leads_to_files_wherever_it
 
 @pytest.mark.sampled(of="builds of PlatformIO")
 def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
-    variables, why = prepared()
+    variables, why = prepare()
     need(why)
     words = ("-m", "tiniscript", "firmware", "--build", "--yes", "--robot", "liner")
     completed = python(*words, folder=tmp_path, PYTHONPATH=str(wheel), **variables)
@@ -200,11 +202,13 @@ touch compiler/tiniscript/studio/page/index.html
 
 @pytest.mark.sampled(of="source packages")
 @pytest.mark.parametrize("page", ["none", "built", "asked for"])
-def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, page: str) -> None:
+def test_a_wheel_says_what_it_is_made_without(
+    source_folder: Path, tmp_path: Path, page: str
+) -> None:
     """Only who is at a terminal is asked for the page, as with `python -m build --wheel`; pip,
     which gives no terminal, needs no npm."""
     folder = tmp_path / "sources"
-    shutil.copytree(unpacked, folder)
+    shutil.copytree(source_folder, folder)
     if page == "built":
         path = folder / "compiler" / BUILT
         path.parent.mkdir()
@@ -231,9 +235,9 @@ def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, pa
     assert completed.returncode == 0, output
     assert "made without" in output and FIRMWARE_MISSING in output and CASES_MISSING in output
     assert (PAGE_MISSING in output) == (page == "none")
-    with zipfile.ZipFile(tmp_path / completed.stdout.split()[-1]) as packed:
-        assert (BUILT in packed.namelist()) == (page != "none")
-        packed.extractall(tmp_path / "made")
+    with zipfile.ZipFile(tmp_path / completed.stdout.split()[-1]) as zip_file:
+        assert (BUILT in zip_file.namelist()) == (page != "none")
+        zip_file.extractall(tmp_path / "made")
     version = python("-m", "tiniscript", "--version", "--lang", "en", folder=tmp_path,
                      PYTHONPATH=str(tmp_path / "made"))  # fmt: skip
     assert "without prebuilt firmware" in version.stdout
@@ -242,11 +246,11 @@ def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, pa
 
 @pytest.mark.sampled(of="source packages")
 def test_an_installation_without_cases_names_the_command_that_makes_them(
-    unpacked: Path, tmp_path: Path
+    source_folder: Path, tmp_path: Path
 ) -> None:
     """Run in the sources it names, the command makes them for that installation."""
-    sources = tmp_path / "sources"  # of its own: what runs there leaves bytecode
-    shutil.copytree(unpacked, sources)
+    sources = tmp_path / "sources"  # a separate copy, because running it leaves bytecode
+    shutil.copytree(source_folder, sources)
     package = tmp_path / "an installation" / "tiniscript"
     shutil.copytree(sources / "compiler" / "tiniscript", package)
     words = ("-m", "tiniscript", "doctor", "--conform", "--lang", "en", "--only",
@@ -268,26 +272,28 @@ def test_an_installation_without_cases_names_the_command_that_makes_them(
 # -- the source package
 
 
-def test_a_source_package_has_the_whole_repository(unpacked: Path, repo_files: set[str]) -> None:
-    packed = {name for name in files_of(unpacked) if ".egg-info/" not in name}
-    assert packed - ADDED == repo_files - ADDED
+def test_a_source_package_has_the_whole_repository(
+    source_folder: Path, repo_files: set[str]
+) -> None:
+    packed_names = {name for name in files_of(source_folder) if ".egg-info/" not in name}
+    assert packed_names - ADDED == repo_files - ADDED
 
 
 @pytest.mark.sampled(of="source packages")
 def test_a_source_package_is_the_same_from_another_place(
-    repo: Path, unpacked: Path, tmp_path: Path
+    repo: Path, source_folder: Path, tmp_path: Path
 ) -> None:
     """Twice in a row, of files with other times, in a folder with another name."""
-    first = next(unpacked.parent.parent.glob("*.tar.gz"))
+    first = next(source_folder.parent.parent.glob("*.tar.gz"))
     other = tmp_path / "another place"
     shutil.copytree(repo, other, copy_function=shutil.copy,
                     ignore=shutil.ignore_patterns("*.egg-info", "build"))  # fmt: skip
-    second = built(other, "build_sdist", tmp_path / "made")
+    second = build_package(other, "build_sdist", tmp_path / "made")
     assert first.read_bytes() == second.read_bytes()
 
 
-def test_a_registry_takes_both_packages(wheel: Path, unpacked: Path) -> None:
-    files = [*wheel.parent.glob("*.whl"), *unpacked.parent.parent.glob("*.tar.gz")]
+def test_a_registry_takes_both_packages(wheel: Path, source_folder: Path) -> None:
+    files = [*wheel.parent.glob("*.whl"), *source_folder.parent.parent.glob("*.tar.gz")]
     assert len(files) == 2
     completed = python("-m", "twine", "check", "--strict", *map(str, files), folder=wheel)
     assert completed.returncode == 0, completed.stdout + completed.stderr
@@ -295,11 +301,11 @@ def test_a_registry_takes_both_packages(wheel: Path, unpacked: Path) -> None:
 
 
 @pytest.mark.sampled(of="source packages")
-def test_the_tests_of_a_source_package_run(unpacked: Path) -> None:
+def test_the_tests_of_a_source_package_run(source_folder: Path) -> None:
     pytest_here = ("-m", "pytest", "-p", "no:cacheprovider")
-    every = python("-c", IMPORT_ALL, folder=unpacked, PYTHONPATH=f"compiler{os.pathsep}.")
+    every = python("-c", IMPORT_ALL, folder=source_folder, PYTHONPATH=f"compiler{os.pathsep}.")
     assert every.returncode == 0, every.stderr[-3000:]
     some = ("tests/bytecode/test_image.py", "tests/robots/test_robots.py")
     alone = {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
-    completed = python(*pytest_here, "-m", "not root", *some, folder=unpacked, **alone)
+    completed = python(*pytest_here, "-m", "not root", *some, folder=source_folder, **alone)
     assert completed.returncode == 0, completed.stdout[-3000:]

@@ -28,9 +28,11 @@ def test_nothing_is_cut_off(drawing: ElementTree.Element) -> None:
     right = front.PADDING + front.LEFT_WIDTH - 16
     for text in drawing.iter(f"{SVG}text"):
         if "Mono" in text.get("font-family", ""):
-            shown = "".join(text.itertext())
-            end = float(text.get("x", "")) + len(shown) * SIGN * float(text.get("font-size", ""))
-            assert end <= right, shown
+            shown_text = "".join(text.itertext())
+            end = float(text.get("x", "")) + len(shown_text) * SIGN * float(
+                text.get("font-size", "")
+            )
+            assert end <= right, shown_text
         assert float(text.get("y", "")) <= front.HEIGHT - 16
     for shape in (*drawing.iter(f"{SVG}polygon"), *drawing.iter(f"{SVG}polyline")):
         for point in shape.get("points", "").split():
@@ -47,19 +49,19 @@ def test_the_robot_drives_around(drawing: ElementTree.Element) -> None:
 
 
 def test_what_a_program_does_is_printed(drawing: ElementTree.Element) -> None:
-    shown = ["".join(text.itertext()) for text in drawing.iter(f"{SVG}text")]
-    assert "1000 MOTORS 0 0" in shown
-    assert any("[TS102]" in row for row in shown)
-    assert any("[TS012]" in row for row in shown)
+    shown_texts = ["".join(text.itertext()) for text in drawing.iter(f"{SVG}text")]
+    assert "1000 MOTORS 0 0" in shown_texts
+    assert any("[TS102]" in row for row in shown_texts)
+    assert any("[TS012]" in row for row in shown_texts)
 
 
 def test_every_world_and_its_way_are_inside_of_the_picture() -> None:
     drawing = ElementTree.fromstring(world_picture("a test"))
     _, _, width, height = map(int, drawing.get("viewBox", "").split())
     assert {name for name, *_ in DRIVES} < set(worlds.names())
-    shown = "".join(drawing.itertext())
+    shown_text = "".join(drawing.itertext())
     for name, example, *_ in DRIVES:
-        assert f"{name}: examples/{example}" in shown
+        assert f"{name}: examples/{example}" in shown_text
     lines = [
         element
         for element in drawing.iter(f"{SVG}polyline")

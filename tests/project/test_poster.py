@@ -24,9 +24,9 @@ def lines_of(language: str) -> list[Line]:
 
 @in_both
 def test_every_word_of_the_table_is_on_it(language: str) -> None:
-    shown = " ".join(line.text for line in lines_of(language) if line.font == MONO_FONT)
+    shown_text = " ".join(line.text for line in lines_of(language) if line.font == MONO_FONT)
     for word in WORDS.values():
-        is_there = re.search(rf"(?<!\w){word.text}(?!\w)", shown) is not None
+        is_there = re.search(rf"(?<!\w){word.text}(?!\w)", shown_text) is not None
         assert is_there == word.role.is_offered, word.text
 
 
@@ -43,8 +43,8 @@ def test_what_it_shows_can_be_typed() -> None:
             continue
         for code in line.text.split("   "):
             if "(" in code and not re.search(r"\bA\b|ELSEIF", code) and "RANDOM" not in code:
-                taught = "DEF SIDE(SIZE);F(SIZE CM, 60);END_DEF;" if code == "SIDE(30)" else ""
-                compilation = check_text(taught + code, kit)
+                taught_text = "DEF SIDE(SIZE);F(SIZE CM, 60);END_DEF;" if code == "SIDE(30)" else ""
+                compilation = check_text(taught_text + code, kit)
                 assert compilation.is_right, (code, compilation.diagnostics)
 
 
@@ -69,8 +69,8 @@ def test_the_pdf_is_whole(language: str) -> None:
     length = int(re.search(rb"/Length (\d+)", data)[1])  # type: ignore[index]
     begin = data.index(b"stream\n") + 7
     assert data[begin + length :].startswith(b"\nendstream")
-    wanted = [paper._pdf_text(line.text) for line in lines_of(language)]
-    assert re.findall(r"(\(.*\)) Tj ET", data[begin : begin + length].decode()) == wanted
+    wanted_texts = [paper._pdf_text(line.text) for line in lines_of(language)]
+    assert re.findall(r"(\(.*\)) Tj ET", data[begin : begin + length].decode()) == wanted_texts
 
 
 @in_both

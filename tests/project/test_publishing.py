@@ -1,4 +1,4 @@
-"""What visitors read first says what is so: versions, the citation, marks of generated files."""
+"""The texts that visitors read first are true: versions, the citation, marks of generated files."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_a_mark_is_of_generated_files(pattern: str) -> None:
 
 
 def test_files_that_are_generated_as_a_whole_are_marked() -> None:
-    """They say so in their first lines."""
+    """They are marked in their first lines."""
     for path, _ in OUTPUTS:
         name = path.relative_to(ROOT).as_posix()
         head = path.read_text(encoding="utf-8", errors="replace")[:600].splitlines()[:2]

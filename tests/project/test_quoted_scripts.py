@@ -1,4 +1,4 @@
-"""What tests and tools have in quotation marks names what is there: no linter sees it."""
+"""Names in string literals of tests and tools exist, which no linter checks."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ ALIAS = re.compile(r"(\w+)(?: as (\w+))?")
 DOTTED = re.compile(r"tiniscript(?:\.\w+)+")
 
 
-def quoted() -> Iterator[tuple[str, str]]:
-    """Give each text in quotation marks, and where it stands."""
+def list_quoted_texts() -> Iterator[tuple[str, str]]:
+    """Yield each string literal, and its place."""
     for folder in FOLDERS:
         for path in sorted((ROOT / folder).rglob("*.py")):
             if "node_modules" in path.parts or path == Path(__file__):
@@ -30,13 +30,13 @@ def quoted() -> Iterator[tuple[str, str]]:
 
 
 def test_what_a_quoted_script_names_is_there() -> None:
-    rows = [row for row in quoted() if IMPORTED.search(row[1])]
+    rows = [row for row in list_quoted_texts() if IMPORTED.search(row[1])]
     assert len(rows) > 20
 
     def names_what_is_there(row: tuple[str, str]) -> None:
-        for module_name, imported in IMPORTED.findall(row[1]):
+        for module_name, imported_modules in IMPORTED.findall(row[1]):
             module = import_module(module_name)
-            for name, alias in ALIAS.findall(imported):
+            for name, alias in ALIAS.findall(imported_modules):
                 if not hasattr(module, name):
                     import_module(f"{module_name}.{name}")
                 owner = getattr(module, name)
@@ -49,9 +49,9 @@ def test_what_a_quoted_script_names_is_there() -> None:
 
 
 def test_what_a_dotted_name_names_is_there() -> None:
-    """As `monkeypatch.setattr` takes it; other names begin with no module of ours."""
+    """Names as in `monkeypatch.setattr`; others do not begin with a module of ours."""
     rows = [
-        row for row in quoted() if DOTTED.fullmatch(row[1])
+        row for row in list_quoted_texts() if DOTTED.fullmatch(row[1])
         and find_spec(".".join(row[1].split(".")[:2])) is not None
     ]  # fmt: skip
     assert len(rows) > 20

@@ -1,4 +1,4 @@
-"""Who reads a wrong program, and by which rows."""
+"""The readers of a wrong program, and their rows."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ def test_the_readers_that_ask_what_was_meant_are_there() -> None:
 
 def test_a_rewrite_names_its_row(capsys: pytest.CaptureFixture[str]) -> None:
     readers.main(["SI|REPEAT 4;F(1, 50);END"])
-    shown = capsys.readouterr().out
-    assert UNNAMED_END not in shown
-    first, *rest = shown.splitlines()
+    shown_text = capsys.readouterr().out
+    assert UNNAMED_END not in shown_text
+    first, *rest = shown_text.splitlines()
     assert first == "SI|REPEAT 4;F(1, 50);END: sure_findings"
     assert any("->  LOOP ( 4 ) ; F ( 1 , 50 )" in line for line in rest)
     assert "    by the row of repite 4: ⏎ F(1, 60) => LOOP(4) ⏎ F(1, 60) ⏎ END_LOOP" in rest

@@ -53,7 +53,7 @@ SIDES = ("left", "right", "front", "back")
 def test_a_history_that_nobody_may_read_draws_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As in a container, whose checkout has another owner."""
+    """In a container, the checkout may have another owner."""
     monkeypatch.setattr(sampling, "ROOT", tmp_path)
     assert sampling._commit.__wrapped__() == "none"
     (tmp_path / ".git").mkdir()
@@ -62,7 +62,9 @@ def test_a_history_that_nobody_may_read_draws_nothing(
 
 
 class Plugin:
-    """What `tests/conftest.py` does, and the rows that are left for each of these commits."""
+    """A plugin like `tests/conftest.py` that records the remaining rows for each of these
+    commits.
+    """
 
     def __init__(self, commits: Sequence[str]) -> None:
         self.commits = commits
@@ -86,7 +88,7 @@ class Plugin:
             self.drawn.append(([*names, *letters], sampling.how_to_repeat(config)))
 
 
-def collected(
+def collect_tests(
     folder: Path, *words: str, of: str | None = "", commits: Sequence[str] = ("7",)
 ) -> list[tuple[list[str], str]]:
     (folder / "test_rows.py").write_text(ROWS, encoding="utf-8")
@@ -103,7 +105,7 @@ def collected(
 
 def test_each_value_is_in_each_sample_and_each_row_in_one(tmp_path: Path) -> None:
     commits = [*map(str, range(15)), "7"]
-    drawn = collected(tmp_path, commits=commits)
+    drawn = collect_tests(tmp_path, commits=commits)
     counts = Counter[str]()
     for commit, (names, output) in zip(commits, drawn, strict=True):
         assert f"--sample {commit} " in output
@@ -123,15 +125,16 @@ def test_each_value_is_in_each_sample_and_each_row_in_one(tmp_path: Path) -> Non
     assert sum("same_kit" in name for name in counts) == 4
     assert set("abcd") <= set(counts)
     assert drawn[7] == drawn[15]
-    ((asked, output),) = collected(tmp_path, "-k", "not usual")  # which asks for none
-    assert sum("_case" in name for name in asked) == 20 and output
+    # `-k` with a name that no test has.
+    ((questions, output),) = collect_tests(tmp_path, "-k", "not usual")
+    assert sum("_case" in name for name in questions) == 20 and output
 
 
 @pytest.mark.parametrize(
     ("words", "of"), [(["--whole"], ""), (["-k", "case"], ""), ([], "::test_case")]
 )
 def test_what_is_asked_for_has_all_its_rows(words: list[str], of: str, tmp_path: Path) -> None:
-    ((names, output),) = collected(tmp_path, *words, of=of)
+    ((names, output),) = collect_tests(tmp_path, *words, of=of)
     assert sum("_case" in name for name in names) == 60 and output == ""
     assert names[-4:] == [*"abcd"]
 
@@ -139,7 +142,7 @@ def test_what_is_asked_for_has_all_its_rows(words: list[str], of: str, tmp_path:
 def test_of_files_some_are_whole_and_each_of_them_some_time(tmp_path: Path) -> None:
     commits = [*map(str, range(20)), "7"]
     counts = Counter[str]()
-    drawn = collected(tmp_path, of=None, commits=commits)
+    drawn = collect_tests(tmp_path, of=None, commits=commits)
     for collected_names, _ in drawn:
         names = [name for name in collected_names if any(side in name for side in SIDES)]
         whole = [name.removeprefix("test_more_of_") for name in names if "more_of" in name]
@@ -151,9 +154,9 @@ def test_of_files_some_are_whole_and_each_of_them_some_time(tmp_path: Path) -> N
     assert len(counts) == 3 * len(SIDES)
     assert drawn[7] == drawn[20]
     left = f"{tmp_path / 'test_left.py'}"
-    for collected_names, _ in collected(tmp_path, left, of=None, commits=commits):
-        assert "test_more_of_left" in collected_names  # it was named
-    ((collected_names, _),) = collected(tmp_path, "--whole", of=None)
+    for collected_names, _ in collect_tests(tmp_path, left, of=None, commits=commits):
+        assert "test_more_of_left" in collected_names  # named on the command line
+    ((collected_names, _),) = collect_tests(tmp_path, "--whole", of=None)
     assert sum(side in name for name in collected_names for side in SIDES) == 3 * len(SIDES)
 
 
@@ -161,7 +164,7 @@ def test_a_tenth_of_the_long_tests_is_drawn_and_each_of_them_some_time(tmp_path:
     def long_tests(
         *words: str, of: str | None = None, commits: Sequence[str] = ("7",)
     ) -> list[list[str]]:
-        drawn = collected(tmp_path, *words, of=of, commits=commits)
+        drawn = collect_tests(tmp_path, *words, of=of, commits=commits)
         return [[name for name in names if name.startswith("test_long")] for names, _ in drawn]
 
     assert long_tests() == [[]]

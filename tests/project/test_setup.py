@@ -86,7 +86,7 @@ def test_ci_runs_the_tests_as_users_do(tmp_path: Path) -> None:
 
 @pytest.mark.root
 def test_ci_of_root_runs_the_tests_as_a_new_user(tmp_path: Path) -> None:
-    """With packages of Debian, and the tests of other users, by root; again and again."""
+    """With packages of Debian, and root's own tests as root; repeatedly."""
     clone = tmp_path / "clone"
     for _ in range(2):
         rows, environment = ci(clone)
@@ -138,7 +138,7 @@ def folder(tmp_path: Path) -> Path:
     return clone
 
 
-def installed(clone: Path) -> bool:
+def has_installed(clone: Path) -> bool:
     """Return whether the script has installed anything."""
     completed = subprocess.run(
         [sys.executable, str(clone / "tools" / "environment.py"), "[test]"],
@@ -148,24 +148,24 @@ def installed(clone: Path) -> bool:
 
 
 def test_what_is_installed_is_not_installed_again(folder: Path) -> None:
-    assert installed(folder)
-    assert not installed(folder)
+    assert has_installed(folder)
+    assert not has_installed(folder)
     assert (folder / ".venv" / "asked").read_text().endswith(f"--editable {folder}[test]\n")
 
 
 def test_another_pyproject_is_installed_whatever_its_time(folder: Path) -> None:
-    """In the same second, or from an older state of the repository."""
-    assert installed(folder)
+    """Changed in the same second, or restored from an older state of the repository."""
+    assert has_installed(folder)
     (folder / "pyproject.toml").write_text("two")
     os.utime(folder / "pyproject.toml", (1, 1))
-    assert installed(folder)
-    assert not installed(folder)
+    assert has_installed(folder)
+    assert not has_installed(folder)
 
 
 def test_a_folder_that_has_moved_is_installed_again(folder: Path) -> None:
-    assert installed(folder)
-    moved = folder.rename(folder.with_name("moved"))
-    assert installed(moved)
+    assert has_installed(folder)
+    moved_path = folder.rename(folder.with_name("moved"))
+    assert has_installed(moved_path)
 
 
 class Pip:
@@ -173,7 +173,8 @@ class Pip:
 
     def __init__(self, root: Path) -> None:
         self.root = root
-        self.has: tuple[str, set[str]] = ("", set())  # of which state of pyproject.toml, and what
+        # Hash of pyproject.toml, and the packages installed for it.
+        self.has: tuple[str, set[str]] = ("", set())
         self.end = "works"
         self.asked_count = 0
 
@@ -217,7 +218,7 @@ def test_what_is_there_is_what_is_asked_for(
 def script(
     folder: Path, programs: dict[str, str], **variables: str
 ) -> subprocess.CompletedProcess[str]:
-    """Run a script that makes the environment, where there are these programs alone."""
+    """Run a script that makes the environment, if there are these programs alone."""
     tools, path = folder / "tools", folder / "bin"
     tools.mkdir()
     path.mkdir()
@@ -330,7 +331,7 @@ def test_an_old_python_is_told_where_to_get_one(
 
 
 def test_a_computer_without_internet_is_told_of_proxies_and_the_stick(folder: Path) -> None:
-    """Before what pip says of itself, of which the end is enough."""
+    """The hint precedes pip's own output, of which the end is enough."""
     python = folder / ".venv" / "bin" / "python"
     output = "  Traceback (most recent call last)\n  ERROR: no setuptools\nERROR: no network\n"
     python.write_text(
@@ -353,23 +354,24 @@ def test_a_computer_without_internet_is_told_of_proxies_and_the_stick(folder: Pa
 def test_the_first_command_drives_the_virtual_robot(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """In an environment that is there: pip has tests of its own."""
+    """In an existing environment, because pip has tests of its own."""
     from tools import environment
 
     monkeypatch.setenv("LC_ALL", "es_MX.UTF-8")
     monkeypatch.setattr(environment, "make", lambda extras: Path(sys.executable))
-    before = (ROOT / "way.png").exists()
+    exists_before = (ROOT / "way.png").exists()
     assert load_first_command().main() == 0
     capture_result = capfd.readouterr()
     assert (ROOT / "way.png").is_file()
-    if not before:
+    if not exists_before:
         (ROOT / "way.png").unlink()
     first = "SI|LOOP(FOREVER);\n  F(FOREVER, 80) UNTIL(DISTANCE < 10);\n"
     assert capture_result.out.startswith(first)  # without its notes, in English
     assert "way.png" in capture_result.err
     assert "Ahora el tuyo" in capture_result.err
     assert "Aviso" not in capture_result.err
-    assert "estudio" not in capture_result.out + capture_result.err  # nobody is there to answer
+    # Nobody can answer the question.
+    assert "estudio" not in capture_result.out + capture_result.err
 
 
 class Calls:
@@ -386,7 +388,7 @@ class Calls:
 
 
 @each_row(
-    "typed, language, megabytes, question, opens",
+    "typed_text, language, megabytes, question, opens",
     [
         ("y\n", "en_GB", 40, "Open the studio, with blocks, in your browser? (40 MB) [y/N] ", True),
         ("s\n", "es_MX", 101, "en tu navegador? (101 MB) [s/N] ", True),
@@ -397,14 +399,14 @@ class Calls:
     ],
 )
 def test_the_first_command_ends_with_the_studio(
-    typed: str, language: str, megabytes: int, question: str, opens: bool,
+    typed_text: str, language: str, megabytes: int, question: str, opens: bool,
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     from tools import environment
 
     monkeypatch.setenv("LC_ALL", f"{language}.UTF-8")
     monkeypatch.setattr(environment, "make", lambda extras: Path(sys.executable))
-    monkeypatch.setattr(sys, "stdin", io.StringIO(typed))
+    monkeypatch.setattr(sys, "stdin", io.StringIO(typed_text))
     set_terminals(monkeypatch, "stdin", "stdout")
     calls = Calls(monkeypatch, megabytes)
     assert load_first_command().main() == 0
@@ -435,7 +437,7 @@ def test_the_question_names_what_the_studio_downloads(monkeypatch: pytest.Monkey
     monkeypatch.setattr(building, "are_packages_fetched", lambda: False)
     assert page_build.megabytes() == building.NODE_MB + building.NPM_MB
     monkeypatch.setattr(building, "find_tools", lambda: building.Tools([], [], ""))
-    assert page_build.megabytes() == building.NPM_MB == 40  # as the READMEs say
+    assert page_build.megabytes() == building.NPM_MB == 40  # the number in the READMEs
     monkeypatch.setattr(serving, "is_built", lambda: True)
     assert page_build.megabytes() == 0
     completed = subprocess.run(

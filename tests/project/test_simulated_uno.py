@@ -1,4 +1,4 @@
-"""The simulated Uno: what it tells is exact, and its parts take the time that silicon takes.
+"""The simulated Uno: its output is exact, and its parts take the time of real silicon.
 
 For each part that has a time, a firmware that ignores it fails.
 """
@@ -9,16 +9,16 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.uno import built, needed
+from tests.machines.uno import build_uno, skip_unless_available
 from tools.uno import CYCLES_PER_MS, HERTZ, Uno
 
-BIT = HERTZ / 115_200  # of the computer
-CHIP_BIT = 17 * 8  # of a chip at that speed, which can only divide by 17
+BIT = HERTZ / 115_200  # a bit at the computer's speed, in cycles
+CHIP_BIT = 17 * 8  # a bit of a chip that can only divide by 17
 
 
 @pytest.fixture(autouse=True)
 def needs_a_chip() -> None:
-    needed()
+    skip_unless_available()
 
 
 def cycles_of(uno: Uno, pin: str, state: str) -> list[int]:
@@ -29,7 +29,7 @@ def cycles_of(uno: Uno, pin: str, state: str) -> list[int]:
 
 
 def test_it_runs_to_a_cycle() -> None:
-    with Uno(built("echo", Baud=115200, Wait=1)) as uno:
+    with Uno(build_uno("echo", Baud=115200, Wait=1)) as uno:
         for cycle in (1000, 1001, 54_321):
             uno.run_to(cycle)
             assert cycle <= uno.cycle <= cycle + 4  # the longest instruction
@@ -41,8 +41,10 @@ def test_it_runs_to_a_cycle() -> None:
 
 
 def test_it_tells_how_long_interrupts_are_off() -> None:
-    """In the program, from the entry of an interrupt on, and where it has let others in."""
-    with Uno(built("masked", Program=500, Interrupt=300, Later=200), watches_masked=True) as uno:
+    """In the program, from an interrupt's entry, and where it allows others."""
+    with Uno(
+        build_uno("masked", Program=500, Interrupt=300, Later=200), watches_masked=True
+    ) as uno:
         uno.run_ms(20)
         spans = uno.longest_masked()
     program = [span.cycle_count for span in spans if span.vector == 0]
@@ -51,7 +53,7 @@ def test_it_tells_how_long_interrupts_are_off() -> None:
     assert len(program) == len(entries) == len(later) == 1
     assert program[0] == pytest.approx(500, abs=4)
     assert entries[0].vector == 16  # the overflow of timer 0
-    assert 300 + 4 < entries[0].cycle_count < 300 + 60  # with what g++ saves
+    assert 300 + 4 < entries[0].cycle_count < 300 + 60  # the registers that g++ saves
     assert 200 < later[0] < 200 + 60
 
 
@@ -59,7 +61,7 @@ def test_it_tells_how_long_interrupts_are_off() -> None:
 
 
 def test_a_byte_has_ten_bits() -> None:
-    with Uno(built("echo", Baud=115200, Wait=1)) as uno:
+    with Uno(build_uno("echo", Baud=115200, Wait=1)) as uno:
         uno.send(b"ab", at=20_000)
         uno.run_ms(3)
     assert [byte.value for byte in uno.sent_bytes] == [*b"ab"]
@@ -73,7 +75,7 @@ def test_a_byte_has_ten_bits() -> None:
 
 def test_a_burst_overruns_the_buffer() -> None:
     """Two bytes are kept, and the last one; those between are overwritten as they come."""
-    with Uno(built("echo", Baud=115200, Wait=5)) as uno:
+    with Uno(build_uno("echo", Baud=115200, Wait=5)) as uno:
         uno.send(b"abcde", at=CYCLES_PER_MS)
         uno.run_ms(4.9)
         assert [byte.value for byte in uno.received_bytes] == [*b"abcde"]
@@ -88,7 +90,7 @@ def test_a_burst_overruns_the_buffer() -> None:
 
 def test_a_byte_of_the_eeprom_takes_its_time(tmp_path: Path) -> None:
     file = tmp_path / "eeprom"
-    with Uno(built("memory", Ignores=0), eeprom=file) as uno:
+    with Uno(build_uno("memory", Ignores=0), eeprom=file) as uno:
         uno.run_ms(30)
     (begin,), (end,) = cycles_of(uno, "D8", "high"), cycles_of(uno, "D8", "low")[1:]
     assert (end - begin) / CYCLES_PER_MS == pytest.approx(5 * 3.4, abs=0.02)
@@ -100,7 +102,7 @@ def test_a_byte_of_the_eeprom_takes_its_time(tmp_path: Path) -> None:
 
 
 def test_a_firmware_that_does_not_wait_loses_bytes(tmp_path: Path) -> None:
-    with Uno(built("memory", Ignores=1), eeprom=tmp_path / "eeprom") as uno:
+    with Uno(build_uno("memory", Ignores=1), eeprom=tmp_path / "eeprom") as uno:
         uno.run_ms(30)
     assert (tmp_path / "eeprom").read_bytes()[:5] == b"\1\xff\xff\xff\xff"
 
@@ -109,15 +111,15 @@ def test_a_firmware_that_does_not_wait_loses_bytes(tmp_path: Path) -> None:
     ("ms", "left"), [(1.0, b"\xff\xff"), (2.0, b"\1\xff"), (4.5, b"\1\xff"), (6.0, b"\1\2")]
 )
 def test_a_power_cut_leaves_half_a_byte(tmp_path: Path, ms: float, left: bytes) -> None:
-    """It is erased first; and what was there before is there after the next power-on."""
+    """The byte is erased first; the previous memory is there after the next power-on."""
     file = tmp_path / "eeprom"
     file.write_bytes(b"\x55" * 1024)
     expected = left if ms > 3.4 else left[:1] + b"\x55"
-    with Uno(built("memory", Ignores=0), eeprom=file) as uno:
+    with Uno(build_uno("memory", Ignores=0), eeprom=file) as uno:
         uno.run_ms(ms)
         uno.kill()
     assert file.read_bytes()[:3] == expected + b"\x55"
-    with Uno(built("memory", Ignores=0), eeprom=file) as uno:
+    with Uno(build_uno("memory", Ignores=0), eeprom=file) as uno:
         uno.run_ms(30)
     assert file.read_bytes()[:6] == b"\1\2\3\4\5\x55"
 
@@ -128,14 +130,14 @@ def test_a_power_cut_leaves_half_a_byte(tmp_path: Path, ms: float, left: bytes) 
 @pytest.mark.parametrize("is_off", [0, 1, 2])
 def test_the_second_time_out_resets(is_off: int) -> None:
     """Also where interrupts are off, so that nobody answers the first one, and where it sleeps."""
-    with Uno(built("watchdog", IsOff=is_off)) as uno:
+    with Uno(build_uno("watchdog", IsOff=is_off)) as uno:
         uno.run_ms(100)
     resets = [event for event in uno.events if event.kind == "reset"]
     assert [event["cause"] for event in resets] == ["power-on", "watchdog"]
     assert resets[1].ms == pytest.approx(2 * 32, abs=0.1)
     assert bool(cycles_of(uno, "D9", "high")) == (not is_off)
     assert uno.pins["D10"].state == "high"  # the firmware reads the cause
-    assert uno.pins["D11"].state == "high"  # and its memory is as it was
+    assert uno.pins["D11"].state == "high"  # its memory is unchanged
 
 
 # -- pins -----------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""What documents show of a terminal is what a robot answers to the same lines.
+"""Terminals in documents show the answers of a robot to the same lines.
 
 A fence `terminal` is a conversation: lines that a person types, and the answers, which begin with
 `//`. Here a virtual robot in the document's language answers them.
@@ -16,8 +16,8 @@ from tools.site.documents import language_of
 
 PAGES = sorted([*ROOT.glob("README*.md"), *(ROOT / "docs").glob("*/*.md")])
 ANSWER = "// "
-LONGEST_MS = 5000  # until an answer comes
-SILENT_MS = 1500  # after the answers, before the next line: more than a second
+LONGEST_MS = 5000  # timeout of an answer
+SILENT_MS = 1500  # pause between the answers and the next line: over a second
 
 
 def conversations(page: Path) -> Iterator[list[str]]:
@@ -39,8 +39,8 @@ EVERY = [
 ]
 
 
-def played(lines: list[str], language: str) -> list[str]:
-    """Return the conversation as it goes: each line, and what is answered before the next one."""
+def play_conversation(lines: list[str], language: str) -> list[str]:
+    """Return the conversation: each line, and the answers before the next one."""
     from tests.support.virtual_robot import floor
     from tiniscript import robots
     from tiniscript.virtual.robot import VirtualRobot
@@ -50,13 +50,13 @@ def played(lines: list[str], language: str) -> list[str]:
     for k, line in enumerate(lines):
         if line.startswith(ANSWER):
             continue
-        wanted = next(
+        wanted_count = next(
             (n for n, line in enumerate(lines[k + 1 :]) if not line.startswith(ANSWER)),
             len(lines) - k - 1,
         )
         data = robot.step(robot.now_ms + 1, line.encode() + b"\r\n")
         end_ms = robot.now_ms + LONGEST_MS
-        while data.count(b"\n") < wanted and robot.now_ms < end_ms:
+        while data.count(b"\n") < wanted_count and robot.now_ms < end_ms:
             data += robot.step(robot.now_ms + 1)
         data += robot.step(robot.now_ms + SILENT_MS)
         transcript += [line, *data.decode().splitlines()]
@@ -66,10 +66,10 @@ def played(lines: list[str], language: str) -> list[str]:
 @pytest.mark.parametrize(("language", "lines"), EVERY)
 def test_a_robot_answers_as_the_document_shows(language: str, lines: list[str]) -> None:
     assert len(lines) >= 2
-    assert played(lines, language) == lines
+    assert play_conversation(lines, language) == lines
 
 
 def test_the_front_door_and_both_guides_show_a_terminal() -> None:
-    shown = {page.relative_to(ROOT).as_posix() for page in PAGES if list(conversations(page))}
+    shown_texts = {page.relative_to(ROOT).as_posix() for page in PAGES if list(conversations(page))}
     guides = {"docs/en/monday.md", "docs/es/monday.md"}
-    assert {"README.md", "README.es.md", *guides} <= shown
+    assert {"README.md", "README.es.md", *guides} <= shown_texts

@@ -18,7 +18,7 @@ from tests.support.rows import each_row
 
 CPP = ROOT / "vm_arduino" / "src"
 PYTHON = ROOT / "compiler" / "tiniscript"
-# In the body of a class: `bool Name(…)`, with what may stand before it.
+# A method in a class body: `bool Name(…)`, with its qualifiers.
 METHOD = re.compile(r"^  (?:[\w:<>]+[ *&]+)+?(\w+)\([^()]*\)(?: const)?[ \w]*[;{]", re.M)
 
 
@@ -29,7 +29,7 @@ class Twins(NamedTuple):
     python: tuple[tuple[str, str], ...]
     in_cpp: dict[str, str]
     in_python: dict[str, str]
-    has_attributes: bool = False  # what a method of C++ returns may be an attribute of Python
+    has_attributes: bool = False  # a method of C++ may correspond to an attribute of Python
 
 
 TASKS = Twins(

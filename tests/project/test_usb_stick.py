@@ -40,7 +40,7 @@ def stick(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def wheel_of(distribution: Distribution, folder: Path) -> None:
-    """Make a wheel of what is installed."""
+    """Make a wheel of an installed distribution."""
     name = re.sub(r"[-.]+", "_", distribution.metadata["Name"])
     tag = re.findall(r"(?m)^Tag: (\S+)$", distribution.read_text("WHEEL") or "")[-1]
     rows = []
@@ -58,18 +58,18 @@ def wheel_of(distribution: Distribution, folder: Path) -> None:
         wheel.writestr(record, "".join([*rows, f"{record},,\n"]))
 
 
-def installed(root: str, extras: set[str]) -> dict[str, Distribution]:
+def list_installed(root: str, extras: set[str]) -> dict[str, Distribution]:
     """Return a distribution's requirements, and theirs, that this computer has."""
     from packaging.requirements import Requirement
 
     distributions: dict[str, Distribution] = {}
     waiting = [(root, extras)]
     while waiting:
-        name, wanted = waiting.pop()
+        name, wanted_names = waiting.pop()
         package = distribution(name)
         for text in package.requires or ():
             need = Requirement(text)
-            environments = [{"extra": extra} for extra in wanted] or [{"extra": ""}]
+            environments = [{"extra": extra} for extra in wanted_names] or [{"extra": ""}]
             if need.marker and not any(
                 need.marker.evaluate(environment) for environment in environments
             ):
@@ -82,14 +82,16 @@ def installed(root: str, extras: set[str]) -> dict[str, Distribution]:
 
 @pytest.mark.sampled(of="sticks that pip reads")
 def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
-    for needed in ("wasmtime", "bleak", "zeroconf", "PIL", "setuptools"):
-        if find_spec(needed) is None:  # an import of setuptools would replace this one's distutils
-            pytest.skip(f"no package {needed}")
+    for needed_module in ("wasmtime", "bleak", "zeroconf", "PIL", "setuptools"):
+        if (
+            find_spec(needed_module) is None
+        ):  # an import of setuptools would replace this one's distutils
+            pytest.skip(f"no package {needed_module}")
     wheels = stick / "wheels"
     wheels.mkdir()
-    for installed_one in installed("tiniscript", {"radio", "virtual"}).values():
+    for installed_one in list_installed("tiniscript", {"radio", "virtual"}).values():
         wheel_of(installed_one, wheels)
-    copy = tmp_path / "copy"  # a build leaves folders behind
+    copy = tmp_path / "copy"  # a build leaves folders
     copy.mkdir()
     for name in ("compiler", "vm_arduino", "pyproject.toml", "setup.py", "README.md", "LICENSE"):
         source = ROOT / name
@@ -123,7 +125,7 @@ def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
 
 
 def make_older(home: Path) -> None:
-    """Make what is installed an older version, which does not work."""
+    """Make the installation an older version, which does not work."""
     facts = next(home.rglob("tiniscript-*.dist-info"))
     older = facts.with_name("tiniscript-0.0.1.dist-info")
     version = facts.name.split("-")[1].removesuffix(".dist")
@@ -184,7 +186,7 @@ def test_each_system_has_its_script_with_its_line_ends(stick: Path) -> None:
 
 
 def test_the_script_of_windows_keeps_the_rules_of_cmd(stick: Path) -> None:
-    """Nobody has run it: what can be read is read."""
+    """Only readable rules are checked, because the script is not run."""
     lines = (stick / "start.bat").read_text(encoding="ascii").splitlines()
     labels = {line[1:] for line in lines if line.startswith(":")} | {":eof"}
     for line in lines:
@@ -192,14 +194,14 @@ def test_the_script_of_windows_keeps_the_rules_of_cmd(stick: Path) -> None:
             continue
         for target in re.findall(r"\bgoto (\S+)", line):
             assert target in labels, line
-        # a folder may have spaces, & and ( in its name: only what stands in quotes is one word
+        # A folder's name may contain spaces, & and (, so that only quoted text is one word.
         plain = re.sub(r'set "\w+="', 'set "', line).replace('start ""', "start").replace('""', '"')
         outside = "".join(re.split(r'("[^"]*")', plain)[::2])
         assert not re.search(r"%(HERE|SETUP|USERPROFILE|LocalAppData)%|%%~fI", outside), line
         # a variable of the person's own is not ours
         for name in re.findall(r"if not defined (\w+)", line):
             assert f'set "{name}="' in lines, line
-        # cmd takes the outer quotes away as soon as there is anything but one plain name
+        # cmd removes the outer quotes unless they contain a single plain name.
         if line.startswith("cmd /k"):
             assert re.fullmatch(r'cmd /k ""[^"]+""', line)
     assert "/wait" in next(line for line in lines if "/passive" in line)
@@ -244,7 +246,7 @@ def test_the_pages_speak_one_language_and_have_boxes_to_tick(stick: Path) -> Non
 
 
 def test_a_phone_shows_each_page_of_a_teacher_whole(stick: Path) -> None:
-    """Nothing is cut at 390 px, but the drawing of the wires, which says that it slides."""
+    """Nothing is cut at 390 px except the wiring, which has a note about scrolling."""
     pages = [*sorted(stick.glob("pages/**/*.es.html")), stick / "pages" / "index.es.html"]
     cut = """[...document.querySelectorAll('pre, table, .finished')]
         .filter(each => each.scrollWidth > each.clientWidth + 1).length"""
@@ -280,7 +282,9 @@ def wheel(folder: Path, name: str, needs: Sequence[str] = (), tag: str = "py3-no
     return path
 
 
-def fetched(folder: Path, target: Path, system: str, python: str, wanted: str | Path) -> set[str]:
+def fetch_packages(
+    folder: Path, target: Path, system: str, python: str, wanted: str | Path
+) -> set[str]:
     """Return the names of what pip takes from a folder for a system and a Python."""
     words = ["download", "--quiet", "--no-index", "--find-links", str(folder), "--dest",
              str(target), "--only-binary=:all:", "--python-version", python]  # fmt: skip
@@ -297,20 +301,20 @@ def test_markers_are_those_of_the_target(tmp_path: Path) -> None:
         wheel(tmp_path, name)
     needs = ["only_windows; sys_platform == 'win32'", "only_old; python_version < '3.11'"]
     ours = wheel(tmp_path, "robot", needs)
-    for system, python, wanted in (
+    for system, python, wanted_names in (
         ("windows", "3.10", {"only_windows", "only_old"}),
         ("windows", "3.12", {"only_windows"}),
         ("mac-apple", "3.10", {"only_old"}),
     ):
-        names = fetched(tmp_path, tmp_path / f"{system}{python}", system, python, ours)
-        assert {name.split("-")[0] for name in names} == {"robot", *wanted}
+        names = fetch_packages(tmp_path, tmp_path / f"{system}{python}", system, python, ours)
+        assert {name.split("-")[0] for name in names} == {"robot", *wanted_names}
 
 
 def test_linux_gets_the_wheel_with_the_parts_in_c(tmp_path: Path) -> None:
     """wasmtime has one for manylinux1 and one of Python alone, which does not run."""
     wheel(tmp_path, "robot")
     path = wheel(tmp_path, "robot", tag="py3-none-manylinux1_x86_64")
-    assert fetched(tmp_path, tmp_path / "target", "linux", "3.12", "robot") == {path.name}
+    assert fetch_packages(tmp_path, tmp_path / "target", "linux", "3.12", "robot") == {path.name}
 
 
 def test_a_wheel_without_its_parts_in_c_is_for_every_system(tmp_path: Path) -> None:

@@ -15,8 +15,8 @@ def test_warnings_of_a_folder_are_counted(
     for name, program in (("a", "X = 5"), ("b", "X = 5;F(500, 50)"), ("c", "F(1, 50)")):
         (tmp_path / f"{name}.ts").write_text(program, encoding="utf-8")
     assert warned.main([str(tmp_path)]) == 0
-    *others, long_time, unused = capsys.readouterr().out.splitlines()
-    assert (long_time, unused) == ("TS811 1 of 3", "TS806 2 of 3")
+    *others, long_time, unused_text = capsys.readouterr().out.splitlines()
+    assert (long_time, unused_text) == ("TS811 1 of 3", "TS806 2 of 3")
     assert others and all(row.endswith(" 0 of 3") for row in others)
     (tmp_path / "empty").mkdir()
     with pytest.raises(SystemExit, match="no programs"):

@@ -67,7 +67,7 @@ def test_an_output_that_windows_would_lose_is_refused(
 
 
 def test_a_device_is_no_program(tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reading the console or a serial port would wait for ever."""
+    """Reading the console or a serial port would wait forever."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "x").mkdir()
     names = ("aux.ts", "con", "x/NUL.ts", r"C:\x\com1.txt")
@@ -110,7 +110,7 @@ def test_a_pattern_means_its_files(
 def test_a_program_of_notepad_is_the_same_program(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With CR LF and a byte order mark; a mistake has the same sentence."""
+    """With CR LF and a byte order mark; mistakes have the same message."""
     monkeypatch.chdir(tmp_path)
     wrong = "SI|F(2, 80)\nW(1)\nR(2 60)\n"
     outputs = set()
@@ -129,8 +129,8 @@ def test_a_program_of_notepad_is_the_same_program(
 # -- outputs that are no terminal
 
 
-def encoded(text: str, encoding: str) -> str:
-    """Return what is read of a sentence that was written in an encoding."""
+def misread(text: str, encoding: str) -> str:
+    """Return a sentence that was written in one encoding and read in another."""
     streams.register()
     return text.encode(encoding, streams.ERROR_HANDLER).decode(encoding)
 
@@ -140,15 +140,15 @@ def test_every_sentence_can_be_read_in_an_encoding_of_windows(encoding: str) -> 
     sentences = [sentence for language in languages() for sentence in said_in(language).values()]
     assert len(sentences) > 500
     for sentence in sentences:
-        assert "\\u" not in encoded(sentence, encoding), sentence
+        assert "\\u" not in misread(sentence, encoding), sentence
 
 
 def test_signs_without_a_code_become_plain_ones() -> None:
-    assert encoded("10 kΩ − 5…", "cp850") == "10 kohm - 5..."
-    assert encoded("10 kΩ − 5…", "cp1252") == "10 kohm - 5…"
-    assert encoded("┤█│→", "cp1252") == "|#|>"
-    assert encoded("π", "cp1252") == "\\u03c0"
-    assert encoded("línea ñ", "cp850") == "línea ñ"
+    assert misread("10 kΩ − 5…", "cp850") == "10 kohm - 5..."
+    assert misread("10 kΩ − 5…", "cp1252") == "10 kohm - 5…"
+    assert misread("┤█│→", "cp1252") == "|#|>"
+    assert misread("π", "cp1252") == "\\u03c0"
+    assert misread("línea ñ", "cp850") == "línea ñ"
 
 
 def test_a_wiring_list_goes_through_a_pipe_of_windows() -> None:
@@ -210,8 +210,8 @@ for words in commands:
 
 def test_nothing_but_unix_knows_unix(tmp_path: Path) -> None:
     """Each module can be imported, and what needs no robot runs, without what Windows lacks."""
-    for needed in ("wasmtime", "PIL", "bleak", "zeroconf"):
-        pytest.importorskip(needed)
+    for needed_module in ("wasmtime", "PIL", "bleak", "zeroconf"):
+        pytest.importorskip(needed_module)
     (tmp_path / "prog.ts").write_text(PROGRAM)
     completed = subprocess.run(
         [sys.executable, "-c", WITHOUT_UNIX], cwd=tmp_path, capture_output=True, text=True,
@@ -237,7 +237,7 @@ sys.exit(main(["upload", "-e", "SI|F(1, 80)", "--virtual", "--hurry", "10", "--l
 
 
 def test_a_clock_that_goes_in_steps_of_16_ms_is_enough(tmp_path: Path) -> None:
-    """That of Windows, until Python 3.13; a sleep ends at such a step, too."""
+    """The clock of Windows before Python 3.13; sleeps also end at its steps."""
     completed = subprocess.run(
         [sys.executable, "-c", COARSE.format(step_s=1 / 64)], cwd=tmp_path, capture_output=True,
         text=True, env={"PYTHONPATH": str(ROOT / "compiler"), "HOME": str(tmp_path)},
@@ -270,7 +270,7 @@ def test_keys_come_from_the_console(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 class Kernel:
-    """What `kernel32` knows of consoles: the mode of one, and which bits it takes."""
+    """A `kernel32` with console modes, and the bits that each accepts."""
 
     def __init__(self, mode: int, taken: int) -> None:
         self.mode, self.taken = mode, taken
@@ -362,7 +362,7 @@ def test_a_reader_that_has_left_is_no_mistake(
 # -- files
 
 
-@pytest.mark.parametrize("opened_s", [0.1, 60.0])  # of a clock that only sleeping moves
+@pytest.mark.parametrize("opened_s", [0.1, 60.0])  # times of a clock that advances only by sleeping
 def test_a_file_that_is_open_elsewhere_is_replaced_a_moment_later(
     opened_s: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -380,14 +380,14 @@ def test_a_file_that_is_open_elsewhere_is_replaced_a_moment_later(
 
     monkeypatch.setattr(Path, "replace", replace)
 
-    def slept(seconds: float) -> None:
+    def skip_seconds(seconds: float) -> None:
         now_s[0] += seconds
 
     monkeypatch.setattr(files, "monotonic", lambda: now_s[0])
-    monkeypatch.setattr(files, "sleep", slept)
+    monkeypatch.setattr(files, "sleep", skip_seconds)
     monkeypatch.setattr(sys, "platform", "linux")
     with pytest.raises(PermissionError):
-        files.replace(path, b"new")  # elsewhere nobody waits
+        files.replace(path, b"new")  # other systems do not wait
     assert (tries, now_s) == ([1], [0.0])
     monkeypatch.setattr(sys, "platform", "win32")
     if opened_s > 1:

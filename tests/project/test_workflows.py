@@ -27,14 +27,14 @@ STEP = {"name", "uses", "with", "run", "if", "env"}
 THEIRS = {"apt-get", "git", "env", "sh", "py", "python", "python3", ".venv/bin/python", "tsc"}
 
 
-def loaded(path: Path) -> dict[str, Any]:
+def load_workflow(path: Path) -> dict[str, Any]:
     workflow: dict[str, Any] = yaml.load(path.read_text(encoding="utf-8"), Loader=yaml.BaseLoader)
     return workflow
 
 
 def steps() -> Iterator[tuple[str, dict[str, Any]]]:
     for path in FILES:
-        for job in loaded(path)["jobs"].values():
+        for job in load_workflow(path)["jobs"].values():
             for step in job["steps"]:
                 yield path.name, step
 
@@ -59,7 +59,7 @@ def test_a_workflow_is_well_formed_and_trusts_nobody() -> None:
 
 def test_a_job_has_a_form_that_forges_read_and_ends() -> None:
     for path in FILES:
-        for job in loaded(path)["jobs"].values():
+        for job in load_workflow(path)["jobs"].values():
             assert set(job) <= JOB
             assert 0 < int(job["timeout-minutes"]) <= 120
             for step in job["steps"]:
@@ -69,14 +69,14 @@ def test_a_job_has_a_form_that_forges_read_and_ends() -> None:
 
 def test_each_commit_of_main_is_checked_to_its_end() -> None:
     for path in FILES:
-        cancels = loaded(path)["concurrency"]["cancel-in-progress"]
+        cancels = load_workflow(path)["concurrency"]["cancel-in-progress"]
         assert cancels == "${{ github.ref != 'refs/heads/main' }}"
 
 
 def test_a_container_may_read_its_history() -> None:
-    """Its checkout has another owner: without that it would draw one sample for ever."""
+    """Its checkout has another owner: without that it would draw one sample forever."""
     for path in FILES:
-        for job in loaded(path)["jobs"].values():
+        for job in load_workflow(path)["jobs"].values():
             runs = " ".join(step.get("run", "") for step in job["steps"])
             assert "container" not in job or "--add safe.directory" in runs, path.name
 
@@ -126,10 +126,10 @@ def test_lines_of_tsc_do_what_they_should() -> None:
 def test_the_rehearsal_knows_its_options(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         release(["--help"])
-    known = capsys.readouterr().out
+    known_text = capsys.readouterr().out
     (words,) = [words for words in commands() if "tools.release" in words]
     options = [word for word in words if word.startswith("--")]
     options += re.findall(r"'(--[a-z-]+)'", (FOLDER / "release.yml").read_text(encoding="utf-8"))
     assert len(options) == 2
     for option in options:
-        assert option in known
+        assert option in known_text

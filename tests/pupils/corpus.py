@@ -1,4 +1,4 @@
-"""Wrong programs as pupils write them, and what is said of each.
+"""Wrong programs as pupils write them, and their messages.
 
 They are in `en.txt`, `es.txt` and `pt.txt`, by the language of their words; those with words of
 TiniScript alone are in `en.txt`. Below a program stands a row for each message,
@@ -56,17 +56,17 @@ def entries() -> tuple[Entry, ...]:
             messages = tuple(
                 row.partition(" ")[2].partition(FOR)[0] for row in message_rows if row != ">"
             )
-            mended = _mended(program, message_rows, changed)
-            entries.append(Entry(language, "\n".join(program), messages, mended, asides))
+            mended_text = _mend(program, message_rows, changed)
+            entries.append(Entry(language, "\n".join(program), messages, mended_text, asides))
     return tuple(entries)
 
 
-def _mended(program: list[str], messages: list[str], changed: list[str]) -> str | None:
-    """Return the program that the rows below it say, or None where they change nothing."""
-    if changed and not changed[0][1:2].isdigit():
-        return "\n".join(row[1:].removeprefix(" ") for row in changed)
+def _mend(program: list[str], messages: list[str], changed_lines: list[str]) -> str | None:
+    """Return the program that the rows below it say, or None if they change nothing."""
+    if changed_lines and not changed_lines[0][1:2].isdigit():
+        return "\n".join(row[1:].removeprefix(" ") for row in changed_lines)
     lines = [line.rstrip() for line in program]
-    rows = [row[1:].split(" ", 1) for row in changed]
+    rows = [row[1:].split(" ", 1) for row in changed_lines]
     for row in messages:
         if row.startswith(">="):
             number, _, fix = row[3:].split(" ", 2)
@@ -96,24 +96,26 @@ def _indent(line: str) -> str:
 
 @lru_cache(maxsize=10_000)
 def check(text: str) -> list[Diagnostic]:
-    """Return what is said of a program: nobody changes the list, which all get."""
+    """Return the diagnostics of a program, in a shared list that nobody changes."""
     robot = robots.load(robots.DEFAULT)
     return compile_source(text.encode(), robot, "prog.ts", is_strict=False).diagnostics
 
 
 def found_in(entry: Entry) -> Entry:
-    """Return what is said of a program now, and what becomes of it."""
+    """Return the current messages of a program, and its repaired text."""
     program = entry.program
     diagnostics = check(program)
     source = Source(program)
     messages = [message(diagnostic, source, "es") for diagnostic in diagnostics]
-    mended = repair_program(program, check).text
+    mended_text = repair_program(program, check).text
     rows_of_messages = tuple(
         f"{message.line} {message.code} {message.fix}".rstrip() for message in messages
     )
-    new_program = "\n".join(line.rstrip() for line in mended.split("\n"))  # as the file keeps it
+    new_program = "\n".join(
+        line.rstrip() for line in mended_text.split("\n")
+    )  # in the form of the file
     return entry._replace(
-        messages=rows_of_messages, mended=new_program or None if mended != program else None
+        messages=rows_of_messages, mended=new_program or None if mended_text != program else None
     )
 
 
@@ -124,13 +126,13 @@ def write(entries: list[Entry]) -> None:
 
 
 def _rows(entry: Entry) -> list[str]:
-    """Return a program and what is said of it, as the file has them."""
+    """Return a program and its messages in the form of the file."""
     message_rows = [f"> {row}" for row in entry.messages]
     above = [entry.program, *entry.asides]
     if entry.mended is None:
         return [*above, *(message_rows or [">"])]
-    program, mended = entry.program.split("\n"), entry.mended.split("\n")
-    pairs = enumerate(zip(program, mended, strict=False), 1)
+    program, mended_lines = entry.program.split("\n"), entry.mended.split("\n")
+    pairs = enumerate(zip(program, mended_lines, strict=False), 1)
     changed = {number: new for number, (old, new) in pairs if old.rstrip() != new}
     marked = list(message_rows)
     for k, row in enumerate(entry.messages):
@@ -143,22 +145,22 @@ def _rows(entry: Entry) -> list[str]:
             marked[k] = f">= {row}{FOR}{part}"
             del changed[int(number)]
     rows = [f"={number} {line}".rstrip() for number, line in changed.items()]
-    if _mended(program, marked, rows) == entry.mended:
+    if _mend(program, marked, rows) == entry.mended:
         return [*above, *marked, *rows]
-    return [*above, *message_rows, *(f"= {line}".rstrip() for line in mended)]
+    return [*above, *message_rows, *(f"= {line}".rstrip() for line in mended_lines)]
 
 
 # Mistakes whose repair writes a number in another way: a unit, a letter for a digit, `X++`, `50.`,
-# and how often `I = 1 TO 4` and `LOOP(I = 0; I < 4; I++)` go round.
+# and how many times `I = 1 TO 4` and `LOOP(I = 0; I < 4; I++)` go round.
 OTHER_NUMBERS = (
     codes.UNIT,
     codes.BAD_NUMBER,
     codes.OTHER_ASSIGNMENT,
     codes.LINE_NUMBER,
     codes.SETUP_UNKNOWN,  # `S1|` is SI
-    codes.SETUP_NEEDS_BAR,  # and so is `S1;`
+    codes.SETUP_NEEDS_BAR,  # the same applies to `S1;`
     codes.LOOP_COUNTS,
-    codes.NEEDLESS_FRAME,  # with its `return 0`
+    codes.NEEDLESS_FRAME,  # including its `return 0`
     codes.LISTS,  # `V[0]` is V_1
     codes.PASTED,  # `[20:14] Luis:`
     codes.NO_BRACKETS_HERE,  # `TASK(1)`

@@ -25,13 +25,13 @@ PACKAGE = ROOT / "compiler" / "tiniscript"
 JUDGES = ("recovery/*.py", "diagnostics/*.py", "semantics/checker.py", "syntax/*.py")
 LIST = FOLDER / "cover.txt"
 HEAD = re.compile(r"# \d+ of \d+ programs reach the same (\d+) branches; (\d+) forks, (\w+)")
-OTHER = 50  # one of so many forks may be new
+OTHER = 50  # one of so many branches may be new
 Branch = tuple[str, int, int]
 _FORKS = (ast.If, ast.IfExp, ast.For, ast.While, ast.BoolOp, ast.comprehension, ast.ExceptHandler)
 
 
 @cache
-def covered() -> tuple[Entry, ...]:
+def list_covering_entries() -> tuple[Entry, ...]:
     """Return the entries that each commit is tested with."""
     names = {row.partition(" ")[0] for row in LIST.read_text(encoding="utf-8").splitlines()}
     return tuple(entry for entry in entries() if name_of(entry.program) in names)
@@ -46,7 +46,7 @@ def judges() -> list[Path]:
 
 
 def forks(sources: Iterable[str]) -> int:
-    """Return at how many places of the code it is asked where to go on."""
+    """Return the number of branching places in the code."""
     return sum(isinstance(node, _FORKS) for text in sources for node in ast.walk(ast.parse(text)))
 
 
@@ -67,49 +67,49 @@ def _name_of_all(programs: Sequence[str]) -> str:
 def add(new: Sequence[str], programs: Sequence[str]) -> None:
     """Take new programs into the list of chosen ones, until all are chosen again."""
     first, *rows = LIST.read_text(encoding="utf-8").splitlines()
-    written = HEAD.match(first)
+    written_match = HEAD.match(first)
     if (
         not new
-        or not written
-        or written[3] != _name_of_all([it for it in programs if it not in new])
+        or not written_match
+        or written_match[3] != _name_of_all([it for it in programs if it not in new])
     ):
-        return  # others have come or gone
+        return  # entries were added or removed
     rows += map(_row, new)
-    first = _head(len(rows), int(written[1]), programs, int(written[2]))
+    first = _head(len(rows), int(written_match[1]), programs, int(written_match[2]))
     LIST.write_text("\n".join((first, *rows)) + "\n", encoding="utf-8")
-    covered.cache_clear()
+    list_covering_entries.cache_clear()
 
 
 def _row(program: str) -> str:
     return f"{name_of(program)} {program.splitlines()[0].strip()}"
 
 
-def stale(written: str, now: str) -> str:
-    """Return why programs are to be chosen again; nothing where they need not."""
-    before, after = HEAD.match(written), HEAD.match(now)
-    assert before and after, "its first line says of what it is"
-    if before[3] != after[3]:
+def stale(written_text: str, now: str) -> str:
+    """Return the reason to choose the programs again, or ""."""
+    match_before, match_after = HEAD.match(written_text), HEAD.match(now)
+    assert match_before and match_after, "its first line says of what it is"
+    if match_before[3] != match_after[3]:
         return "programs have come or gone"
-    moved = abs(int(after[2]) - int(before[2]))
-    return "the code has other branches" if moved * OTHER > int(before[2]) else ""
+    moved = abs(int(match_after[2]) - int(match_before[2]))
+    return "the code has other branches" if moved * OTHER > int(match_before[2]) else ""
 
 
-def reached(programs: Sequence[Entry]) -> list[frozenset[Branch]]:
-    """Return which branches each program reaches, when it is checked and repaired."""
+def list_reached_branches(programs: Sequence[Entry]) -> list[frozenset[Branch]]:
+    """Return the branches that each program reaches when checked and repaired."""
     from coverage import Coverage
 
     files = [str(path) for path in judges()]
-    measured = Coverage(data_file=None, branch=True, include=files, config_file=False)
+    measured_coverage = Coverage(data_file=None, branch=True, include=files, config_file=False)
     branches = []
     for entry in programs:
         check.cache_clear()
-        measured.erase()
-        measured.start()
+        measured_coverage.erase()
+        measured_coverage.start()
         try:
             found_in(entry)
         finally:
-            measured.stop()
-        data = measured.get_data()
+            measured_coverage.stop()
+        data = measured_coverage.get_data()
         branches.append(frozenset(
             (file, *arc) for file in data.measured_files() for arc in data.arcs(file) or ()
         ))  # fmt: skip
@@ -117,7 +117,7 @@ def reached(programs: Sequence[Entry]) -> list[frozenset[Branch]]:
 
 
 def _branches(branches: Sequence[frozenset[Branch]]) -> list[frozenset[Branch]]:
-    """Return of the steps from line to line those that might have gone elsewhere."""
+    """Return the steps between lines that might have gone elsewhere."""
     ways: dict[tuple[str, int], set[int]] = {}
     for file, start, end in frozenset().union(*branches):
         ways.setdefault((file, start), set()).add(end)
@@ -125,7 +125,7 @@ def _branches(branches: Sequence[frozenset[Branch]]) -> list[frozenset[Branch]]:
     return [frozenset(arc for arc in arcs if arc[:2] in is_branch) for arcs in branches]
 
 
-def chosen(branches: Sequence[frozenset[Branch]], before: Iterable[int] = ()) -> list[int]:
+def choose_cover(branches: Sequence[frozenset[Branch]], before: Iterable[int] = ()) -> list[int]:
     """Return the numbers of few sets that have together what all have.
 
     Each time the one that adds most; of two, rather one of `before`, so that little changes.
@@ -147,16 +147,18 @@ def chosen(branches: Sequence[frozenset[Branch]], before: Iterable[int] = ()) ->
 
 def main() -> None:
     programs = entries()
-    known = set(covered()) if LIST.exists() else set()
-    found_in(programs[0])  # what is loaded and made once is nobody's branch
-    branches = reached(programs)
-    taken = chosen(branches, [k for k, entry in enumerate(programs) if entry in known])
+    known_entries = set(list_covering_entries()) if LIST.exists() else set()
+    found_in(programs[0])  # caches filled by the first program count for none
+    branches = list_reached_branches(programs)
+    taken = choose_cover(
+        branches, [k for k, entry in enumerate(programs) if entry in known_entries]
+    )
     first = head(
         len(taken), len(frozenset().union(*branches)), [program.program for program in programs]
     )
     rows = (_row(programs[k].program) for k in taken)
     LIST.write_text("\n".join((first, *rows)) + "\n", encoding="utf-8")
-    covered.cache_clear()
+    list_covering_entries.cache_clear()
     print(first[2:].partition(";")[0] + ".")
 
 

@@ -18,11 +18,11 @@ def test_a_long_hostile_text_takes_few_steps(piece: str, monkeypatch: pytest.Mon
     checks: list[str] = []
     checked = compiling.analyze
 
-    def counted(text: str, kit: Kit, name: str = "") -> compiling.Compilation:
+    def count_check(text: str, kit: Kit, name: str = "") -> compiling.Compilation:
         checks.append(text)
         return checked(text, kit, name)
 
-    monkeypatch.setattr(compiling, "analyze", counted)
+    monkeypatch.setattr(compiling, "analyze", count_check)
     assert check(text)
     assert 0 < len(checks) <= 40
 

@@ -19,7 +19,7 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import edits_of, repair_program
 
 IN_CI = 150
-# What is put in, or takes the place of a sign: of phones, of other languages, of Spanish.
+# Inserted or replacing characters: of phones, of other languages, of Spanish.
 SLIPS = [
     *";,.:()[]{}|=<>+-*/%!?\"'°~# ", "\n", "\r\n", "//", "==", "&&", "++", ":=", " y ", " o ", "O",
     " si ", " entonces ", " fin ", " SINO ", " ENDIF ", " END_LOOP ", " LOOP(2) ", "l", "ñ", "s",
@@ -27,7 +27,7 @@ SLIPS = [
 ]  # fmt: skip
 
 
-def damaged(seed: int) -> str:
+def damage_program(seed: int) -> str:
     """Return a right program with one to three slips."""
     chance = random.Random(seed)
     text = chance.choice(programs())
@@ -51,7 +51,7 @@ def damaged(seed: int) -> str:
 @pytest.mark.sampled("seed", keep=IN_CI // 3)
 @pytest.mark.parametrize("seed", range(IN_CI))
 def test_a_damaged_program_is_repaired_or_left(seed: int) -> None:
-    text = damaged(seed)
+    text = damage_program(seed)
     diagnostics = check(text)
     for diagnostic in diagnostics[:20]:
         edits = edits_of(diagnostic)
@@ -71,8 +71,8 @@ def digits(text: str) -> str:
     return "".join(re.findall("[0-9]", text))
 
 
-def _only(text: str, diagnostic: Diagnostic, changed: str) -> list[Diagnostic]:
-    return [diagnostic] if changed == text else []
+def _only(text: str, diagnostic: Diagnostic, changed_text: str) -> list[Diagnostic]:
+    return [diagnostic] if changed_text == text else []
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ def test_a_long_text_takes_no_more_than_in_proportion(begin: str, piece: str, en
 
 
 MISTAKES = 100
-MOST_CALLS = 3_000  # for each character of a text with so many
+MOST_CALLS = 3_000  # most calls per character of a text of this size
 REPEATED = [
     *("FOR I = 1 TO 5;F(1, 50);NEXT I", "X{k} = {k} m", "F(5, 60) HASTA(PARED < 10 seg)"),
     *("SIDE = 30 CM;W(SIDE)", "{k}. F(1, 50)", "IF(KEY = UP);S;ENDIF", "F(1, 60, R)", "F(50; 2)"),

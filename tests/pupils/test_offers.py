@@ -1,4 +1,4 @@
-"""What a message offers is right: every edit, and every line that it shows, compiles.
+"""Offers of messages are right: every edit, and every line that they show, compiles.
 
 The law is stated here once more, without the code that keeps it: what is put into a program has no
 mistake, but one of which another message tells.
@@ -15,17 +15,17 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import edits_of
 
-SAID = ("fix", "right", "near")  # what a message shows of the changed program
+SAID = ("fix", "right", "near")  # values of a message that show the changed program
 OF_BLOCKS = {code.number for code in (codes.NEVER_ENDS, codes.NOT_OPEN, codes.WRONG_END)}
 
 
 def put_in(edits: list[Edit]) -> list[Span]:
-    """Return where the texts of changes are in the changed program."""
-    ordered = sorted(edits)
-    grown = [len(edit.text) - (edit.span.end - edit.span.start) for edit in ordered]
+    """Return the spans of the edits' texts in the changed program."""
+    ordered_edits = sorted(edits)
+    grown = [len(edit.text) - (edit.span.end - edit.span.start) for edit in ordered_edits]
     starts = [edit.span.start + shift for edit, shift in
-              zip(ordered, accumulate(grown, initial=0), strict=False)]  # fmt: skip
-    return [Span(at, at + len(edit.text)) for at, edit in zip(starts, ordered, strict=True)]
+              zip(ordered_edits, accumulate(grown, initial=0), strict=False)]  # fmt: skip
+    return [Span(at, at + len(edit.text)) for at, edit in zip(starts, ordered_edits, strict=True)]
 
 
 def ways(diagnostic: Diagnostic, text: str) -> list[list[Edit]]:
@@ -47,29 +47,31 @@ def wrong_in(
     other_words: set[str],
 ) -> list[str]:
     """Return the codes of mistakes in what a message shows of the changed program."""
-    changed = apply_edits(text, edits)
+    changed_text = apply_edits(text, edits)
     own = sorted(edits_of(diagnostic) or edits)
     spans = [span for edit, span in zip(sorted(edits), put_in(edits), strict=True) if edit in own]
     value = next((diagnostic.values[gap] for gap in SAID if diagnostic.values.get(gap)), "")
-    at = changed.find(value, max(0, spans[0].start - len(value))) if value else -1
+    at = changed_text.find(value, max(0, spans[0].start - len(value))) if value else -1
     if 0 <= at < spans[-1].end:
         spans.append(Span(at, at + len(value)))
     return [
-        diagnostic.code.number for diagnostic in check(changed)
+        diagnostic.code.number for diagnostic in check(changed_text)
         if diagnostic.is_mistake
         and any(start <= diagnostic.span.start < end for start, end in spans)
         and diagnostic.code.number not in other_codes
-        and not is_in_words(changed.upper(), diagnostic.span.start, other_words)
+        and not is_in_words(changed_text.upper(), diagnostic.span.start, other_words)
     ]  # fmt: skip
 
 
-def is_in_words(changed: str, place: int, words: set[str]) -> bool:
-    """Whether a place is in one of the words to which other messages point."""
-    return any(0 <= changed.find(word, max(0, place - len(word) + 1)) <= place for word in words)
+def is_in_words(changed_text: str, place: int, words: set[str]) -> bool:
+    """Return whether a place is in one of the words that other messages point at."""
+    return any(
+        0 <= changed_text.find(word, max(0, place - len(word) + 1)) <= place for word in words
+    )
 
 
 def offered_wrongly(text: str) -> list[str]:
-    """Return the codes of a program's messages that offer what is wrong."""
+    """Return the codes of a program's messages with wrong offers."""
     diagnostics = [diagnostic for diagnostic in check(text) if diagnostic.is_mistake]
     together: list[Edit] = []
     for diagnostic in diagnostics:
@@ -81,11 +83,11 @@ def offered_wrongly(text: str) -> list[str]:
         other_words = {text[slice(*other.span)].upper() for other in others} - {""}
         other_codes = {other.code.number for other in others}
         other_codes |= OF_BLOCKS if others or not edits_of(diagnostic) else set()
-        tried = ways(diagnostic, text)
+        tried_edits = ways(diagnostic, text)
         if set(edits_of(diagnostic) or ()) <= set(together) and edits_of(diagnostic):
-            tried.append(together)
-        if tried and all(
-            wrong_in(diagnostic, text, edits, other_codes, other_words) for edits in tried
+            tried_edits.append(together)
+        if tried_edits and all(
+            wrong_in(diagnostic, text, edits, other_codes, other_words) for edits in tried_edits
         ):
             bad.append(diagnostic.code.number)
     return bad

@@ -1,4 +1,4 @@
-"""What pupils get wrong: each program of the corpus gets its messages, and repairs that are right.
+"""Mistakes of pupils: each program of the corpus gets its messages, and correct repairs.
 
 python -m pytest tests/pupils --accept    writes what is said now; read the difference like code
 python -m pytest tests/pupils --whole     takes all programs, and not the few of `cover.txt`
@@ -13,7 +13,7 @@ import pytest
 
 from tests.pupils import cover
 from tests.pupils.corpus import OTHER_NUMBERS, Entry, check, entries, found_in, mistake_count, write
-from tests.pupils.cover import LIST, add, chosen, forks, head, stale
+from tests.pupils.cover import LIST, add, choose_cover, forks, head, stale
 from tests.support.rows import go_through
 from tiniscript.base.source import Edit, Source, apply_edits
 from tiniscript.diagnostics import codes
@@ -28,12 +28,12 @@ CONVERTED = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)|delay|ton[eo]")
 
 
 def numbers(text: str) -> list[str]:
-    without_notes = re.sub(r"\b[A-G][45]\b", "", text)  # the 4 of C4 is none
+    without_notes = re.sub(r"\b[A-G][45]\b", "", text)  # the 4 of C4 is not a number
     return sorted(re.findall("[0-9]+", without_notes))
 
 
 def loses_a_number(text: str, edits: list[Edit]) -> bool:
-    """Whether a change drops one of the program's numbers."""
+    """Return whether an edit drops one of the program's numbers."""
     numbers_left = numbers(apply_edits(text, edits))
     for number in numbers(text):
         if number not in numbers_left:
@@ -54,34 +54,37 @@ def test_the_programs_of_a_commit_are_chosen_of_this_corpus_and_code() -> None:
 
 
 def test_they_are_chosen_again_when_others_may_be_needed() -> None:
-    before = head(1, 1, ["S", "F"])
-    assert stale(before, head(2, 2, ["F", "S"])) == ""
-    assert stale(before, head(1, 1, ["S", "B"])) == "programs have come or gone"
+    head_before = head(1, 1, ["S", "F"])
+    assert stale(head_before, head(2, 2, ["F", "S"])) == ""
+    assert stale(head_before, head(1, 1, ["S", "B"])) == "programs have come or gone"
     count = forks(["if a and b:\n    [c for c in d if c]\n"])
     assert count == 3
-    little, much = (before.replace(" forks", f"{extra} forks") for extra in ("", "0"))
-    assert stale(before, little) == "" and stale(before, much) == "the code has other branches"
+    little, much = (head_before.replace(" forks", f"{extra} forks") for extra in ("", "0"))
+    assert (
+        stale(head_before, little) == ""
+        and stale(head_before, much) == "the code has other branches"
+    )
 
 
 def test_a_new_program_is_tested_until_they_are_chosen_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    written = tmp_path / "cover.txt"
-    monkeypatch.setattr(cover, "LIST", written)
-    written.write_text(head(0, 5, ["S", "F"]) + "\n")
+    written_path = tmp_path / "cover.txt"
+    monkeypatch.setattr(cover, "LIST", written_path)
+    written_path.write_text(head(0, 5, ["S", "F"]) + "\n")
     new = "B\nS"
     add([new], ["S", "F", new])
     row = f"{cover.name_of(new)} B"
-    assert written.read_text().splitlines() == [head(1, 5, ["S", "F", new]), row]
+    assert written_path.read_text().splitlines() == [head(1, 5, ["S", "F", new]), row]
     add(["L"], ["S", "L"])
-    assert not stale(written.read_text(), head(1, 5, ["S", "F", new])), "others have gone, too"
+    assert not stale(written_path.read_text(), head(1, 5, ["S", "F", new])), "others have gone, too"
 
 
 def test_few_reach_what_all_reach() -> None:
     steps = ([1], [1, 2], [2], [3, 1], [1, 3])
     sets = [frozenset(("", k, k) for k in step) for step in steps]
-    assert chosen(sets) == [1, 3]
-    assert chosen(sets, before=[4]) == [1, 4], "what was taken before stays"
+    assert choose_cover(sets) == [1, 3]
+    assert choose_cover(sets, before=[4]) == [1, 4], "what was taken before stays"
 
 
 def test_the_corpus_is_as_it_was(
@@ -108,31 +111,35 @@ def helps_and_keeps_the_numbers(entry: Entry) -> None:
         edits, repair = edits_of(diagnostic), diagnostic.repair
         if not edits or not diagnostic.is_mistake:
             continue
-        after = check(apply_edits(entry.program, edits))
-        if mistake_count(after) > mistake_count(diagnostics):
-            # it has uncovered several: no button makes it
+        diagnostics_after = check(apply_edits(entry.program, edits))
+        if mistake_count(diagnostics_after) > mistake_count(diagnostics):
+            # A repair that reveals several other mistakes has no button.
             assert not edits_offered(
                 entry.program, diagnostics, diagnostics.index(diagnostic), check
             )
-        assert mistake_count(after) <= mistake_count(diagnostics) or not (repair and repair.is_sure)
-        if mistake_count(after) == mistake_count(diagnostics):  # it has uncovered another one
-            assert diagnostic not in after
+        assert mistake_count(diagnostics_after) <= mistake_count(diagnostics) or not (
+            repair and repair.is_sure
+        )
+        if mistake_count(diagnostics_after) == mistake_count(
+            diagnostics
+        ):  # the repair revealed another mistake
+            assert diagnostic not in diagnostics_after
         fix = diagnostic.values.get("fix", "")
         is_counted = re.match(r"LOOP\(|W\(|\w+ = \d+;LOOP\(", fix) is not None
         is_counted &= diagnostic.code is codes.OTHER_LANGUAGE
-        shifted = [diagnostic.span, *(edit.span for edit in edits)]
-        is_counted = is_counted or any(SHIFTED.search(source[span]) for span in shifted)
+        shifted_spans = [diagnostic.span, *(edit.span for edit in edits)]
+        is_counted = is_counted or any(SHIFTED.search(source[span]) for span in shifted_spans)
         is_counted = is_counted or CONVERTED.search(entry.program) is not None
         is_always = fix in ("TRUE", "WHILE(TRUE)")  # `WHILE(1)`
         is_always |= fix == "TASK"  # `TAREA 1`
         is_always |= "most" in diagnostic.values  # F(1, 800)
-        stem = diagnostic.values.get("found", "").rstrip("0123456789")  # of `STOP2`
+        stem = diagnostic.values.get("found", "").rstrip("0123456789")  # the word of `STOP2`
         is_always |= diagnostic.code is codes.UNKNOWN_WORD and diagnostic.values["near"] == stem
         if diagnostic.code not in OTHER_NUMBERS and not (is_counted or is_always):
             assert not loses_a_number(entry.program, edits), fix
 
 
-# Of these the thing to try is one text: what it says is written when somebody presses a button.
+# These suggestions are text only; the repair is computed when someone presses the button.
 WRITTEN = {
     codes.OUT_OF_RANGE: ("fix", "most"),
     codes.LONG_TIME: ("fix", "way"),
@@ -154,8 +161,11 @@ def offers_what_it_says(entry: Entry) -> None:
         names_one = any(diagnostic.values.get(gap) for gap in WRITTEN.get(diagnostic.code, ()))
         assert edits or not names_one, diagnostic
         if edits and not diagnostic.is_mistake:
-            after = check(apply_edits(text, edits))
-            assert mistake_count(after) <= mistake_count(diagnostics) and diagnostic not in after
+            diagnostics_after = check(apply_edits(text, edits))
+            assert (
+                mistake_count(diagnostics_after) <= mistake_count(diagnostics)
+                and diagnostic not in diagnostics_after
+            )
             assert diagnostic.repair is None
 
 

@@ -1,4 +1,4 @@
-"""What the pins of `*.txt` leave out: edits that are only offered, and values in a message."""
+"""Details that the pins in `*.txt` omit: optional edits, and values in a message."""
 
 from __future__ import annotations
 
@@ -72,21 +72,21 @@ def test_the_set_up_of_a_port_is_no_start() -> None:
 def test_the_body_of_a_def_is_read_once_for_all_its_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     read: list[str] = []
 
-    def scanned(text: str) -> Scan:
+    def record_scan(text: str) -> Scan:
         read.append(text)
         return scan(text)
 
-    monkeypatch.setattr(unknown_words, "scan", scanned)
+    monkeypatch.setattr(unknown_words, "scan", record_scan)
     diagnostics = check("DEF V;F(X CM, 60);END_DEF\n" + "V(20)\n" * 50)
     assert [diagnostic.values["head"] for diagnostic in diagnostics[1:]] == ["DEF V(X)"] * 50
     assert set(read) == {";F(X CM, 60);"}
-    assert len(read) <= 5  # of the program, and of what is offered: not of each call
+    assert len(read) <= 5  # scans of the program and its offers, not of each call
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("program", ["gira", "da una vuelta a la derecha", "F(20 pasos, 80)"])
 def test_a_copied_call_is_never_taken_for_another_program(program: str, language: str) -> None:
-    """In English `time` is the sensor TIME: F(time, 80) would be read."""
+    """In English, `time` is the sensor TIME: F(time, 80) would be read."""
     text = f"SI|{program}"
     first, *_ = check(text)
     calls = re.findall(r"[FBLR]\([^()]*\)", message(first, Source(text), language).fix)

@@ -1,4 +1,4 @@
-"""How a program begins in words, with the names of signs, or with what comes above `SI|`."""
+"""Beginnings of programs in words, with names of signs, or with text above `SI|`."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ VALUES = (("2, 60", ["F", "B"]), ("1, 440", ["BEEP"]), ("-30, 40", ["M"]), ("2",
 def test_si_before_orders_in_words_asks_nothing(head: str, words: str) -> None:
     for text in (f"{head} {words}", f"{head}, {words}", f"{head} {words}\nS", f"{head} {words};"):
         diagnostic = check(text)[0]
-        begun = "SB" if head == "SB" else "SI"
+        begun_text = "SB" if head == "SB" else "SI"
         assert diagnostic.code.number == "TS036", text
-        assert diagnostic.values["fix"] == f"{begun}|{ORDERS[words]}", text
+        assert diagnostic.values["fix"] == f"{begun_text}|{ORDERS[words]}", text
 
 
 @pytest.mark.parametrize(
@@ -51,9 +51,9 @@ def test_si_before_a_question_asks(words: str) -> None:
 
 @pytest.mark.parametrize("signs", SPOKEN)
 def test_signs_that_are_named_are_written(signs: tuple[str, ...]) -> None:
-    opened, closed, comma, separator, bar, forward, right = signs
-    call = f"{forward} {opened} 2 {comma} 80 {closed}".strip()
-    turn = f"{right} {opened} 1 {comma} 50 {closed}".strip()
+    opened_text, closed_text, comma, separator, bar, forward, right = signs
+    call = f"{forward} {opened_text} 2 {comma} 80 {closed_text}".strip()
+    turn = f"{right} {opened_text} 1 {comma} 50 {closed_text}".strip()
     meant = {f"{call} {separator} {turn}": "F(2, 80);R(1, 50)", call: "F(2, 80)"}
     for (words, line), place in product(
         meant.items(), ("{}", "W(1)\n{}\nS", "IF(DISTANCE < 9)\n{}\nENDIF")
@@ -72,8 +72,8 @@ def test_signs_that_are_named_are_written(signs: tuple[str, ...]) -> None:
 def test_a_typed_variable_above_si_comes_behind_it(kind: str, head: str) -> None:
     for end, note, more in product((";", ""), ("", " // fast"), ("", "int t = 2\n")):
         wrong = f"{kind}vel = 70{end}{note}\n{more}{head}F(2, vel)"
-        begun = "".join(head.split()).upper()
-        right = f"{begun}vel = 70{end}{note}\n{more.replace('int ', '')}F(2, vel)"
+        begun_text = "".join(head.split()).upper()
+        right = f"{begun_text}vel = 70{end}{note}\n{more.replace('int ', '')}F(2, vel)"
         assert (
             apply_edits(
                 wrong, [it for diagnostic in check(wrong) for it in edits_of(diagnostic) or []]
@@ -92,8 +92,8 @@ def test_values_without_a_word_get_those_that_take_them(
 ) -> None:
     text = place.format(f"({values})")
     (diagnostic,) = [diagnostic for diagnostic in check(text) if diagnostic.is_mistake]
-    offered = [diagnostic.values["one"], diagnostic.values.get("another")]
-    assert [it for it in offered if it] == [f"{word}({values})" for word in words], text
+    offered_texts = [diagnostic.values["one"], diagnostic.values.get("another")]
+    assert [it for it in offered_texts if it] == [f"{word}({values})" for word in words], text
     for language in ("en", "es", "pt"):
         full_message = message(diagnostic, Source(text), language)
         assert f"({values})" in full_message.message and ("SB|" in full_message.message) is (
@@ -112,11 +112,11 @@ BUTTONS = (
 @pytest.mark.parametrize("words", ORDERS)
 @pytest.mark.parametrize("head", STARTS + BUTTONS)
 def test_words_say_how_a_program_starts(head: str, words: str) -> None:
-    begun = "SB" if head in BUTTONS else "SI"
+    begun_text = "SB" if head in BUTTONS else "SI"
     for text in (f"{head} {words}", f"{head} {words};", f"{head} {words}\nS"):
         (diagnostic,) = check(text)
         assert diagnostic.code.number == "TS036", text
-        assert diagnostic.values["fix"] == f"{begun}|{ORDERS[words]}", text
+        assert diagnostic.values["fix"] == f"{begun_text}|{ORDERS[words]}", text
         assert repair_program(text, check).text == text
 
 
@@ -151,16 +151,16 @@ BODIES = ("F(1, 80);", "SI|F(1, 80);", "SI\nF(1, 80)", "F(1, 80); // }", "SB", "
 @pytest.mark.parametrize("frame", FRAMES)
 @pytest.mark.parametrize("body", BODIES)
 def test_what_a_sketch_has_in_its_setup_begins_the_program(body: str, frame: str) -> None:
-    begun, bare = ("SB", body[2:]) if body[:2] == "SB" else ("SI", body.removeprefix("SI"))
-    right = f"{begun}|{bare.lstrip('|').lstrip()}"
+    begun_text, bare = ("SB", body[2:]) if body[:2] == "SB" else ("SI", body.removeprefix("SI"))
+    right = f"{begun_text}|{bare.lstrip('|').lstrip()}"
     rests = {"": "", "void loop() {\n  R(1, 60);\n}": "LOOP(FOREVER);\n  R(1, 60);\nEND_LOOP"}
     gaps = ("\n",) if "//" in body or not body else (" ", "\n  ")
     for (rest, loop), gap, brace in product(rests.items(), gaps, (" {", "\n{")):
         text = f"{frame}{brace}{gap}{body}{gap.rstrip(' ') or ' '}}}\n{rest}"
-        repaired = apply_edits(text, edits_of(check(text)[0]) or [])
-        repaired = repair_program(repaired, check).text
-        assert compile(repaired).code == compile(f"{right}\n{loop}").code, text
-        assert repaired.startswith(f"{begun}|"), text
+        repaired_text = apply_edits(text, edits_of(check(text)[0]) or [])
+        repaired_text = repair_program(repaired_text, check).text
+        assert compile(repaired_text).code == compile(f"{right}\n{loop}").code, text
+        assert repaired_text.startswith(f"{begun_text}|"), text
 
 
 @pytest.mark.parametrize("marks", ["\u201c\u201d", '""', "''", "\u00ab\u00bb"])

@@ -1,4 +1,4 @@
-"""What a message says to cut out is named: nobody drops a value or a question without a word."""
+"""Messages name the text that they remove: no value or question is dropped silently."""
 
 from __future__ import annotations
 
@@ -25,10 +25,13 @@ def test_what_stands_in_needless_brackets_is_named(word: str, place: str) -> Non
             for diagnostic in check(text)
             if diagnostic.is_mistake
         ]
-        named = [message for message in messages if message.code in ("TS039", "TS118")]
+        named_messages = [message for message in messages if message.code in ("TS039", "TS118")]
         number = "23" if "23" in inside else "7"
-        assert named or messages, text
-        assert all(number in message.message + message.fix for message in named), (text, named)
+        assert named_messages or messages, text
+        assert all(number in message.message + message.fix for message in named_messages), (
+            text,
+            named_messages,
+        )
 
 
 @pytest.mark.parametrize("place", PLACES)
@@ -38,7 +41,7 @@ def test_a_question_in_needless_brackets_is_asked(place: str) -> None:
     assert "IF(DISTANCE < 10);STOP;ENDIF" in offers
 
 
-@pytest.mark.parametrize(("text", "lost"), [("TASK(1)\nS\nEND_TASK", "1"), ("SHOW1(5)", "1")])
-def test_what_a_shown_change_only_cuts_out_is_named(text: str, lost: str) -> None:
+@pytest.mark.parametrize(("text", "lost_text"), [("TASK(1)\nS\nEND_TASK", "1"), ("SHOW1(5)", "1")])
+def test_what_a_shown_change_only_cuts_out_is_named(text: str, lost_text: str) -> None:
     first, *_ = check(text)
-    assert first.values["lost"] == lost
+    assert first.values["lost"] == lost_text

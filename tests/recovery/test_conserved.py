@@ -18,9 +18,9 @@ from tiniscript.recovery import rewrites
 from tiniscript.recovery.conserved import difference
 
 KIT = robots.load(robots.DEFAULT).kit
-# A number that stands alone, and has no unit.
+# A separate number without a unit.
 NUMBER = re.compile(r"(?<![\w.,:'´])(?<!\d )\d+(?:\.\d+)?(?![\w.,:'´%°]| ?[a-z]| \d)")
-# Which unit a number has by what stands before it, and what is after it.
+# The unit of a number by the text before it, and the text after it.
 PLACES = (
     (re.compile(r"\b[FBLR]\(-?$"), ""),
     (re.compile(r"\b[FBLR]\([^(),]*,\s*-?$|\bM\([^()]*$"), "%"),
@@ -45,21 +45,21 @@ def numbers(text: str) -> list[tuple[float, str]]:
     """Return the numbers of a program with their signs, and the unit of each by its place."""
     pairs = []
     for match in re.finditer(r"(?<![\w.])\d+(?:\.\d+)?", text):
-        before, after = text[: match.start()], text[match.end() :]
-        own = next((unit for pattern, unit in PLACES if pattern.search(before)), None)
+        text_before, text_after = text[: match.start()], text[match.end() :]
+        own = next((unit for pattern, unit in PLACES if pattern.search(text_before)), None)
         if own == "":
-            way = re.match(r"(?i) ?(CM|DEG)\b", after)
+            way = re.match(r"(?i) ?(CM|DEG)\b", text_after)
             own = {"CM": "cm", "DEG": "°"}[way[1].upper()] if way else "s"
-        is_minus = re.search(r"(?:[(,=<>+*/]|^)\s*-$", before) is not None
+        is_minus = re.search(r"(?:[(,=<>+*/]|^)\s*-$", text_before) is not None
         pairs.append((-float(match[0]) if is_minus else float(match[0]), own or ""))
     return pairs
 
 
-def is_kept(written: str, value: float, unit: str, repaired: str) -> bool:
-    """Whether a program has a number with its sign and unit, or still as it was written."""
-    return written in repaired or any(
+def is_kept(written_text: str, value: float, unit: str, repaired_text: str) -> bool:
+    """Return whether a program has a number with its sign and unit, or still as it was written."""
+    return written_text in repaired_text or any(
         abs(number - value) < 0.001 and (not own or not unit or own == unit)
-        for number, own in numbers(repaired)
+        for number, own in numbers(repaired_text)
     )
 
 
@@ -81,35 +81,39 @@ def variants(text: str) -> list[tuple[str, str, float, str]]:
         start, end = match.span()
         if text[:start].rstrip()[-1:] not in ("-", "+"):
             texts.append((f"{text[:start]}-{text[start:]}", f"-{match[0]}", -value, ""))
-        for written, unit, scale in units():
-            new = f"{text[:end]} {written}{text[end:]}"
-            texts.append((new, f"{match[0]} {written}", value * scale, unit))
+        for written_text, unit, scale in units():
+            new = f"{text[:end]} {written_text}{text[end:]}"
+            texts.append((new, f"{match[0]} {written_text}", value * scale, unit))
     return texts
 
 
 @pytest.mark.sampled("text", keep=15)
 @pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
 def test_no_repair_loses_a_sign_or_a_unit_in_the_example_of_a_row(text: str) -> None:
-    for wrong, written, value, unit in variants(text):
-        repaired = repair_program(wrong, check).text
-        assert is_kept(written, value, unit, repaired), (wrong, repaired)
+    for wrong, written_text, value, unit in variants(text):
+        repaired_text = repair_program(wrong, check).text
+        assert is_kept(written_text, value, unit, repaired_text), (wrong, repaired_text)
 
 
 @pytest.mark.sampled("text", keep=15)
 @pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
 def test_what_is_only_shown_keeps_a_unit_or_says_that_it_loses_it(text: str) -> None:
-    """A minus is not asked for: where it goes, a move goes the other way and says so."""
-    for wrong, written, value, unit in variants(text):
-        shown = [
+    """A minus is not checked: without it, a move reverses, and the message says so."""
+    for wrong, written_text, value, unit in variants(text):
+        shown_diagnostics = [
             diagnostic
             for diagnostic in check(wrong)
             if diagnostic.repair and not diagnostic.repair.is_sure
         ]
-        is_part = re.search(rf"\d\. {re.escape(written)}", wrong)  # of one number: `2. 80`
-        for diagnostic in shown if unit and not is_part else ():
-            repaired = apply_edits(wrong, edits_of(diagnostic) or [])
-            lost = diagnostic.values.get("lost", "")
-            assert written in lost or is_kept(written, value, unit, repaired), (wrong, repaired)
+        # Part of a single number: `2. 80`.
+        is_part = re.search(rf"\d\. {re.escape(written_text)}", wrong)
+        for diagnostic in shown_diagnostics if unit and not is_part else ():
+            repaired_text = apply_edits(wrong, edits_of(diagnostic) or [])
+            lost_text = diagnostic.values.get("lost", "")
+            assert written_text in lost_text or is_kept(written_text, value, unit, repaired_text), (
+                wrong,
+                repaired_text,
+            )
 
 
 @pytest.mark.sampled("part")
@@ -121,15 +125,15 @@ def test_no_repair_loses_a_sign_or_a_unit(part: int) -> None:
 def loses_nothing(text: str) -> None:
     for number, sign, space in product(("2", "0.5"), ("", "-", "- "), ("", " ")):
         for word, unit, scale in units():
-            written = f"{sign}{number}{space}{word}"
-            wrong = text.replace("{}", written)
-            repaired = repair_program(wrong, check).text
+            written_text = f"{sign}{number}{space}{word}"
+            wrong = text.replace("{}", written_text)
+            repaired_text = repair_program(wrong, check).text
             value = float(number) * scale * (-1 if sign else 1)
-            assert is_kept(written, value, unit, repaired), (wrong, repaired)
+            assert is_kept(written_text, value, unit, repaired_text), (wrong, repaired_text)
 
 
 @pytest.mark.parametrize(
-    ("text", "repaired", "lost", "more"),
+    ("text", "repaired_text", "lost", "more"),
     [
         ("F(2 s, 80 %)", "F(2, 80)", [], []),
         ("avanza 2,5 s", "F(2.5, 80)", [], []),
@@ -163,13 +167,13 @@ def loses_nothing(text: str) -> None:
     ],
 )  # fmt: skip
 def test_what_a_repair_loses_or_does_more(
-    text: str, repaired: str, lost: list[str], more: list[str]
+    text: str, repaired_text: str, lost: list[str], more: list[str]
 ) -> None:
-    assert difference(text, repaired, KIT) == (lost, more)
+    assert difference(text, repaired_text, KIT) == (lost, more)
 
 
 @pytest.mark.parametrize(
-    ("wrong", "repaired"),
+    ("wrong", "repaired_text"),
     [
         ("T = 500 ms;W(T)", "T = 0.5;W(T)"),
         ("F(5, 60) UNTIL(TIME > 500 ms)", "F(5, 60) UNTIL(TIME > 0.5)"),
@@ -183,12 +187,14 @@ def test_what_a_repair_loses_or_does_more(
         ("DEF PASO;S\nENDDEF PASO\nPASO;PASO", "DEF PASO;S\nEND_DEF\nPASO;PASO"),
     ],
 )
-def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(wrong: str, repaired: str) -> None:
-    assert repair_program(wrong, check).text == repaired
+def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(
+    wrong: str, repaired_text: str
+) -> None:
+    assert repair_program(wrong, check).text == repaired_text
 
 
 @pytest.mark.parametrize(
-    ("wrong", "tried"),
+    ("wrong", "tried_text"),
     [
         ("SIDE = 30 CM\nF(SIDE, 60)", "SIDE = 30 and F(SIDE CM, 60)"),
         ("SIDE = 30 CM\nW(SIDE)", "SIDE = 30"),
@@ -200,13 +206,13 @@ def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(wrong: str, rep
     ],
 )
 def test_what_is_only_shown_says_what_it_loses_and_what_else_is_meant(
-    wrong: str, tried: str
+    wrong: str, tried_text: str
 ) -> None:
     (diagnostic,) = check(wrong)
-    shown = message(diagnostic, Source(wrong), "en")
-    assert shown.fix == tried
-    assert (lost := diagnostic.values.get("lost", "")) in shown.message
-    assert bool(lost) is ("leaves out" in shown.message)
+    shown_message = message(diagnostic, Source(wrong), "en")
+    assert shown_message.fix == tried_text
+    assert (lost_text := diagnostic.values.get("lost", "")) in shown_message.message
+    assert bool(lost_text) is ("leaves out" in shown_message.message)
     assert repair_program(wrong, check).text == wrong or diagnostic.values.get("carried")
 
 
@@ -230,8 +236,12 @@ def test_no_repair_takes_a_sign_for_a_command_out() -> None:
     assert ("S", "\U0001f6d1") in signs
     for word, sign in signs:
         for text in ("F(2, 80) {}", "F(2, 80){}", "F(2, 80); {}", "S\n{}", "SI|F(2, 80)\n  {} "):
-            repaired = repair_program(text.format(sign), check).text
-            assert sign in repaired or repaired.rstrip().endswith(word), (sign, text, repaired)
+            repaired_text = repair_program(text.format(sign), check).text
+            assert sign in repaired_text or repaired_text.rstrip().endswith(word), (
+                sign,
+                text,
+                repaired_text,
+            )
 
 
 def test_what_one_line_would_lose_costs_the_others_nothing() -> None:

@@ -24,7 +24,7 @@ BODIES = ("F(1, {v} * 10)", "W(1);SHOW({v});S", "IF({v} > 2);S;ENDIF")
 BETWEEN = ("\n", "\n  ")
 
 
-def mended(wrong: str) -> str:
+def mend(wrong: str) -> str:
     """Return a program with all that its messages offer."""
     edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
     return apply_edits(wrong, edits)
@@ -35,13 +35,13 @@ def mended(wrong: str) -> str:
 def test_a_counter_that_is_used_grows_from_its_first_value(head: str, end: str) -> None:
     for name, (first, last), body, between in product(NAMES, RANGES, BODIES, BETWEEN):
         values = {"v": name, "a": first, "b": last, "c": last + 1}
-        begun, inside, ended = (part.format(**values) for part in (head, body, end))
-        wrong = f"SI|W(3)\n{begun}{between}{inside}\n{ended}\nS"
+        begun_text, inside, ended_text = (part.format(**values) for part in (head, body, end))
+        wrong = f"SI|W(3)\n{begun_text}{between}{inside}\n{ended_text}\nS"
         loop = f"LOOP({last - first + 1});{name.upper()} = {name.upper()} + 1"
         right = f"{name.upper()} = {first - 1};{loop}"
         assert right in [message(it, Source(wrong), "en").fix for it in check(wrong)], wrong
-        assert mended(wrong) == f"SI|W(3)\n{right}{between}{inside}\nEND_LOOP\nS"
-        assert not check(mended(wrong))
+        assert mend(wrong) == f"SI|W(3)\n{right}{between}{inside}\nEND_LOOP\nS"
+        assert not check(mend(wrong))
 
 
 @pytest.mark.parametrize("text", ["for each {v} from {a} to {b}", "para cada {v} de {a} a {b}"])
@@ -49,7 +49,7 @@ def test_a_counter_that_is_used_grows_from_its_first_value(head: str, end: str) 
 def test_one_that_is_not_used_says_how_often(text: str, name: str) -> None:
     for first, last in RANGES:
         wrong = f"SI|{text.format(v=name, a=first, b=last)}\nF(1, 60)\nEND_LOOP"
-        assert mended(wrong) == f"SI|LOOP({last - first + 1})\nF(1, 60)\nEND_LOOP"
+        assert mend(wrong) == f"SI|LOOP({last - first + 1})\nF(1, 60)\nEND_LOOP"
 
 
 @pytest.mark.parametrize(

@@ -28,9 +28,9 @@ BEFORE = ("SI|", "SI|W(3);", "SB|V = 3;F(V, 60);")
 
 def code_and_fix(text: str) -> tuple[str, str]:
     (diagnostic,) = [diagnostic for diagnostic in check(text) if diagnostic.is_mistake]
-    shown = message(diagnostic, Source(text), "en")
-    assert shown.code == "TS024"
-    return shown.message, shown.fix
+    shown_message = message(diagnostic, Source(text), "en")
+    assert shown_message.code == "TS024"
+    return shown_message.message, shown_message.fix
 
 
 def places(body: tuple[str, ...]) -> str:
@@ -38,15 +38,15 @@ def places(body: tuple[str, ...]) -> str:
 
 
 @pytest.mark.parametrize("between", [";", "; ", " ; "])
-@pytest.mark.parametrize(("begun", "block"), [*product(BEFORE, BLOCKS)])
+@pytest.mark.parametrize(("begun_text", "block"), [*product(BEFORE, BLOCKS)])
 def test_each_place_is_named_and_none_is_made(
-    begun: str, block: tuple[str, str], between: str
+    begun_text: str, block: tuple[str, str], between: str
 ) -> None:
     for body in BODIES:
-        text = begun + between.join((block[0], *body))
-        _, tried = code_and_fix(text)
+        text = begun_text + between.join((block[0], *body))
+        _, tried_text = code_and_fix(text)
         assert (
-            tried
+            tried_text
             == f"Where does the block end? Write ;{block[1]} after one of these: {places(body)}"
         )
         assert repair_program(text, check).text == text
@@ -91,5 +91,7 @@ def test_it_ends_in_its_last_branch_and_before_the_end_of_another() -> None:
         == "Where does the block end? Write ;ENDIF after one of these: W(1), F(1, 60)"
     )
     (diagnostic,) = check("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP")
-    repaired = apply_edits("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP", edits_of(diagnostic) or [])
-    assert repaired == "SI|LOOP(2);IF(DISTANCE < 9);S;ENDIF;END_LOOP"
+    repaired_text = apply_edits(
+        "SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP", edits_of(diagnostic) or []
+    )
+    assert repaired_text == "SI|LOOP(2);IF(DISTANCE < 9);S;ENDIF;END_LOOP"

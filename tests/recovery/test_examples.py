@@ -41,7 +41,7 @@ def test_an_example_is_said_to_be_one(place: str, language: str) -> None:
         text = place.format(call)
         diagnostic = next(diagnostic for diagnostic in check(text) if diagnostic.is_mistake)
         full_message = message(diagnostic, Source(text), language)
-        assert full_message.fix == fix, text  # and can be copied as it stands
+        assert full_message.fix == fix, text  # the fix can be copied unchanged
         assert f"{sample} {SAID[language]}" in full_message.message, text
 
 

@@ -47,8 +47,8 @@ def test_a_line_with_a_checksum_is_left_alone() -> None:
 def test_a_place_after_edits_was_elsewhere(span: tuple[int, int], before: object) -> None:
     diagnostic = Diagnostic(codes.ODD_CHARACTER, Span(*span), {"also": "LIGHT_R < 300"})
     edits = [Edit(Span(5, 6), ""), Edit(Span(0, 3), "SI|")]
-    moved = to_original(diagnostic, edits, Source("SI|F(2, 80)"))
-    assert (moved.span, moved.values) == (before, diagnostic.values)
+    moved_diagnostic = to_original(diagnostic, edits, Source("SI|F(2, 80)"))
+    assert (moved_diagnostic.span, moved_diagnostic.values) == (before, diagnostic.values)
 
 
 def test_a_question_that_nobody_reads_is_shown_as_it_is_written() -> None:
@@ -99,10 +99,10 @@ def test_no_repair_loses_a_sign_or_a_point(word: str) -> None:
     changed = []
     for values, form, between in product(pairs, FORMS, BETWEEN):
         wrong = form.format(word, between.join(values))
-        repaired = repair_program(wrong, check).text
-        numbers = [float(number) for number in re.findall(r"-?[0-9]*\.?[0-9]+", repaired)]
-        if repaired != wrong and numbers != [float(value) for value in values]:
-            changed.append((wrong, repaired))
+        repaired_text = repair_program(wrong, check).text
+        numbers = [float(number) for number in re.findall(r"-?[0-9]*\.?[0-9]+", repaired_text)]
+        if repaired_text != wrong and numbers != [float(value) for value in values]:
+            changed.append((wrong, repaired_text))
     assert all(re.match(r"[RM]\.[0-9]+\.", wrong) for wrong, _ in changed)  # `F.2.80` is F(2, 80)
 
 
@@ -144,7 +144,7 @@ def test_a_long_text_is_not_read_as_a_whole() -> None:
 @pytest.mark.sampled("blank")
 @pytest.mark.parametrize("blank", [" ", "( ", "5 ", "(5) "])
 def test_many_blanks_take_no_time(blank: str) -> None:
-    """They stand where a value may begin, and after one; a minute for each would be seen."""
+    """The blanks are before or after a value; a minute for each would be noticed."""
     assert check(f"SI|F({blank * 20_000}((5)+1), 60) hola amigo\n")
     assert check(f"SI|F(5{blank * 20_000}hola amigo\n")
 
@@ -154,7 +154,7 @@ def test_many_blanks_take_no_time(blank: str) -> None:
     "wrong", ["F(2. 80)", "F(2,5, 80)", "F (2, 80)cm", "F(2 80)", "FOO(1)", "avanza 2", "LOOP(3)"]
 )
 def test_of_many_mistakes_the_first_are_told(wrong: str) -> None:
-    """So many of them that a check for each would be seen."""
+    """There are so many that a check for each would be noticed."""
     diagnostics = check(f"{wrong}\n" * 8000)
     assert len(diagnostics) <= codes.MOST_DIAGNOSTICS + 1
     assert diagnostics == codes.in_order(diagnostics)

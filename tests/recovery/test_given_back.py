@@ -1,4 +1,4 @@
-"""A DEF that gives a value back is told once, wherever its RETURN and its calls stand."""
+"""A DEF that returns a value is reported once, wherever its RETURN and its calls are."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ def test_a_return_and_its_uses_are_one_mistake(
 @pytest.mark.parametrize("between", BETWEEN)
 def test_what_the_message_says_to_do_is_right(use: str, between: str) -> None:
     call = ["DOUBLE(4)", *use.replace("DOUBLE(4)", "RESULT").split(";")]
-    after = between.join(["SI|DEF DOUBLE(N)", "RESULT = N * 2", "END_DEF", *call])
-    assert not any(diagnostic.is_mistake for diagnostic in check(after))
+    join_after = between.join(["SI|DEF DOUBLE(N)", "RESULT = N * 2", "END_DEF", *call])
+    assert not any(diagnostic.is_mistake for diagnostic in check(join_after))
 
 
 @pytest.mark.parametrize("use", USES)

@@ -119,8 +119,8 @@ def test_a_light_in_own_words_becomes_its_reading(stem: str, way: str, side: str
     for form, place in product(
         ("{0}_{1}", "{1}_{0}", "{0}{1}", "{1}{0}", "{0}({1})", "{0} {1}"), PLACES
     ):
-        asked = f"{form.format(stem, way)} > 300"
-        assert repair_program(place.replace("{}", asked), check).text == place.replace(
+        asked_text = f"{form.format(stem, way)} > 300"
+        assert repair_program(place.replace("{}", asked_text), check).text == place.replace(
             "{}", f"LIGHT_{side[0]} > 300"
         )
 

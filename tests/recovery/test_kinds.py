@@ -1,4 +1,4 @@
-"""Kinds of mistakes, and what is said about each: on one line and on several, in other words."""
+"""Kinds of mistakes, and their messages: on one line and on several, in other words."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ PAIRS = ("F", "B", "L", "R", "M", "BEEP", "RANDOM", "ROUND", "MIN", "MAX")
 
 
 def codes_and_fixes(text: str) -> list[tuple[str, str]]:
-    """Return the code of each message, and what it says to try."""
+    """Return the code and the fix of each message."""
     messages = (message(diagnostic, Source(text), "en") for diagnostic in check(text))
     return [(message.code, message.fix) for message in messages]
 
@@ -32,7 +32,7 @@ def messages(text: str) -> list[str]:
     return [message(diagnostic, Source(text), "en").message for diagnostic in check(text)]
 
 
-def tried(text: str, diagnostic: Diagnostic) -> str:
+def apply_fix(text: str, diagnostic: Diagnostic) -> str:
     """Return a program with what a diagnostic offers."""
     return apply_edits(text, edits_of(diagnostic) or [])
 
@@ -52,7 +52,7 @@ def test_crossed_ends_are_swapped_and_no_body_leaves_its_block(
     assert not any(diagnostic.is_mistake for diagnostic in check(right))
     (diagnostic,) = check(wrong)
     assert diagnostic.code.number == "TS026" and diagnostic.values["swapped"] == inner[1]
-    assert tried(wrong, diagnostic) == right and repair_program(wrong, check).text == wrong
+    assert apply_fix(wrong, diagnostic) == right and repair_program(wrong, check).text == wrong
 
 
 def test_they_are_told_beside_another_mistake_and_in_words() -> None:
@@ -80,10 +80,10 @@ def test_an_end_that_has_no_other_or_an_arm_between_is_not_swapped() -> None:
 @pytest.mark.parametrize("sign", ["; ", ";", ", "])
 @pytest.mark.parametrize("around", ["SI|{}", "SI|W(1);{}", "SI|LOOP(2)\n{}\nEND_LOOP", "{};W(1)"])
 def test_the_second_branch_of_a_question_is_its_else(word: str, sign: str, around: str) -> None:
-    asked = sign.join(["LIGHT_L > 300", "L(1, 60)", "BEEP(1, 440)"])
-    wrong = around.format(f"{word}({asked})")
+    asked_text = sign.join(["LIGHT_L > 300", "L(1, 60)", "BEEP(1, 440)"])
+    wrong = around.format(f"{word}({asked_text})")
     right = around.format("IF(LIGHT_L > 300);L(1, 60);ELSE;BEEP(1, 440);ENDIF")
-    assert tried(wrong, check(wrong)[0]).replace("; ", ";") == right
+    assert apply_fix(wrong, check(wrong)[0]).replace("; ", ";") == right
 
 
 def test_what_stands_after_its_brackets_is_in_no_branch() -> None:
@@ -100,7 +100,7 @@ def test_a_def_with_one_value_that_is_set_is_called(between: str, value: str) ->
     lines = ["SI|DEF PASSO(N)", "F(N CM, 60)", "END_DEF", "V = 3", f"PASSO = {value}", "S"]
     wrong = between.join(lines)
     assert codes_and_fixes(wrong)[0] == ("TS110", f"PASSO({value})")
-    assert tried(wrong, check(wrong)[0]) == wrong.replace(f"PASSO = {value}", f"PASSO({value})")
+    assert apply_fix(wrong, check(wrong)[0]) == wrong.replace(f"PASSO = {value}", f"PASSO({value})")
 
 
 def test_a_def_without_a_value_or_a_name_that_is_asked_gets_another_name() -> None:
@@ -186,12 +186,12 @@ def test_the_unit_of_a_value_of_a_def_goes_into_its_body(
     lines = [f"SI|DEF LADO(LARGO {unit})", f"{word}(LARGO, 60)", "W(1)", "LADO(30)", "END_DEF"]
     whole = between.join(lines)
     (diagnostic,) = check(whole)
-    assert f"{word}(LARGO {way}, 60)" in tried(whole, diagnostic) and "lost" not in {
+    assert f"{word}(LARGO {way}, 60)" in apply_fix(whole, diagnostic) and "lost" not in {
         name for name, value in diagnostic.values.items() if value
     }
     body = [line.removeprefix("SI|") for line in lines[:3]]
     late = between.join(["SI|LADO(30)", *body, lines[4]])
-    assert f"{word}(LARGO {way}, 60)" in tried(late, check(late)[0])
+    assert f"{word}(LARGO {way}, 60)" in apply_fix(late, check(late)[0])
 
 
 def test_a_moved_program_says_which_unit_it_loses() -> None:
@@ -311,10 +311,14 @@ def test_a_message_names_the_word_that_was_written(word: str) -> None:
     assert (diagnostic.code.number, diagnostic.values["found"]) == ("TS102", word)
 
 
-@pytest.mark.parametrize(("asked", "next_move"), [*product(["DISTANCE<25", "LIGHT_L > 300"], "FB")])
-def test_the_question_after_until_is_shown(asked: str, next_move: str) -> None:
-    text = f"SI|F(5, 60) UNTIL {asked}. {next_move}(1, 50)"
-    assert repair_program(text, check).text == f"SI|F(5, 60) UNTIL({asked}); {next_move}(1, 50)"
+@pytest.mark.parametrize(
+    ("asked_text", "next_move"), [*product(["DISTANCE<25", "LIGHT_L > 300"], "FB")]
+)
+def test_the_question_after_until_is_shown(asked_text: str, next_move: str) -> None:
+    text = f"SI|F(5, 60) UNTIL {asked_text}. {next_move}(1, 50)"
+    assert (
+        repair_program(text, check).text == f"SI|F(5, 60) UNTIL({asked_text}); {next_move}(1, 50)"
+    )
 
 
 @pytest.mark.parametrize("number", ["15", "32.5"])
@@ -366,8 +370,10 @@ def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
         text = f"SI|DEF P;S;END_DEF\n{around.format(line)}"
         assert any(diagnostic.is_mistake for diagnostic in check(text))
         assert repair_program(text, check).text == text
-        ended = f"SI|DEF P;S;END_DEF\n{around.format(f'{line};{end}')}"
-        assert f"{order};{word}({question});B(1, 50);{end}" in repair_program(ended, check).text
+        ended_text = f"SI|DEF P;S;END_DEF\n{around.format(f'{line};{end}')}"
+        assert (
+            f"{order};{word}({question});B(1, 50);{end}" in repair_program(ended_text, check).text
+        )
 
 
 # -- what is named, and what is told once -----------------------------------------------------
@@ -376,7 +382,7 @@ def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
 @pytest.mark.parametrize("between", BETWEEN)
 @pytest.mark.parametrize("around", ["SI|{}", "SI|F(2, 80);{}", "{};S"])
 @pytest.mark.parametrize(
-    ("head", "named"),
+    ("head", "named_text"),
     [
         ("PARA I DE 1 A 4", "PARA"), ("para i de 1 até 4 faça", "para"),
         ("FOR I FROM 1 TO 4", "FOR"),
@@ -384,11 +390,11 @@ def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
     ],
 )  # fmt: skip
 def test_what_counts_is_named_without_what_it_counts(
-    head: str, named: str, around: str, between: str
+    head: str, named_text: str, around: str, between: str
 ) -> None:
     text = around.format(between.join((head, "L(1, 60)", "END_LOOP")))
     diagnostic = next(diagnostic for diagnostic in check(text) if diagnostic.code.number == "TS102")
-    assert (diagnostic.values["found"], text[slice(*diagnostic.span)]) == (named, named)
+    assert (diagnostic.values["found"], text[slice(*diagnostic.span)]) == (named_text, named_text)
 
 
 @pytest.mark.parametrize("use", ["F(1, {})", "LOOP({});S;END_LOOP", "BEEP(1, {});BEEP(2, {})"])

@@ -25,7 +25,7 @@ PROGRAMS = (
 PLACES = (("", "\n"), ("", ";"), ("", "; "), ("SI|", "\n"), ("SI|", ";"), ("SB|", "\n  "))
 
 
-def labelled(label: str, program: tuple[str, ...]) -> list[str]:
+def add_labels(label: str, program: tuple[str, ...]) -> list[str]:
     letters = "abcde"
     names = (label.format(n=k + 1, a=letters[k], A=letters[k].upper()) for k in range(len(program)))
     return [f"{name} {order}" for name, order in zip(names, program, strict=True)]
@@ -34,15 +34,15 @@ def labelled(label: str, program: tuple[str, ...]) -> list[str]:
 @pytest.mark.sampled("label", keep=32)
 @pytest.mark.parametrize("label", LABELS)
 def test_a_label_is_taken_out_wherever_its_instruction_stands(label: str) -> None:
-    for program, (begun, between) in product(PROGRAMS, PLACES):
-        wrong = begun + between.join(labelled(label, program))
+    for program, (begun_text, between) in product(PROGRAMS, PLACES):
+        wrong = begun_text + between.join(add_labels(label, program))
         assert {diagnostic.code.number for diagnostic in check(wrong)} == {"TS054"}, wrong
-        assert repair_program(wrong, check).text == begun + between.join(program), wrong
+        assert repair_program(wrong, check).text == begun_text + between.join(program), wrong
 
 
 @pytest.mark.parametrize("label", LABELS)
 def test_it_is_told_before_the_setup_below_a_title_and_beside_another_mistake(label: str) -> None:
-    rows = labelled(label, ("SI|F(2, 60)", "R(2 60)"))
+    rows = add_labels(label, ("SI|F(2, 60)", "R(2 60)"))
     codes = [diagnostic.code.number for diagnostic in check("\n".join(["My square", *rows]))]
     assert codes == ["TS073", "TS054", "TS054", "TS017"]
 

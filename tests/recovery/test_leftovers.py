@@ -1,4 +1,4 @@
-"""What is left over in an instruction is told to be taken out as what it is, in each place."""
+"""Superfluous text in an instruction is named as what it is, in each place."""
 
 from __future__ import annotations
 
@@ -48,16 +48,18 @@ def test_what_may_be_an_order_or_a_value_is_no_leftover(text: str) -> None:
     assert not any(diagnostic.values.get("needless") for diagnostic in check(f"SI|{text}"))
 
 
-@pytest.mark.parametrize("before", ["R(1, 60)", "S", "LOOP(2);W(1);END_LOOP", "SHOW(DISTANCE)"])
+@pytest.mark.parametrize(
+    "text_before", ["R(1, 60)", "S", "LOOP(2);W(1);END_LOOP", "SHOW(DISTANCE)"]
+)
 @pytest.mark.parametrize("sign", ["SI|", " SI|", "SI|  ", " si | "])
-@pytest.mark.parametrize("after", ["B(2, 80)", "IF(DISTANCE < 9);S;ENDIF", "S"])
+@pytest.mark.parametrize("text_after", ["B(2, 80)", "IF(DISTANCE < 9);S;ENDIF", "S"])
 def test_a_second_start_behind_an_instruction_is_a_separator(
-    before: str, sign: str, after: str
+    text_before: str, sign: str, text_after: str
 ) -> None:
-    if sign[0] != " " and not before.endswith(")"):
-        return  # one word: SSI
-    text = f"SI|F(2, 80);{before}{sign}{after};W(1)"
-    assert repair_program(text, check).text == f"SI|F(2, 80);{before}; {after};W(1)"
+    if sign[0] != " " and not text_before.endswith(")"):
+        return  # SSI is a single word
+    text = f"SI|F(2, 80);{text_before}{sign}{text_after};W(1)"
+    assert repair_program(text, check).text == f"SI|F(2, 80);{text_before}; {text_after};W(1)"
 
 
 @pytest.mark.parametrize("between", [";", "\n"])

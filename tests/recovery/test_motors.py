@@ -32,7 +32,7 @@ def test_a_pair_is_one_m_with_both_powers(pair: tuple[str, str], place: str) -> 
         wrong = place.format(between.join(calls[::-1] if is_turned else calls))
         edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
         assert apply_edits(wrong, edits) == place.format(f"M({left}, {right})"), wrong
-        assert repair_program(wrong, check).text == wrong  # its power is no percentage elsewhere
+        assert repair_program(wrong, check).text == wrong  # elsewhere its power is not a percentage
 
 
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
@@ -41,8 +41,10 @@ def test_of_one_alone_it_is_said_that_m_has_both(place: str, language: str) -> N
     for pair in PAIRS:
         for name in pair:
             text = place.format(f"{name}(60)")
-            (shown,) = [message(diagnostic, Source(text), language) for diagnostic in check(text)]
-            assert "M(50, 80)" in shown.fix, text
+            (shown_message,) = [
+                message(diagnostic, Source(text), language) for diagnostic in check(text)
+            ]
+            assert "M(50, 80)" in shown_message.fix, text
 
 
 @pytest.mark.parametrize("between", BETWEEN)

@@ -54,7 +54,7 @@ def test_a_note_that_may_be_an_order_is_not_made_one(sign: str, order: str) -> N
 @pytest.mark.parametrize("sign", ["#", "# ", "--"])
 def test_a_sign_where_a_value_is_begins_no_note(sign: str) -> None:
     values = ("F({}a, 80)", "F(2, {}a)", "X = {}a", "W(1 + {}a)", "IF(DISTANCE < {}a);S;ENDIF")
-    for value, before in product(values, ("", "SI|", "S;")):
+    for value, text_before in product(values, ("", "SI|", "S;")):
         assert codes.OTHER_NOTE not in [
-            diagnostic.code for diagnostic in check(before + value.format(sign))
+            diagnostic.code for diagnostic in check(text_before + value.format(sign))
         ]

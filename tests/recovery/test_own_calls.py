@@ -74,8 +74,8 @@ UNTAUGHT = ("A", "Q", "AB", "ABC", "LADO", "SIDE", "CUADRADO", "HOLA_2", "ZIGZAG
 
 @pytest.mark.parametrize("name", UNTAUGHT)
 def test_a_word_that_nothing_teaches_is_told_of_def_whatever_its_values(name: str) -> None:
-    for given in GIVEN:
-        text = f"{name}({given})"
+    for given_text in GIVEN:
+        text = f"{name}({given_text})"
         first = check(text)[0]
         for language in languages():
             full_message = message(first, Source(text, ""), language)
@@ -105,20 +105,20 @@ KINDS = (
 )  # fmt: skip
 
 
-@each_row("body, given, code", KINDS)
+@each_row("body, given_text, code", KINDS)
 def test_a_body_that_needs_another_kind_names_the_first_call(
-    body: str, given: str, code: str
+    body: str, given_text: str, code: str
 ) -> None:
-    """Also below a call through another DEF; a variable of the program is told of as before."""
-    for text, called in (
-        (f"DEF SIDE(N);{body};END_DEF;SIDE({given})", "SIDE"),
-        (f"DEF SIDE(n);{body};END_DEF;DEF TWO(K);SIDE(K);END_DEF;TWO({given})", "SIDE"),
-        (f"N = {given};{body}", ""),
+    """Also below a call through another DEF; variables of the program are reported as before."""
+    for text, called_text in (
+        (f"DEF SIDE(N);{body};END_DEF;SIDE({given_text})", "SIDE"),
+        (f"DEF SIDE(n);{body};END_DEF;DEF TWO(K);SIDE(K);END_DEF;TWO({given_text})", "SIDE"),
+        (f"N = {given_text};{body}", ""),
     ):
         (diagnostic,) = (diagnostic for diagnostic in check(text) if diagnostic.code.number == code)
         for language in languages():
             fix = message(diagnostic, Source(text, ""), language).fix
-            assert ("SIDE" in fix) == bool(called), (text, fix)
+            assert ("SIDE" in fix) == bool(called_text), (text, fix)
 
 
 EXTRAS = (" = 5", "=5", " + 1", "=-5", " = (5)", " = MAX(1, 2)", " < 3")
@@ -156,7 +156,7 @@ def test_a_comma_that_is_missing_in_a_def_is_shown_in_its_header(count: int) -> 
 def test_a_def_by_a_word_of_the_language_is_renamed_with_its_calls(word: str, count: int) -> None:
     own = len(WORDS[word].arguments)
     if count == own:
-        return  # nobody knows which of the two is called
+        return  # the callee is ambiguous
     head = f"({', '.join(NAMES[:count])})" if count else ""
     call = f"({', '.join(NUMBERS[:count])})" if count else ""
     inside = f"F({NAMES[0]} CM, 60)" if count else "F(30 CM, 60)"
@@ -164,9 +164,9 @@ def test_a_def_by_a_word_of_the_language_is_renamed_with_its_calls(word: str, co
     wrong = program.format(word)
     (diagnostic,) = check(wrong)
     assert diagnostic.code.number == "TS105"
-    repaired = apply_edits(wrong, edits_of(diagnostic) or [])
-    assert repaired == program.format(f"{word}_1")
-    assert not [diagnostic for diagnostic in check(repaired) if diagnostic.is_mistake]
+    repaired_text = apply_edits(wrong, edits_of(diagnostic) or [])
+    assert repaired_text == program.format(f"{word}_1")
+    assert not [diagnostic for diagnostic in check(repaired_text) if diagnostic.is_mistake]
 
 
 UNKNOWN = ("I", "FOO", "HACER", "XX")

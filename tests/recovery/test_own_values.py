@@ -1,4 +1,4 @@
-"""What is told to try has the pupil's own values, each of them, in each place."""
+"""Suggestions have the pupil's own values, each of them, in each place."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ THOUSANDS = ("1,000", "2,500", "12,000", "1,500")
 def test_a_unit_that_is_a_value_goes_to_its_own(
     form: str, word: str, unit: str, value: str, power: str
 ) -> None:
-    begun = "V = 12;" if "V" in (value, power) else ""
+    begun_text = "V = 12;" if "V" in (value, power) else ""
     for place in PLACES:
         wrong, right = (
-            place.replace("SI|", f"SI|{begun}").format(call)
+            place.replace("SI|", f"SI|{begun_text}").format(call)
             for call in (
                 form.format(w=word, u=unit, v=value, p=power),
                 f"{word}({value} {unit}, {power})",
@@ -59,11 +59,11 @@ def test_the_seconds_of_motors_are_those_of_a_wait(
 ) -> None:
     wrong = place.replace("SI|", "SI|V = 12;").format(f"M({left}, {right}, {time})")
     (diagnostic,) = [diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake]
-    shown = f"M({left}, {right});W({time})" + ";S" * place.endswith("|{}")
-    assert message(diagnostic, Source(wrong), "en").fix == shown
-    repaired = apply_edits(wrong, edits_of(diagnostic) or [])
-    assert repaired == wrong.replace(f"M({left}, {right}, {time})", shown)
-    assert repair_program(wrong, check).text == wrong  # it may run on, too
+    shown_text = f"M({left}, {right});W({time})" + ";S" * place.endswith("|{}")
+    assert message(diagnostic, Source(wrong), "en").fix == shown_text
+    repaired_text = apply_edits(wrong, edits_of(diagnostic) or [])
+    assert repaired_text == wrong.replace(f"M({left}, {right}, {time})", shown_text)
+    assert repair_program(wrong, check).text == wrong  # the word may also continue
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What a message shows is what a pupil wrote: own numbers, own names, and no sensor for another."""
+"""Messages show the pupil's own numbers and names, and never one sensor instead of another."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def words(meaning: str) -> list[str]:
     return [word for what, _, text in parts if what.strip() == meaning for word in text.split()]
 
 
-def shown(diagnostic: Diagnostic, text: str) -> str:
+def message_text(diagnostic: Diagnostic, text: str) -> str:
     parts = message(diagnostic, Source(text, ""), "en")
     return " ".join(map(str, parts))
 
@@ -52,7 +52,7 @@ def test_a_question_is_shown_with_the_number_that_was_written(header: str, condi
     for head, end in (("si", "fin"), ("SE", "FIM"), ("while", "end"), ("MIENTRAS", "FIN MIENTRAS")):
         text = header.format(h=head, c=condition.format(OWN), e=end)
         for diagnostic in check(text):
-            shown_text = shown(diagnostic, text)
+            shown_text = message_text(diagnostic, text)
             others = {*COMPARED.findall(shown_text)} - {OWN, "1"}
             assert (
                 not others or "as in" in shown_text or "with the number that you want" in shown_text
@@ -91,8 +91,8 @@ RENAMED = [
 ]  # fmt: skip
 
 
-def renamed(text: str) -> tuple[str, tuple[Edit, ...]]:
-    """Return the name that is told in place of a word, and the changes for it."""
+def rename_word(text: str) -> tuple[str, tuple[Edit, ...]]:
+    """Return the name that replaces a word in a message, and the edits for it."""
     return next(
         (diagnostic.values["right"], diagnostic.repair.edits)
         for diagnostic in check(text)
@@ -111,7 +111,7 @@ def test_a_name_is_renamed_wherever_it_is_meant(word: str) -> None:
     """A DEF: its calls, and no move of its own; a variable: each use, and no instruction."""
     move = WORDS[word].example if WORDS[word].role.is_instruction else "S"
     text = f"DEF {word}\n{move}\nEND_DEF\n{word}\nF(1, 60)\n{word}"
-    name, edits = renamed(text)
+    name, edits = rename_word(text)
     renamed_text = apply_edits(text, edits)
     assert renamed_text == f"DEF {name}\n{move}\nEND_DEF\n{name}\nF(1, 60)\n{name}"
 
@@ -120,19 +120,19 @@ def test_a_name_is_renamed_wherever_it_is_meant(word: str) -> None:
 def test_no_word_becomes_the_name_of_a_def(word: str) -> None:
     """Whatever stands before and after it; a block there stays as it is under the other name."""
     for blocks in OWN_BLOCKS:
-        for before, after in ((blocks, "S"), ("S", blocks), (blocks, blocks)):
-            text = f"{before}\nDEF {word}(A, K)\nF(A, K)\nEND_DEF\n{after}"
+        for text_before, text_after in ((blocks, "S"), ("S", blocks), (blocks, blocks)):
+            text = f"{text_before}\nDEF {word}(A, K)\nF(A, K)\nEND_DEF\n{text_after}"
             mistakes = [diagnostic for diagnostic in check(text) if diagnostic.is_mistake]
             assert mistakes, text
             if WORDS[word].role.belongs_to_blocks:
-                name, edits = renamed(text)
+                name, edits = rename_word(text)
                 assert apply_edits(text, edits) == text.replace(f"DEF {word}", f"DEF {name}")
 
 
 @each_row("word", [word for word in RENAMED if word != "TIME"])
 def test_a_variable_is_renamed_in_its_uses(word: str) -> None:
     text = f"{word} = 2\nF({word}, 60)\nW(1 + {word})\nX = {word} + 1\nS\nF(X, 60)"
-    renamed_text = apply_edits(text, renamed(text)[1])
+    renamed_text = apply_edits(text, rename_word(text)[1])
     assert renamed_text.split("\n")[4] == "S"
     assert not [diagnostic for diagnostic in check(renamed_text) if diagnostic.is_mistake]
 
@@ -318,7 +318,7 @@ def test_a_word_sounds_the_same_alone_as_in_a_list() -> None:
 
 @pytest.mark.parametrize("sign", sorted(COMPARISONS - {"="}))
 def test_the_sign_beside_a_light_without_its_side_is_kept(sign: str) -> None:
-    """Of `IF LUZ < 20` no message asks what is brighter than 20."""
+    """For `IF LUZ < 20`, no message asks which light is brighter than 20."""
     mirrored_sign = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}.get(sign, sign)
     for word in words("light"):
         for condition, kept_sign in (
@@ -327,6 +327,6 @@ def test_the_sign_beside_a_light_without_its_side_is_kept(sign: str) -> None:
             (f"NOT {word} {sign} {OWN}", OPPOSITES[sign]),
         ):
             text = f"SI|\nIF {condition}\nS\nENDIF"
-            shown_text = " ".join(shown(diagnostic, text) for diagnostic in check(text))
+            shown_text = " ".join(message_text(diagnostic, text) for diagnostic in check(text))
             signs = set(re.findall(rf"LIGHT_[LR] (\S+) {OWN}", shown_text))
             assert signs == {kept_sign}, (condition, shown_text)

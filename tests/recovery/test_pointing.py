@@ -11,7 +11,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.rendering import message, names_found
 from tiniscript.recovery.meanings import plain
 
-# What they found is counted, calculated, a sign for the words that say it, or what a note says.
+# Findings that are counted, calculated, a sign for words, or a note's text.
 OTHERS = (
     codes.ARGUMENT_COUNT, codes.CALL_VALUES, codes.OUT_OF_RANGE, codes.MISSING_VALUE,
     codes.IN_A_NOTE,
@@ -29,15 +29,22 @@ def test_the_text_under_the_caret_is_what_the_message_names(part: int) -> None:
     for entry in entries()[part::4]:
         source = Source(entry.program)
         for diagnostic in check(entry.program):
-            named = alike(diagnostic.values.get("found", ""))
-            shown = message(diagnostic, source, "en")
-            line = source.line_text(shown.line)
-            if not named or diagnostic.code in OTHERS or not names_found(diagnostic):
+            named_text = alike(diagnostic.values.get("found", ""))
+            shown_message = message(diagnostic, source, "en")
+            line = source.line_text(shown_message.line)
+            if not named_text or diagnostic.code in OTHERS or not names_found(diagnostic):
                 continue
-            if named in alike(line):
+            if named_text in alike(line):
                 count += 1
-                end = shown.end_column - 1 if shown.end_line == shown.line else len(line)
-                assert alike(line[shown.column - 1 : end]) == named, (entry.program, diagnostic)
+                end = (
+                    shown_message.end_column - 1
+                    if shown_message.end_line == shown_message.line
+                    else len(line)
+                )
+                assert alike(line[shown_message.column - 1 : end]) == named_text, (
+                    entry.program,
+                    diagnostic,
+                )
     assert count > 200
 
 

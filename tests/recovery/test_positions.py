@@ -45,8 +45,8 @@ def mistakes(kit: Kit, text: str) -> tuple[Code, ...]:
     )
 
 
-def meant(text: str) -> Candidate | None:
-    """Return what is meant, on the first robot for which it is a right program."""
+def find_meant_program(text: str) -> Candidate | None:
+    """Return the meant program, for the first robot on which it is right."""
     candidates = [Recovery(text, kit, partial(mistakes, kit)).best_candidate() for kit in KITS]
     return next(
         (candidate for candidate in candidates if candidate and candidate.is_whole), candidates[-1]
@@ -70,13 +70,13 @@ def test_a_row_means_the_same_wherever_its_instruction_stands(part: int) -> None
 
 
 def means_the_same_everywhere(wrong: str) -> None:
-    alone = meant(wrong)
+    alone = find_meant_program(wrong)
     if alone is None:
-        return  # it needs the lines that it has in the table
-    is_open = ends(alone.text) > ends(wrong)  # what follows may be in the block that it begins
+        return  # the program depends on its lines in the table
+    is_open = ends(alone.text) > ends(wrong)  # later lines may belong to the block that it begins
     is_free = not AT_THE_TOP.search(alone.text.upper())
     for place in (*ON_A_LINE, *(IN_A_BLOCK if is_free else ())):
-        candidate = meant(place.format(wrong))
+        candidate = find_meant_program(place.format(wrong))
         same = place.format(alone.text)
         if is_open and not place.endswith("{}"):
             assert (

@@ -47,7 +47,7 @@ def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.TokenRow | rewrit
     assert readings == [right]
 
 
-def meant(text: str) -> Candidate | None:
+def find_meant_program(text: str) -> Candidate | None:
     return Recovery(text, KIT, partial(mistakes, KIT)).best_candidate()
 
 
@@ -70,7 +70,7 @@ def right_programs() -> list[str]:
 
 def test_a_right_program_is_read_without_a_rewrite() -> None:
     for program in right_programs():
-        assert meant(program) is None, program
+        assert find_meant_program(program) is None, program
         tokens = [lexemes(line.partition("//")[0]) for line in program.split("\n")]
         names = Names(tokens, KIT)
         if all(map(is_whole, tokens)) and program.isascii():
@@ -79,7 +79,7 @@ def test_a_right_program_is_read_without_a_rewrite() -> None:
 
 
 def is_whole(line: list[Lexeme]) -> bool:
-    """Whether no bracket of a line is closed on another one, and no `=` compares behind `=`."""
+    """Return whether all brackets of a line close on it, and no `=` compares after another."""
     signs = [lexeme.text for lexeme in line]
     return signs.count("(") == signs.count(")") and signs[3:4] != ["="]
 
@@ -101,22 +101,23 @@ def is_whole(line: list[Lexeme]) -> bool:
 def test_an_explanation_has_a_slip_and_its_edits(
     wrong: str, code: str, values: dict[str, str], edit: Edit
 ) -> None:
-    candidate = meant(wrong)
+    candidate = find_meant_program(wrong)
     assert candidate is not None
     (explanation,) = explain_candidate(wrong, candidate)
     assert (explanation.code, explanation.edits) == (CODES[code], [edit])
     assert explanation.values_as(explanation.code) == {**values, "whole": "", "ends": ""}
 
 
-ASKED_FOR = {codes.BAD_NAME: {"found"}, codes.NAME_WITH_SPACE: {"found"}}  # by `dedupe`
+# Values removed by `dedupe`.
+ASKED_FOR = {codes.BAD_NAME: {"found"}, codes.NAME_WITH_SPACE: {"found"}}
 OTHERS_SAY = (codes.ARGUMENT_COUNT, codes.WRONG_END)  # the checker, or the block: some of it
 OF_BLOCKS = {"whole", "line", "lines", "times", "ends"}
 
 
 @each_row("code", [pytest.param(code, id=code.number) for code in slips.NAMES_OF_CODE])
 def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
-    """Of a slip each value is made that a text names, and none that no text does."""
-    named = {*slips.NAMES_OF_CODE[code]}
+    """Each value of a slip is used by a text, and every used value exists."""
+    names = {*slips.NAMES_OF_CODE[code]}
     asked = []
     for part in ("message", "try"):
         text = languages.find_text("messages", f"{code.number}/{part}", "en")
@@ -125,10 +126,10 @@ def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
                 break
             asked.append({*re.findall(r"\{@?(\w+)\}", text)})
             text = languages.find_text("messages", f"{code.number}/{part}/{k}", "en")
-    assert named <= set().union(*asked) | ASKED_FOR.get(code, set())
+    assert names <= set().union(*asked) | ASKED_FOR.get(code, set())
     own = {"found", "right", "before", "word", "usage", "fix", "letter", "takes"}
     whole = [names & own for names in asked if names <= own | OF_BLOCKS]
-    assert code in OTHERS_SAY or set().union(*whole) <= named
+    assert code in OTHERS_SAY or set().union(*whole) <= names
 
 
 def test_a_line_is_searched_once_for_the_same_names() -> None:
@@ -164,7 +165,7 @@ def test_the_parser_says_where_it_cannot_go_on() -> None:
     ],
 )
 def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
-    candidate = meant(wrong)
+    candidate = find_meant_program(wrong)
     assert candidate is None or not candidate.is_applied
 
 
@@ -182,7 +183,7 @@ def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
     ],
 )
 def test_what_can_mean_nothing_else_is_made(wrong: str, right: str | None) -> None:
-    candidate = meant(wrong)
+    candidate = find_meant_program(wrong)
     assert (candidate.text if candidate and candidate.is_applied else None) == right
 
 
@@ -208,16 +209,16 @@ def test_words_of_a_kit_are_read_on_its_robots_alone(
 
 
 @pytest.mark.parametrize(
-    ("wrong", "asked"),
+    ("wrong", "asked_text"),
     [
         ("X == 6", "X = 6"),
         ("F(1, 50)\nREPITE", None),  # no empty block is offered
     ],
 )
-def test_what_may_be_meant_is_a_question(wrong: str, asked: str | None) -> None:
-    candidate = meant(wrong)
+def test_what_may_be_meant_is_a_question(wrong: str, asked_text: str | None) -> None:
+    candidate = find_meant_program(wrong)
     assert (candidate and candidate.text, bool(candidate and candidate.is_applied)) == (
-        asked,
+        asked_text,
         False,
     )
 

@@ -87,7 +87,9 @@ def test_what_is_right_in_an_odd_way_is_right_beside_a_wrong_line(odd: str) -> N
 
 @each_row("block", ["LOOP(3)⏎{}⏎END_LOOP", "DEF A1⏎{}⏎END_DEF⏎A1", "IF(DISTANCE < 9)⏎{}⏎ENDIF"])
 def test_a_word_after_an_instruction_begins_no_block(block: str) -> None:
-    """Where what follows is not deeper than the wrong line, the block around both is not over."""
+    """If the next line is not indented more than the wrong line, the block around both
+    continues.
+    """
     for line in ("F(1, 80) LOP", "F(1, 80) loop", "S repite"):
         head, tail = block.replace("⏎", "\n").split("{}")
         check_reported_alone([f"{head}  F(1, 80)"], line, tail.strip().split("\n"))
@@ -101,7 +103,7 @@ def check_reported_alone(before: list[str], line: str, after: list[str]) -> None
     assert diagnostics, source.text
     for diagnostic in diagnostics:
         row = source.position(diagnostic.span.start)[0] - 1
-        is_end = row == len(rows) or not rows[row].strip()  # of a text that breaks off
+        is_end = row == len(rows) or not rows[row].strip()  # the text ends early
         assert row == wrong_row or is_end, f"{source.text}\n{diagnostic}"
 
 
@@ -115,7 +117,7 @@ def _mistakes(text: str) -> bool:
 
 
 def _starts_at_once(text: str) -> bool:
-    """Whether what is put below the first line is not before `SI|`."""
+    """Return whether text below the first line is not before `SI|`."""
     return "~" not in text and not _START.search(text.partition("\n")[2]) and "PING" not in text
 
 

@@ -17,16 +17,17 @@ PLACES = (
 
 @pytest.mark.parametrize("percent", ["%", " %", " percent", " por ciento", " PORCIENTO"])
 @pytest.mark.parametrize(
-    ("asked", "share"), [("LIGHT_L > 80", "LIGHT_L > 818"), ("DISTANCE < 50", "DISTANCE < 200")]
+    ("asked_text", "share"),
+    [("LIGHT_L > 80", "LIGHT_L > 818"), ("DISTANCE < 50", "DISTANCE < 200")],
 )
 def test_a_percentage_of_a_sensor_is_shown_as_its_number(
-    asked: str, share: str, percent: str
+    asked_text: str, share: str, percent: str
 ) -> None:
     for place in PLACES:
-        wrong = place.replace("{}", asked + percent)
+        wrong = place.replace("{}", asked_text + percent)
         (diagnostic,) = check(wrong)
-        tried = message(diagnostic, Source(wrong), "en").fix
-        assert f"write {share};" in tried and tried.endswith(f"write {asked}"), place
+        tried_text = message(diagnostic, Source(wrong), "en").fix
+        assert f"write {share};" in tried_text and tried_text.endswith(f"write {asked_text}"), place
         assert repair_program(wrong, check).text == wrong
 
 

@@ -16,7 +16,7 @@ RIGHT = [program.text for program in programs()
          if program.robot == "tinibot" and "~" not in program.text
          and not check(program.text)]  # fmt: skip
 STEPS = ("{}++", "{}--", "{} ++", "{} --")
-BEGINS = (";", "|", NEWLINE)  # before the name that gets a value
+BEGINS = (";", "|", NEWLINE)  # signs before an assigned name
 FRAMES = (
     "{}",
     "SI|{}",
@@ -30,7 +30,7 @@ FRAMES = (
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(3))
 def test_a_plus_before_a_number_goes_and_the_number_stays(part: int) -> None:
-    """Of every number of every program: but for that of `X = +1`, which may be `X += 1`."""
+    """This holds for every number of every program, except in `X = +1`, which may be `X += 1`."""
     count = 0
     for text in RIGHT[part::3]:
         tokens = scan(text).tokens
@@ -66,9 +66,9 @@ def test_a_plus_after_the_sign_that_sets_a_variable_may_be_one_more(text: str) -
 def test_one_more_or_less_is_read_everywhere(step: str, frame: str) -> None:
     text = frame.format("SPEED = 60;" + step.format("SPEED") + ";F(1, SPEED)")
     sign = step.strip("{} ")[0]
-    mended = repair_program(text, check).text
-    assert f"SPEED = SPEED {sign}" in mended and mended.count("SPEED") == 4
-    assert not [diagnostic for diagnostic in check(mended) if diagnostic.code.is_mistake]
+    mended_text = repair_program(text, check).text
+    assert f"SPEED = SPEED {sign}" in mended_text and mended_text.count("SPEED") == 4
+    assert not [diagnostic for diagnostic in check(mended_text) if diagnostic.code.is_mistake]
 
 
 @pytest.mark.parametrize("word", ["AND", "OR"])
@@ -78,8 +78,8 @@ def test_one_more_or_less_is_read_everywhere(step: str, frame: str) -> None:
 )  # fmt: skip
 def test_questions_in_brackets_of_their_own_are_one(frame: str, word: str) -> None:
     text = frame.format(f"(DISTANCE < 10) {word} (LIGHT_L < 20)")
-    mended = repair_program(text, check).text
-    assert not [diagnostic for diagnostic in check(mended) if diagnostic.code.is_mistake]
-    assert mended.replace(" ", "") == frame.format(
+    mended_text = repair_program(text, check).text
+    assert not [diagnostic for diagnostic in check(mended_text) if diagnostic.code.is_mistake]
+    assert mended_text.replace(" ", "") == frame.format(
         f"((DISTANCE < 10) {word}(LIGHT_L < 20))"
     ).replace(" ", "")

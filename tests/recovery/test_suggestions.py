@@ -1,4 +1,4 @@
-"""The rows of suggestions: what is said about words after an instruction, and what is read."""
+"""The rows of suggestions: messages about words after an instruction, and the rest that is read."""
 
 from __future__ import annotations
 
@@ -37,16 +37,16 @@ def test_the_example_of_a_row_is_told_as_it_says(row: SuggestionRow) -> None:
 
 
 def test_what_was_found_is_told_by_the_row_of_its_example() -> None:
-    """Each row of what was found is the one that tells its example, and none is in vain."""
+    """Each example has the message of its own row, and no row is useless."""
     telling: list[SuggestionRow] = []
     original = usage.Usage.diagnostic_of
 
-    def noted(place: usage.Usage, row: SuggestionRow, gaps: Gaps) -> Diagnostic:
+    def note_row(place: usage.Usage, row: SuggestionRow, gaps: Gaps) -> Diagnostic:
         telling.append(row)
         return original(place, row, gaps)
 
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(usage.Usage, "diagnostic_of", noted)
+        patched.setattr(usage.Usage, "diagnostic_of", note_row)
         for row in rows():
             check.cache_clear()
             telling.clear()
@@ -114,8 +114,11 @@ def test_nothing_stands_above_that_could_be_meant(wrong: str) -> None:
 
 
 def test_what_follows_a_question_in_words_is_told_with_it() -> None:
-    asked, end = check("IF(mucha luz) S ENDIF")
-    assert (asked.values["question"], asked.values["another"]) == ("LIGHT_L > 500", "LIGHT_R > 500")
+    asked_diagnostic, end = check("IF(mucha luz) S ENDIF")
+    assert (asked_diagnostic.values["question"], asked_diagnostic.values["another"]) == (
+        "LIGHT_L > 500",
+        "LIGHT_R > 500",
+    )
     assert end.values["fix"] == "IF(LIGHT_L > 500);S;ENDIF"
     assert repair_program("IF(mucha luz) S ENDIF", check).text == "IF(mucha luz);S;ENDIF"
 
@@ -141,8 +144,9 @@ def test_a_number_of_another_unit_is_converted() -> None:
         ("F(2, 80) luego espera", {"fix": "F(2, 80);W(1)", "example": "1 s"}),
         ("F(5,80) UNTIL(DISTANCE<10) al 50%", {"power": "F(5,50) UNTIL(DISTANCE<10)"}),
         ("se nao tiver parede pra frente 2 segundos",
-         {"fix": "IF(DISTANCE > 10);F(2, 80);ENDIF"}),  # where to go, and not where the wall is
-        ("L(1,60) (45)", {"extra": "(45)"}),  # rather degrees than how often
+         # The target of the move, not the wall's place.
+         {"fix": "IF(DISTANCE > 10);F(2, 80);ENDIF"}),
+        ("L(1,60) (45)", {"extra": "(45)"}),  # rather degrees than how many times
         ("avanza hasta menos de 10", {"fix": "F(FOREVER, 80) UNTIL(DISTANCE < 10)"}),
     ],
 )  # fmt: skip

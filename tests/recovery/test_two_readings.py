@@ -16,7 +16,7 @@ LAST = (
     "DEF A1\n{}\nEND_DEF\nA1", "TASK\n{}\nEND_TASK",
 )  # fmt: skip
 BEFORE_OTHERS = ("{};W(1)", "SI|W(1);{};S", "IF(DISTANCE < 9);{};ENDIF")
-# What may be a note, and the other thing that it may say.
+# Text that may be a note, and its other meaning.
 ASIDES = {
     "avanza otra vez": "LOOP(2);F(3, 50);END_LOOP", "again": "LOOP(2);F(3, 50);END_LOOP",
     "siempre": "LOOP(FOREVER);F(3, 50);END_LOOP", "al reves": "B(3, 50)",
@@ -46,11 +46,11 @@ def test_words_that_may_be_a_note_are_one_first(words: str, language: str) -> No
 
 @pytest.mark.parametrize("between", [";", "\n"])
 @pytest.mark.parametrize("around", AROUND)
-@pytest.mark.parametrize(("asked", "other"), IFS)
+@pytest.mark.parametrize(("asked_text", "other"), IFS)
 def test_an_else_that_asks_the_opposite_asks_nothing(
-    asked: str, other: str, around: str, between: str
+    asked_text: str, other: str, around: str, between: str
 ) -> None:
-    body = between.join((f"IF({asked})", "B(1, 60)", f"ELSE({other})", "F(1, 60)", "ENDIF"))
+    body = between.join((f"IF({asked_text})", "B(1, 60)", f"ELSE({other})", "F(1, 60)", "ENDIF"))
     wrong = around.format(body)
     diagnostic = next(
         diagnostic for diagnostic in check(wrong) if diagnostic.code.number == "TS039"

@@ -1,4 +1,4 @@
-"""What keeps a commit from being released: each is said in one sentence."""
+"""Reasons that prevent a release: each has one sentence."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def git(root: Path, *words: str) -> None:
     subprocess.run(["git", "-C", root, *known, *words], check=True, capture_output=True)
 
 
-def replaced(name: str, old: str, new: str) -> Callable[[Path], None]:
+def replace_in_file(name: str, old: str, new: str) -> Callable[[Path], None]:
     def change(root: Path) -> None:
         path = root / name
         text = path.read_text(encoding="utf-8")
@@ -55,7 +55,7 @@ def clone(tmp_path: Path) -> Path:
         text = re.sub(r"(?m)^date-released: .*\n", "", text)
         path.write_text(text, encoding="utf-8")
     (root / "CHANGELOG.md").write_text(CHANGES, encoding="utf-8")
-    replaced("SECURITY.md", facts.NO_CONTACT, "people@example.org")(root)
+    replace_in_file("SECURITY.md", facts.NO_CONTACT, "people@example.org")(root)
     about = root / "pyproject.toml"
     about.write_text(facts.with_address(about.read_text("utf-8"), URL), encoding="utf-8")
     git(tmp_path, "init", "-q", str(root))
@@ -70,23 +70,33 @@ def test_what_is_ready_gets_no_complaint(clone: Path) -> None:
 
 
 WRONG: dict[str, Callable[[Path], object]] = {
-    "CHANGELOG.md has no section for": replaced("CHANGELOG.md", f"## {VERSION} (", "## 1.0.0 ("),
-    "CHANGELOG.md has no date": replaced("CHANGELOG.md", " (2031-02-03)", ""),
-    "has no section Unreleased": replaced("CHANGELOG.md", "## Unreleased\n", ""),
-    "changes under Unreleased": replaced(
+    "CHANGELOG.md has no section for": replace_in_file(
+        "CHANGELOG.md", f"## {VERSION} (", "## 1.0.0 ("
+    ),
+    "CHANGELOG.md has no date": replace_in_file("CHANGELOG.md", " (2031-02-03)", ""),
+    "has no section Unreleased": replace_in_file("CHANGELOG.md", "## Unreleased\n", ""),
+    "changes under Unreleased": replace_in_file(
         "CHANGELOG.md", "## Unreleased\n", "## Unreleased\n\n- B\n"
     ),
-    "CITATION.cff has version": replaced("CITATION.cff", f"version: {VERSION}", "version: 0.0.1"),
-    "CITATION.cff has the date 2030": replaced(
+    "CITATION.cff has version": replace_in_file(
+        "CITATION.cff", f"version: {VERSION}", "version: 0.0.1"
+    ),
+    "CITATION.cff has the date 2030": replace_in_file(
         "CITATION.cff", "license:", "date-released: 2030-01-01\nlicense:"
     ),
-    "docs/en/versions.md has version": replaced("docs/en/versions.md", f"`{VERSION}`", "`0.0.1`"),
-    "LICENSE names Somebody": replaced("LICENSE", facts.PEOPLE, "Somebody"),
-    "CITATION.cff names nobody": replaced("CITATION.cff", facts.PEOPLE, ""),
-    "pyproject.toml names": replaced("pyproject.toml", facts.PEOPLE, "Ann"),
-    "does not say how to reach": replaced("SECURITY.md", "people@example.org", facts.NO_CONTACT),
-    "SECURITY.md does not say": replaced("SECURITY.md", "Contact: people@example.org", "Contact:"),
-    "does not say where it is published": replaced("pyproject.toml", "Source =", "Home ="),
+    "docs/en/versions.md has version": replace_in_file(
+        "docs/en/versions.md", f"`{VERSION}`", "`0.0.1`"
+    ),
+    "LICENSE names Somebody": replace_in_file("LICENSE", facts.PEOPLE, "Somebody"),
+    "CITATION.cff names nobody": replace_in_file("CITATION.cff", facts.PEOPLE, ""),
+    "pyproject.toml names": replace_in_file("pyproject.toml", facts.PEOPLE, "Ann"),
+    "does not say how to reach": replace_in_file(
+        "SECURITY.md", "people@example.org", facts.NO_CONTACT
+    ),
+    "SECURITY.md does not say": replace_in_file(
+        "SECURITY.md", "Contact: people@example.org", "Contact:"
+    ),
+    "does not say where it is published": replace_in_file("pyproject.toml", "Source =", "Home ="),
 }
 
 
@@ -149,7 +159,7 @@ def test_an_address_has_one_place() -> None:
 def test_an_address_is_kept_where_it_is_another_one(
     clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_tagged: bool
 ) -> None:
-    """What is ready to be released still is."""
+    """A commit that is ready for release stays so."""
     monkeypatch.setattr(release, "ROOT", clone)
     if is_tagged:
         release.tag(clone, VERSION)

@@ -30,17 +30,17 @@ def test_the_same_files_give_the_same_bytes(tmp_path: Path) -> None:
     (tmp_path / "again").mkdir()
     second = pack_folder(other, tmp_path / "again" / "x-1.zip", EPOCH)
     assert first.read_bytes() == second.read_bytes()
-    with zipfile.ZipFile(first) as packed:
-        assert packed.namelist() == ["x-1/a/b.txt", "x-1/a/ñ.txt", "x-1/b.sh"]
-        assert {row.date_time for row in packed.infolist()} == {(2023, 11, 14, 22, 13, 20)}
+    with zipfile.ZipFile(first) as zip_file:
+        assert zip_file.namelist() == ["x-1/a/b.txt", "x-1/a/ñ.txt", "x-1/b.sh"]
+        assert {row.date_time for row in zip_file.infolist()} == {(2023, 11, 14, 22, 13, 20)}
 
 
 def test_what_may_be_started_may_be_started_when_unpacked(tmp_path: Path) -> None:
     path = pack_folder(
         folder(tmp_path / "one", ["b.sh", "a.txt"], EPOCH), tmp_path / "x.zip", EPOCH
     )
-    with zipfile.ZipFile(path) as packed:
-        rights = {row.filename: row.external_attr >> 16 & 0o777 for row in packed.infolist()}
+    with zipfile.ZipFile(path) as zip_file:
+        rights = {row.filename: row.external_attr >> 16 & 0o777 for row in zip_file.infolist()}
     assert rights == {"x/b.sh": 0o755, "x/a.txt": 0o644}
 
 

@@ -57,5 +57,5 @@ def test_no_table_has_a_board_without_firmware() -> None:
 
 
 def test_every_chip_has_firmware() -> None:
-    """Where one has none, `tsc firmware --board` and `tsc firmware --wiring` say so."""
+    """If a chip had none, `tsc firmware --board` and `tsc firmware --wiring` would report it."""
     assert set(CHIPS) == set(firmware.BOARDS)

@@ -28,15 +28,15 @@ from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import Board, Robot, Wiring
 
 
-def written(robot: Robot) -> tuple[str, str]:
+def write_header_and_sketch(robot: Robot) -> tuple[str, str]:
     """Return the header and a sketch of a robot that uses all that it has."""
     uses = [f"SHOW({device.name})" for device in robot.kit.sensors]
     uses += [
         f"{device.name}({'TRUE' if device.is_yes_no else 1})" for device in robot.kit.actuators
     ]
-    compiled = compile_text("; ".join(["F(1, 50)", *uses]), robot.kit, "prog.ts")
-    assert compiled.program is not None and compiled.is_right, compiled.diagnostics
-    sketch = sketch_of(compiled.source, compiled.program, robot, "en")
+    compilation = compile_text("; ".join(["F(1, 50)", *uses]), robot.kit, "prog.ts")
+    assert compilation.program is not None and compilation.is_right, compilation.diagnostics
+    sketch = sketch_of(compilation.source, compilation.program, robot, "en")
     return firmware.header([robot], "a test."), sketch
 
 
@@ -46,7 +46,7 @@ def names(drivers: list[Driver]) -> list[str]:
 
 @pytest.mark.parametrize("driver", DEVICES, ids=names(DEVICES))
 def test_a_device_is_read_or_set_by_firmware_and_sketch(driver: Driver) -> None:
-    header, sketch = written(robot_with("l298n", [driver]))
+    header, sketch = write_header_and_sketch(robot_with("l298n", [driver]))
     assert "case 0:  // D0" in header
     for pin in driver.pins:
         assert ("D0_PIN" if pin.key == "pin" else f"D0_{pin.key.upper()}_PIN") in sketch
@@ -81,7 +81,7 @@ def test_a_driver_that_a_sketch_does_not_know_is_named() -> None:
 
 @pytest.mark.parametrize("motors", MOTORS)
 def test_motors_are_driven_by_firmware_and_sketch(motors: str) -> None:
-    header, sketch = written(robot_with(motors, []))
+    header, sketch = write_header_and_sketch(robot_with(motors, []))
     assert "kLeftMotor" in header and "kRightMotor" in header
     assert "void driveMotor(" in sketch
 
@@ -112,9 +112,9 @@ def test_a_robot_without_a_buzzer_has_no_tone() -> None:
     for chip in ("uno", "esp32dev"):
         assert "#define tiniscript_silent\n" in firmware.header([silent(chip)], "a test.")
     robot = silent("uno")
-    compiled = compile_text("SB|BEEP(1, 440);F(1, 50)", robot.kit, "prog.ts")
-    assert compiled.program is not None
-    sketch = sketch_of(compiled.source, compiled.program, robot, "en")
+    compilation = compile_text("SB|BEEP(1, 440);F(1, 50)", robot.kit, "prog.ts")
+    assert compilation.program is not None
+    sketch = sketch_of(compilation.source, compilation.program, robot, "en")
     assert "one(" not in sketch and "BUZZER" not in sketch
     assert "waitMs(ms);" in sketch, "a sound takes its time"
 
@@ -123,7 +123,7 @@ def test_a_robot_without_a_buzzer_has_no_tone() -> None:
 
 
 def is_shield(motors: str) -> bool:
-    """Whether a driver has the pins of an Uno, which an ESP32 has in other places."""
+    """Return whether a driver uses the pins of an Uno, which an ESP32 has in other places."""
     return any(pin.fixed_number is not None for pin in DRIVERS["motors", motors].pins)
 
 
@@ -142,7 +142,7 @@ ALL = [
 
 
 def compile_all(robot: Robot, folder: Path) -> None:
-    """Nothing is made of it: in a second a compiler says what no text of a test shows."""
+    """Compile without output: a compiler quickly reports what no text test shows."""
     header, own = firmware.header([robot], "a test."), folder / "own.h"
     own.write_text(header, encoding="utf-8")
     own_define = f'-Dtiniscript_own="{own}"'
@@ -156,7 +156,7 @@ def compile_all(robot: Robot, folder: Path) -> None:
              "-Wpedantic", "-Werror", "-fsyntax-only")  # fmt: skip
     boards.run("avr-g++", *words, *boards.flags_for(header), own_define, *KNOWING)
     its = folder / "sketch.cpp"
-    its.write_text(written(robot)[1], encoding="utf-8")
+    its.write_text(write_header_and_sketch(robot)[1], encoding="utf-8")
     boards.run("avr-g++", *words, its)
 
 

@@ -20,7 +20,8 @@ BODY = Body(
 )
 SETTINGS = [(50, 50), (-80, -80), (60, -60), (-30, 30), (20, 70), (70, 20), (0, 50), (-10, -90),
             (90, -20), (100, 99), (0, 0)]  # fmt: skip
-QUARTER_MS = 1000 * (math.pi / 2 * BODY.wheel_base_cm / 2) / BODY.speed_cm_s  # at 100 %
+# Time of a quarter turn at 100 %.
+QUARTER_MS = 1000 * (math.pi / 2 * BODY.wheel_base_cm / 2) / BODY.speed_cm_s
 
 
 def near(pose: Pose) -> Pose:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.edited_robots import TEXTS, edited
+from tests.support.edited_robots import TEXTS, edit_profile
 from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES, catalogue_texts
 from tiniscript import robots
@@ -22,18 +22,18 @@ from tiniscript.robots.refusals import describe, printable_value
 
 
 def refusal(text: str) -> ProfileRefused:
-    with pytest.raises(ProfileRefused) as caught:
+    with pytest.raises(ProfileRefused) as exception_info:
         read(text, "test")
-    return caught.value
+    return exception_info.value
 
 
-def codes(refused: ProfileRefused) -> list[str]:
-    return [code for code, _ in refused.reasons]
+def codes(refusal: ProfileRefused) -> list[str]:
+    return [code for code, _ in refusal.reasons]
 
 
 FULL = "\n".join(f'[[kit.sensors]]\nname = "S{i}"\nkind = "yes/no"' for i in range(33))
 
-# code, robot, what is replaced, by what, the path that the complaint names
+# code, robot, replaced text, replacement, the path in the message
 REFUSED = [
     ("not_toml", "tinibot", 'chip = "uno"', 'chip = "uno', None),
     ("not_toml", "tinibot", "baud = 9600", "baud = 9" + "9" * 5000, None),
@@ -134,7 +134,7 @@ REFUSED = [
 
 @each_row("code, name, old, new, path", REFUSED)
 def test_refusals(code: str, name: str, old: str, new: str, path: str | None) -> None:
-    refused = refusal(edited(name, old, new))
+    refused = refusal(edit_profile(name, old, new))
     if path is None:
         assert codes(refused) == [code]
     else:
@@ -163,14 +163,14 @@ pin = {pin}
 ])  # fmt: skip
 def test_timers_of_an_uno(motors: str, pin: int, timer: int | None, first: str) -> None:
     """Servos take PWM 9 and 10, the buzzer PWM 3 and 11; the names of both are said."""
-    before, _, after = TEXTS["tinibot"].partition("[board.motors]")
-    wired = {
+    text_before, _, text_after = TEXTS["tinibot"].partition("[board.motors]")
+    wired_text = {
         "servos": 'driver = "servos"\nleft_pin = 7\nright_pin = 8\n',
         "l298n": 'driver = "l298n"\nleft_pwm = 6\nleft_forward = 7\nleft_backward = 8\n'
         'right_pwm = 9\nright_forward = "A2"\nright_backward = 10\n',
     }[motors]
-    text = f"{before}[board.motors]\n{wired}{FAN.format(pin=pin)}"
-    text += "[board.sensors.LIGHT_R]" + after.partition("[board.sensors.LIGHT_R]")[2]
+    text = f"{text_before}[board.motors]\n{wired_text}{FAN.format(pin=pin)}"
+    text += "[board.sensors.LIGHT_R]" + text_after.partition("[board.sensors.LIGHT_R]")[2]
     text = text.replace("echo = 3", 'echo = "A3"')
     if timer is None:
         assert read(text, "test").board.actuators[0].pins == {"pin": pin}
@@ -190,7 +190,8 @@ def test_timers_of_an_uno(motors: str, pin: int, timer: int | None, first: str) 
     *(("tinibot32", "right_backward = 21", pin, "pin_of_link") for pin in (1, 3)),
     *(("tinibot32", "right_backward = 21", pin, "pin_cannot") for pin in (34, 35, 36, 39)),
     *(("tinibot32", "pin = 34", pin, "pin_cannot") for pin in (0, 2, 12, 13, 14, 15)),
-    *(("tinibot32", "trigger = 18", pin, "") for pin in (0, 5, 12, 14, 15)),  # what is no motor
+    # Pins of a device other than a motor.
+    *(("tinibot32", "trigger = 18", pin, "") for pin in (0, 5, 12, 14, 15)),
     *(("tinibotc3", "right_backward = 10", pin, "pin_at_boot") for pin in (2, 6, 9)),
     *(("tinibotc3", "right_backward = 10", pin, "no_such_pin") for pin in range(11, 18)),
     *(("tinibotc3", "right_backward = 10", pin, "pin_of_link") for pin in (18, 19, 20, 21)),
@@ -201,7 +202,7 @@ def test_timers_of_an_uno(motors: str, pin: int, timer: int | None, first: str) 
     ("tinibotc3", "start_button = 8", 2, ""),
 ])  # fmt: skip
 def test_pins_of_esp32s(name: str, old: str, pin: int, code: str) -> None:
-    """What one does at a reset starts no motor; flash, link, inputs, ADC2 are what they are."""
+    """A pin with a reset pulse starts no motor; flash, link, inputs and ADC2 are checked."""
     key, _, left = old.partition(" = ")
     text, count = re.subn(rf"(?m)^{old}\b", f"{key} = {pin}", TEXTS[name])
     assert count == 1
@@ -219,8 +220,8 @@ def test_pins_of_esp32s(name: str, old: str, pin: int, code: str) -> None:
 
 def test_pwm_of_an_esp32_c3() -> None:
     """Three timers, for two pins of one frequency each: a fan beside four motor pins has none."""
-    before, mark, after = TEXTS["tinibotc3"].partition("[board.sensors.LIGHT_R]")
-    text = before + FAN.format(pin=9) + mark + after
+    text_before, mark, text_after = TEXTS["tinibotc3"].partition("[board.sensors.LIGHT_R]")
+    text = text_before + FAN.format(pin=9) + mark + text_after
     refused = refusal(text)
     assert codes(refused) == ["timers_used_up"]
     assert describe(refused, "en")[0].startswith("board.actuators.FAN.pin is pin 9: its PWM needs")
@@ -248,7 +249,7 @@ def test_every_code_has_a_test() -> None:
 
 
 def test_all_complaints_come_at_once() -> None:
-    text = edited("tinibot", "range = [0, 400]", "range = [4, 0]")
+    text = edit_profile("tinibot", "range = [0, 400]", "range = [4, 0]")
     text = text.replace("trigger = 4", "trigger = 1").replace('"LIGHT_R"', '"LOOP"', 1)
     text = text.replace("length_cm = 21", "length = 21")
     paths = codes(refusal(text))
@@ -256,15 +257,15 @@ def test_all_complaints_come_at_once() -> None:
 
 
 def test_a_missing_table_is_one_complaint() -> None:
-    before, _, after = TEXTS["tinibot"].partition("[body]")
-    text = before + "[labels.en]" + after.partition("[labels.en]")[2]
+    text_before, _, text_after = TEXTS["tinibot"].partition("[body]")
+    text = text_before + "[labels.en]" + text_after.partition("[labels.en]")[2]
     assert [(code, values["path"]) for code, values in refusal(text).reasons] == [
         ("missing", "body")
     ]
 
 
 def test_a_lamp_cannot_be_held() -> None:
-    refused = refusal(edited("grabber", "pin = 30", 'pin = 30\nat_stop = "hold"'))
+    refused = refusal(edit_profile("grabber", "pin = 30", 'pin = 30\nat_stop = "hold"'))
     assert codes(refused) == ["at_stop_of_no_servo"]
     assert describe(refused, "en")[0].endswith(
         "Remove the line; only a servo can keep its position."
@@ -273,16 +274,16 @@ def test_a_lamp_cannot_be_held() -> None:
 
 
 def test_a_refusal_says_what_to_do() -> None:
-    refused = refusal(edited("tinibot", "left_pwm = 5", "left_pwm = 4"))
+    refused = refusal(edit_profile("tinibot", "left_pwm = 5", "left_pwm = 4"))
     assert describe(refused, "en") == [
         "board.motors.left_pwm is pin 4, which cannot be a PWM output on the board uno."
         " These can: 3, 5, 6, 9, 10, 11."
     ]
-    refused = refusal(edited("tinibot", "[0, 400]", "400"))
+    refused = refusal(edit_profile("tinibot", "[0, 400]", "400"))
     assert describe(refused, "es") == [
         "kit.sensors[3].range es un número. Escribe ahí dos números, [menor, mayor]."
     ]
-    refused = refusal(edited("tinibot", "baud =", "buad ="))
+    refused = refusal(edit_profile("tinibot", "baud =", "buad ="))
     assert "Did you mean baud?" in describe(refused, "en")[0]
 
 
@@ -294,7 +295,7 @@ def test_a_refusal_says_what_to_do() -> None:
         ("tinibot", "left_pwm = 5", "left_pvm = 5", ["Did you mean left_pwm?"]),
         ("tinibot", 'name = "DISTANCE"', 'name = "F"', ["a word of TiniScript"]),
         ("tinibot", 'name = "DISTANCE"', 'name = "AÑO"', ["without accents or ñ."]),
-        # what is missing for another cause is told
+        # Parts missing for another reason are reported.
         ("tinibot", "length_cm = 21\nwidth_cm", "lenght_cm = 21\n#",
          ["width_cm is missing", "Did you mean length_cm?"]),
         ("tinibot", "trigger = 4\necho", "triger = 4\n#",
@@ -302,7 +303,7 @@ def test_a_refusal_says_what_to_do() -> None:
     ],
 )  # fmt: skip
 def test_one_slip_is_one_complaint(name: str, old: str, new: str, sentences: list[str]) -> None:
-    complaints = describe(refusal(edited(name, old, new)), "en")
+    complaints = describe(refusal(edit_profile(name, old, new)), "en")
     assert len(complaints) == len(sentences), complaints
     for sentence, complaint in zip(sentences, complaints, strict=True):
         assert sentence in complaint
@@ -310,7 +311,7 @@ def test_one_slip_is_one_complaint(name: str, old: str, new: str, sentences: lis
 
 def test_another_name_in_the_kit_names_the_tables_that_need_it_too() -> None:
     sentences = describe(
-        refusal(edited("tinibot", 'name = "DISTANCE"', 'name = "DISTANCIA"')), "en"
+        refusal(edit_profile("tinibot", 'name = "DISTANCE"', 'name = "DISTANCIA"')), "en"
     )
     assert [sentence.partition(":")[0] for sentence in sentences] == [
         "board.sensors.DISTANCE", "body.sensors.DISTANCE",
@@ -344,24 +345,24 @@ def test_trouble_with_files(code: str, content: bytes | None, tmp_path: Path) ->
         path = str(tmp_path)
     elif code == "file_unreadable":
         path = "\0.toml"
-    with pytest.raises(ProfileRefused) as caught:
+    with pytest.raises(ProfileRefused) as exception_info:
         robots.load(path)
-    assert codes(caught.value) == [code]
-    assert all(describe(caught.value, language) for language in LANGUAGES)
+    assert codes(exception_info.value) == [code]
+    assert all(describe(exception_info.value, language) for language in LANGUAGES)
 
 
 def test_a_wrong_name_gets_the_nearest_one() -> None:
-    with pytest.raises(ProfileRefused) as caught:
+    with pytest.raises(ProfileRefused) as exception_info:
         robots.load("Tinybot")
-    assert describe(caught.value, "es") == [
+    assert describe(exception_info.value, "es") == [
         "No hay un robot Tinybot. ¿Quisiste decir tinibot? Los robots son: "
         f"{', '.join(robots.names())}."
     ]
     for name in ("", "zzz", "\0", "💥", "{path}"):
-        with pytest.raises(ProfileRefused) as caught:
+        with pytest.raises(ProfileRefused) as exception_info:
             robots.load(name)
-        assert codes(caught.value) == ["no_such_robot"]
-        assert describe(caught.value, "en")[0].endswith("or give a .toml file.")
+        assert codes(exception_info.value) == ["no_such_robot"]
+        assert describe(exception_info.value, "en")[0].endswith("or give a .toml file.")
 
 
 # ---- anything at all
@@ -373,7 +374,7 @@ ODD = (
 )  # fmt: skip
 
 
-def mutated(text: str, chance: random.Random) -> str:
+def mutate(text: str, chance: random.Random) -> str:
     """A text with some lines deleted, doubled, moved, or given another value."""
     lines = text.split("\n")
     for _ in range(chance.choice((1, 1, 2, 5, 20))):
@@ -402,11 +403,11 @@ def test_nothing_but_a_refusal_comes_of_a_broken_profile(seed: int) -> None:
     for _ in range(50):
         name = chance.choice(sorted(TEXTS))
         try:
-            robot = read(mutated(TEXTS[name], chance), name)
-        except ProfileRefused as refused:
-            assert refused.reasons
+            robot = read(mutate(TEXTS[name], chance), name)
+        except ProfileRefused as refusal:
+            assert refusal.reasons
             for language in LANGUAGES:
-                for sentence in describe(refused, language):
+                for sentence in describe(refusal, language):
                     assert sentence.isprintable()
         else:
             assert isinstance(robot, Robot)

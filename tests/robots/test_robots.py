@@ -1,4 +1,4 @@
-"""Robot profiles: those that are shipped, what a file may say, and what makes a fingerprint."""
+"""Robot profiles: the shipped ones, the content of a file, and the basis of a fingerprint."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.edited_robots import FOLDER, TEXTS, edited
+from tests.support.edited_robots import FOLDER, TEXTS, edit_profile
 from tests.support.texts import LANGUAGES
 from tiniscript import robots
 from tiniscript.robots.boards import CHIPS, NEEDS, Chip
@@ -85,7 +85,7 @@ def test_a_shipped_robot_needs_no_toml() -> None:
     ],
 )
 def test_the_fingerprint_is_blind_to_what_programs_do_not_see(old: str, new: str) -> None:
-    assert read(edited("grabber", old, new), "x").kit.fingerprint == FINGERPRINTS["grabber"]
+    assert read(edit_profile("grabber", old, new), "x").kit.fingerprint == FINGERPRINTS["grabber"]
 
 
 @pytest.mark.parametrize(
@@ -100,17 +100,17 @@ def test_the_fingerprint_is_blind_to_what_programs_do_not_see(old: str, new: str
     ],
 )
 def test_the_fingerprint_sees_ranges_and_units(old: str, new: str) -> None:
-    assert read(edited("grabber", old, new), "x").kit.fingerprint != FINGERPRINTS["grabber"]
+    assert read(edit_profile("grabber", old, new), "x").kit.fingerprint != FINGERPRINTS["grabber"]
 
 
 def test_the_fingerprint_sees_names_kinds_and_order() -> None:
     text = TEXTS["tinibot"]
-    swapped = text.replace("LIGHT_R", "LIGHT_X").replace("LIGHT_L", "LIGHT_R")
-    renamed = text.replace("LIGHT_R", "LAMP")
+    swapped_text = text.replace("LIGHT_R", "LIGHT_X").replace("LIGHT_L", "LIGHT_R")
+    renamed_text = text.replace("LIGHT_R", "LAMP")
     other_kind = text.replace('kind = "number"\nrange = [0, 1023]', 'kind = "yes/no"', 1).replace(
         'driver = "analog"', 'driver = "digital"', 1
     )
-    texts = [swapped.replace("LIGHT_X", "LIGHT_L"), renamed, other_kind]
+    texts = [swapped_text.replace("LIGHT_X", "LIGHT_L"), renamed_text, other_kind]
     fingerprints = {read(text, "x").kit.fingerprint for text in texts}
     assert len(fingerprints) == 3
     assert FINGERPRINTS["tinibot"] not in fingerprints
@@ -127,10 +127,10 @@ def test_names_are_stored_in_capitals_everywhere() -> None:
 
 
 def test_numbers_are_exact() -> None:
-    text = edited("tinibot", "range = [0, 400]", "range = [-2147483.648, 2147483.647]")
+    text = edit_profile("tinibot", "range = [0, 400]", "range = [-2147483.648, 2147483.647]")
     distance = read(text, "x").kit.sensors[2]
     assert (distance.low, distance.high) == (-(2**31), 2**31 - 1)
-    text = edited("tinibot", "range = [0, 400]", "range = [+0.1000, 1_000.25]")
+    text = edit_profile("tinibot", "range = [0, 400]", "range = [+0.1000, 1_000.25]")
     assert read(text, "x").kit.sensors[2][3:] == (100, 1_000_250)
 
 
@@ -154,7 +154,9 @@ def test_a_robot_may_have_no_devices() -> None:
 
 
 def test_a_wire_that_is_optional_may_be_missing() -> None:
-    board = read(edited("liner", "status_led = 13\n", "").replace("standby = 4", ""), "x").board
+    board = read(
+        edit_profile("liner", "status_led = 13\n", "").replace("standby = 4", ""), "x"
+    ).board
     assert board.status_led is None
     assert board.bluetooth_state is None
     assert "standby" not in board.motors.pins
@@ -181,10 +183,10 @@ def test_a_wire_that_is_optional_may_be_missing() -> None:
     ],
 )
 def test_motor_drivers(motors: str, settings: dict[str, int]) -> None:
-    before, _, after = TEXTS["tinibot"].partition("\n[board.motors]\n")
-    pins = after.partition("left_pwm")[2].partition("\n\n")
+    text_before, _, text_after = TEXTS["tinibot"].partition("\n[board.motors]\n")
+    pins = text_after.partition("left_pwm")[2].partition("\n\n")
     used_pin = f"left_pwm{pins[0]}" if "l293d" in motors else ""
-    text = f"{before}\n[board.motors]\n{motors}\n{used_pin}\n{pins[2]}"
+    text = f"{text_before}\n[board.motors]\n{motors}\n{used_pin}\n{pins[2]}"
     assert read(text, "x").board.motors.settings == settings
 
 
@@ -221,8 +223,8 @@ def test_every_need_has_a_pin_and_the_link_none(chip: Chip) -> None:
     assert all(chip.can(pin, "input") for pin in chip.digital_pins | chip.reading_pins)
     missing = {need for need in NEEDS if not any(chip.can(pin, need) for pin in every)}
     assert missing == ({"count"} if chip.name == "esp32c3" else set())
-    assert all(chip.pin_number(_written(chip.pin_name(pin))) == pin for pin in every)
+    assert all(chip.pin_number(_parse_key(chip.pin_name(pin))) == pin for pin in every)
 
 
-def _written(name: str) -> object:
+def _parse_key(name: str) -> object:
     return int(name) if name.isdigit() else name

@@ -1,4 +1,4 @@
-"""A move with FOREVER and no UNTIL, which an S behind it was to end."""
+"""A move with FOREVER and no UNTIL, which a later S was to end."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tests.pupils.corpus import check
 from tiniscript.base.words import WORDS
 from tiniscript.diagnostics import codes
 
-# Where in a program it stands; an instruction of TASKs is interrupted by others.
+# Places in a program; in TASKs other instructions interrupt it.
 AROUND = (
     "{}", "W(1);{}", "{};W(1)", "IF(DISTANCE < 9);{};ENDIF",
     "IF(DISTANCE < 9);W(1);ELSE;{};ENDIF", "LOOP(2);IF(DISTANCE < 9);W(1);ENDIF;{};END_LOOP",
@@ -22,7 +22,7 @@ WAITS = {
 
 
 def move_values(text: str) -> dict[str, str]:
-    """Return what the diagnostic of FOREVER says of the move."""
+    """Return the values of the diagnostic of FOREVER about the move."""
     values = next(
         diagnostic.values
         for diagnostic in check(text)

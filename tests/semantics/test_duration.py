@@ -1,4 +1,4 @@
-"""How long a program runs, from its text alone: `least`, `most` (None: no bound), `never_ends`."""
+"""The duration of a program from its text alone: `least`, `most` (None: no bound), `never_ends`."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def lasting(text: str, is_optimized: bool = True) -> Duration:
     [
         ("F(1.5, 80);W(0.25);BEEP(0.5, 440)", 2250, 2250),
         ("W(1 - 3)", 0, 0),  # a time below 0 counts as 0
-        ("M(50, 50);S;SHOW(DISTANCE);X = 5;SHOW(X)", 0, 0),  # what takes no time
+        ("M(50, 50);S;SHOW(DISTANCE);X = 5;SHOW(X)", 0, 0),  # instructions that take no time
         # UNTIL ends a move at any time, but not later than its time
         ("F(2, 80) UNTIL(DISTANCE < 9)", 0, 2000),
         ("F(FOREVER, 80) UNTIL(DISTANCE < 9)", 0, None),
@@ -39,7 +39,7 @@ def lasting(text: str, is_optimized: bool = True) -> Duration:
         ("LOOP(0);W(2);END_LOOP", 0, 0),
         ("LOOP(0 - 1);W(2);END_LOOP", 0, 0),
         ("WHILE(DISTANCE > 9);W(2);END_WHILE", 0, None),
-        # a call takes what its DEF does
+        # A call takes the time of its DEF.
         ("DEF A;W(2);END_DEF;A;A", 4000, 4000),
         ("DEF A;W(2);END_DEF;DEF C;A;W(1);END_DEF;LOOP(2);C;END_LOOP", 6000, 6000),
         ("DEF A;W(DISTANCE);END_DEF;W(1);A", 1000, None),
@@ -50,7 +50,7 @@ def lasting(text: str, is_optimized: bool = True) -> Duration:
         ("LOOP(3);IF(DISTANCE < 9);W(1);ENDIF;END_LOOP;TASK;W(0.1);END_TASK", 100, 3003),
         ("LOOP(3);W(DISTANCE);END_LOOP;TASK;W(0.1);END_TASK", 100, None),
         ("LOOP(DISTANCE);SHOW(1);END_LOOP;TASK;W(1);END_TASK", 1000, None),
-        # one of them may move; where two do, one waits for the motors or is ended by an S
+        # One of them may move; two movers wait for each other, or an S ends them.
         ("F(2, 80);TASK;W(3);F(1, 60);END_TASK", 0, None),
         ("DEF A;S;END_DEF;F(2, 80);TASK;W(3);A;END_TASK", 0, None),
     ],
@@ -70,7 +70,7 @@ def test_a_program_that_ends(text: str, least: int, most: int | None) -> None:
         ),
         ("LOOP(3);W(1);LOOP(FOREVER);S;END_LOOP;END_LOOP", 1000),
         ("W(1);TASK;LOOP(FOREVER);W(1);END_LOOP;END_TASK", 1000),
-        ("W(1);WHEN(DISTANCE < 9);SHOW(1);END_WHEN", 1000),  # it looks for ever
+        ("W(1);WHEN(DISTANCE < 9);SHOW(1);END_WHEN", 1000),  # a WHEN watches forever
     ],
 )
 def test_a_program_that_never_ends(text: str, least: int) -> None:

@@ -1,4 +1,4 @@
-"""What is written in place of a word that cannot stand there: each offer is a right program."""
+"""Replacements for misplaced words: each offer is a correct program."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ def test_each_use_up_to_the_next_number_is_written() -> None:
     text = "SI|DISTANCE = 30;F(DISTANCE, 60);B(DISTANCE, 40);DISTANCE = 9;F(DISTANCE, 60)"
     first = check(text)[0]
     assert first.repair is not None
-    after = apply_edits(text, first.repair.edits)
-    assert after == "SI|F(30 CM, 60);B(30 CM, 40);DISTANCE = 9;F(DISTANCE, 60)"
+    text_after = apply_edits(text, first.repair.edits)
+    assert text_after == "SI|F(30 CM, 60);B(30 CM, 40);DISTANCE = 9;F(DISTANCE, 60)"
 
 
 @pytest.mark.parametrize(
@@ -93,10 +93,10 @@ def test_the_rest_after_a_break_goes_into_the_other_branch(
     right = [head, *(inside or ["S"]), "ELSE", *rest, "ENDIF"]
     assert diagnostic.values["fix"] == ";".join(right)
     assert diagnostic.repair is not None
-    after = apply_edits(text, diagnostic.repair.edits)
-    joined = after.replace("\n", ";").replace("; ", ";")
-    assert joined == around.format(";".join(right)).replace("; ", ";")
-    assert not mistakes(after)
+    text_after = apply_edits(text, diagnostic.repair.edits)
+    joined_text = text_after.replace("\n", ";").replace("; ", ";")
+    assert joined_text == around.format(";".join(right)).replace("; ", ";")
+    assert not mistakes(text_after)
 
 
 @pytest.mark.parametrize("head", HEADS)
@@ -109,11 +109,11 @@ def test_the_notes_of_a_break_and_around_it_stay(
     text = around.format("\n".join([head, *inside, "BREAK // it ends", "ENDIF // if", *rest]))
     diagnostic = next(it for it in check(text) if it.code.number == "TS115")
     assert diagnostic.repair is not None
-    after = apply_edits(text, diagnostic.repair.edits)
+    text_after = apply_edits(text, diagnostic.repair.edits)
     last = " // it ends" if inside else "S // it ends"
     lines = [head, *inside, last, "ELSE // if", *rest, "ENDIF"]
-    assert after == around.format("\n".join(lines))
-    assert not mistakes(after)
+    assert text_after == around.format("\n".join(lines))
+    assert not mistakes(text_after)
     plain = [line.partition(" //")[0] for line in (*(inside or ["S"]), "ELSE", *rest)]
     assert diagnostic.values["fix"] == ";".join([head, *plain, "ENDIF"])
 
@@ -151,22 +151,21 @@ def found_by(text: str, kit: Kit) -> list[Diagnostic]:
 
 
 @pytest.mark.parametrize("around", ["SI|{}", "SI|W(2);{};F(1, 60)", "LOOP(2);{};END_LOOP"])
-@pytest.mark.parametrize("given", SWITCHED)
+@pytest.mark.parametrize("given_text", SWITCHED)
 @pytest.mark.parametrize("word", [*LAMPS, *LIGHTS])
-def test_a_robot_without_a_lamp_says_so(word: str, given: str, around: str) -> None:
-    text = around.format(f"{word}({given})")
-    (shown,) = [message(it, Source(text), "en") for it in found_by(text, TINIBOT)]
-    assert (shown.code, f"no lamp that a program can switch with {word}" in shown.message) == (
-        "TS122", True,
-    )  # fmt: skip
+def test_a_robot_without_a_lamp_says_so(word: str, given_text: str, around: str) -> None:
+    text = around.format(f"{word}({given_text})")
+    (shown_message,) = [message(it, Source(text), "en") for it in found_by(text, TINIBOT)]
+    assert shown_message.code == "TS122"
+    assert f"no lamp that a program can switch with {word}" in shown_message.message
 
 
-@pytest.mark.parametrize("given", SWITCHED)
+@pytest.mark.parametrize("given_text", SWITCHED)
 @pytest.mark.parametrize("word", [*LAMPS, *LIGHTS])
-def test_a_robot_with_a_lamp_names_it(word: str, given: str) -> None:
-    text = f"SI|{word}({given});W(1)"
+def test_a_robot_with_a_lamp_names_it(word: str, given_text: str) -> None:
+    text = f"SI|{word}({given_text});W(1)"
     (diagnostic,) = found_by(text, LINER)
-    answer = "TRUE" if given in ("ON", "HIGH", "TRUE", "1") else "FALSE"
+    answer = "TRUE" if given_text in ("ON", "HIGH", "TRUE", "1") else "FALSE"
     assert f"LED({answer})" in message(diagnostic, Source(text), "en").fix
 
 

@@ -1,4 +1,4 @@
-"""The limits of a program: what just fits, and what is one too many, with the place it is at."""
+"""The limits of a program: the largest allowed, and one more, with its place."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def defs(count: int) -> str:
 
 
 def calls(count: int) -> str:
-    """So many calls that are open at once: the first DEF calls nothing."""
+    """Return so many nested calls; the first DEF calls nothing."""
     def_rows = ["DEF C0;S;END_DEF", *(f"DEF C{k};C{k - 1};END_DEF" for k in range(1, count))]
     return ";".join([*def_rows, f"C{count - 1}"])
 

@@ -114,7 +114,7 @@ def test_no_advice(text: str) -> None:
     assert check_text(text, KIT).diagnostics == []
 
 
-# What the catalogue says is wrong; `tests/diagnostics/test_rendering.py` holds what each is told.
+# Mistakes listed in the catalogue; `tests/diagnostics/test_rendering.py` tests their texts.
 WRONG = [text for key, text in catalogue_texts("en", "messages").items() if key.endswith("/wrong")]
 
 
@@ -130,19 +130,19 @@ def test_the_table_has_every_warning() -> None:
 
 
 def test_a_row_reports_its_codes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """And each of them: what a row names and never reports would be a promise."""
+    """It reports each of its codes, because an unused one would be a false promise."""
     reported: dict[lints.Row, set[codes.Code]] = {row: set() for row in lints.TABLE}
 
-    def watched(row: lints.Row) -> lints.Row:
-        def find(*given: Any) -> None:
-            diagnostics = given[-1].diagnostics
-            before = len(diagnostics)
-            row.report(*given)
-            reported[row] |= {diagnostic.code for diagnostic in diagnostics[before:]}
+    def watch_row(row: lints.Row) -> lints.Row:
+        def find(*arguments: Any) -> None:
+            diagnostics = arguments[-1].diagnostics
+            count_before = len(diagnostics)
+            row.report(*arguments)
+            reported[row] |= {diagnostic.code for diagnostic in diagnostics[count_before:]}
 
         return row._replace(report=find)
 
-    rows = {at: [*map(watched, its)] for at, its in lints._ROWS.items()}
+    rows = {at: [*map(watch_row, its)] for at, its in lints._ROWS.items()}
     monkeypatch.setattr(lints, "_ROWS", rows)
     for text in [*(text for text, _ in ADVISED_PROGRAMS), *WRONG]:
         check_text(text, KIT)
@@ -167,21 +167,21 @@ def test_advice_is_for_right_programs_alone() -> None:
 
 
 @each_row(
-    "text, wanted",
+    "text, wanted_text",
     [
         ("TASK;W(1);END_TASK;S", "TASK;LOOP(FOREVER);W(1);END_LOOP;END_TASK;S"),
         ("TASK // beeps\n  W(1) // so\nENDTASK;S",
          "TASK\nLOOP(FOREVER) // beeps\n  W(1) // so\nEND_LOOP\nENDTASK;S"),
     ],
 )  # fmt: skip
-def test_a_loop_is_put_around_a_task_that_is_done_once(text: str, wanted: str) -> None:
+def test_a_loop_is_put_around_a_task_that_is_done_once(text: str, wanted_text: str) -> None:
     (diagnostic,) = check_text(text, KIT).diagnostics
     assert diagnostic.repair is not None
-    assert apply_edits(text, diagnostic.repair.edits) == wanted
-    assert not check_text(wanted, KIT).diagnostics
+    assert apply_edits(text, diagnostic.repair.edits) == wanted_text
+    assert not check_text(wanted_text, KIT).diagnostics
 
 
-def warned(text: str) -> list[str]:
+def warnings_of(text: str) -> list[str]:
     compilation = check_text(text, KIT)
     assert compilation.is_right, text
     return [diagnostic.code.number for diagnostic in compilation.diagnostics]
@@ -190,14 +190,18 @@ def warned(text: str) -> list[str]:
 @pytest.mark.parametrize("number", ["3", "20", "100", "250", "300", "500", "600", "1000", "10000"])
 @pytest.mark.parametrize("sign", ["<", "<=", ">", ">=", "="])
 def test_a_clock_counts_in_what_a_wait_does(number: str, sign: str) -> None:
-    is_long = "TS811" in warned(f"W({number})")
-    for compared in (f"TIME {sign} {number}", f"{number} {sign} TIME"):
-        for question in (compared, f"DISTANCE < 9 OR {compared}", f"NOT ({compared})"):
+    is_long = "TS811" in warnings_of(f"W({number})")
+    for compared_text in (f"TIME {sign} {number}", f"{number} {sign} TIME"):
+        for question in (
+            compared_text,
+            f"DISTANCE < 9 OR {compared_text}",
+            f"NOT ({compared_text})",
+        ):
             for text in (
                 "WHILE({});F(1, 50);B(1, 50);END_WHILE", "IF({});S;W(1);ENDIF;S", "SHOW({})",
                 "F(9, 60) UNTIL({})", "WHEN({});BEEP(1, 440);END_WHEN;F(3, 60)", "X = {};SHOW(X)",
             ):  # fmt: skip
-                assert ("TS811" in warned(text.format(question))) is is_long, text
+                assert ("TS811" in warnings_of(text.format(question))) is is_long, text
 
 
 @pytest.mark.parametrize("sign", ["<", "<=", ">", ">="])
@@ -213,10 +217,10 @@ def test_a_while_that_its_moves_never_end_is_turned_round(word: str, sign: str) 
         assert bool(diagnostics) is is_turned, text
         for diagnostic in diagnostics:
             right = text.replace(f"WHILE(DISTANCE {sign} 20)", diagnostic.values["fix"])
-            assert "TS824" not in warned(right), right
+            assert "TS824" not in warnings_of(right), right
         for other in (f"{move};R(0.2, 60)", f"IF(LIGHT_L > 9);S;ENDIF;{move}", f"{move};BREAK"):
-            assert "TS824" not in warned(f"WHILE(DISTANCE {sign} 20);{other};END_WHILE"), other
-        assert "TS824" not in warned(f"IF(DISTANCE < 50);{text};ENDIF")
+            assert "TS824" not in warnings_of(f"WHILE(DISTANCE {sign} 20);{other};END_WHILE"), other
+        assert "TS824" not in warnings_of(f"IF(DISTANCE < 50);{text};ENDIF")
 
 
 @pytest.mark.parametrize("seconds", ["0.5", "4.9", "5", "10"])
@@ -228,13 +232,13 @@ def test_a_long_move_after_a_look_that_is_over_is_told(seconds: str) -> None:
         f"W(1);{look};X = 2;{move};SHOW(X)",
         f"{look};BEEP(1, 440);{move}",
     ):
-        assert ("TS805" in warned(text)) is is_long, text
+        assert ("TS805" in warnings_of(text)) is is_long, text
     for text in (
         f"LOOP(3);{look};{move};END_LOOP", f"WHEN(DISTANCE < 9);S;END_WHEN;{look};{move}",
         f"{look};{move} UNTIL(DISTANCE < 9)", f"{look.replace('<', '>')};{move}",
         f"{look.replace('ENDIF', 'ELSE;W(1);ENDIF')};{move}",
     ):  # fmt: skip
-        assert "TS805" not in warned(text), text
+        assert "TS805" not in warnings_of(text), text
 
 
 @pytest.mark.parametrize("low", [1, 20, 80, 100])
@@ -268,7 +272,7 @@ def test_a_clock_that_is_past_is_told_with_what_comes_later(past: str, limit: in
         text.replace("W(9)", "W(9) UNTIL(KEY_A)"),
     ):
         if other != text:
-            assert "TS827" not in warned(other), other
+            assert "TS827" not in warnings_of(other), other
 
 
 @pytest.mark.parametrize("value", ["DISTANCE", "D", "DISTANCE - LIGHT_L"])
@@ -281,25 +285,25 @@ def test_an_else_between_two_numbers_has_room(
     arms = f"IF({value} {one} {first});F(1, 60);ELSEIF({value} {other} {second});L(1, 60)"
     text = f"LOOP(3);D = DISTANCE;{arms};ELSE;R(1, 60);ENDIF;END_LOOP;SHOW(D)"
     is_exact = first == second and {one, other} == {"<", ">"}
-    assert ("TS825" in warned(text)) is is_exact, text
-    assert "TS825" not in warned(text.replace(";ELSE;R(1, 60)", ""))
+    assert ("TS825" in warnings_of(text)) is is_exact, text
+    assert "TS825" not in warnings_of(text.replace(";ELSE;R(1, 60)", ""))
 
 
 @pytest.mark.parametrize("throw", ["RANDOM(1, 3)", "RANDOM(0, 10)"])
 def test_a_number_is_thrown_anew_at_each_random(throw: str) -> None:
     arms = f"IF({throw} = 1);F(1, 60);ELSEIF({throw} = 2);L(1, 60);ENDIF"
-    assert "TS843" in warned(arms)
+    assert "TS843" in warnings_of(arms)
     two_throws = f"SHOW({throw});LOOP({throw});W(1);END_LOOP"
     for place in ("{}", "LOOP(2);{};END_LOOP", "TASK;{};END_TASK;F(3, 60)", "DEF A;{};END_DEF;A"):
-        assert "TS843" in warned(place.format(two_throws)), place
-    assert "TS843" not in warned(f"N = {throw};SHOW(N);{arms.replace(throw, 'N')}")
-    assert "TS843" not in warned(f"SHOW({throw});W(1);LOOP({throw});W(1);END_LOOP")
+        assert "TS843" in warnings_of(place.format(two_throws)), place
+    assert "TS843" not in warnings_of(f"N = {throw};SHOW(N);{arms.replace(throw, 'N')}")
+    assert "TS843" not in warnings_of(f"SHOW({throw});W(1);LOOP({throw});W(1);END_LOOP")
 
 
 @pytest.mark.parametrize("call", ["SIDE(30)", "SIDE(15);SIDE(40)", "SIDE(90)"])
 def test_the_values_of_a_def_are_times_as_its_own_numbers_are(call: str) -> None:
     for word, unit in (("F", "CM"), ("B", "CM"), ("R", "DEG")):
         text = f"DEF SIDE(SIZE);{word}(SIZE, 60);END_DEF;{call}"
-        assert "TS811" in warned(text), text
-        assert "TS811" not in warned(text.replace("SIZE, 60", f"SIZE {unit}, 60")), text
-        assert "TS811" not in warned(text.replace("SIZE", "SECONDS")), text
+        assert "TS811" in warnings_of(text), text
+        assert "TS811" not in warnings_of(text.replace("SIZE, 60", f"SIZE {unit}, 60")), text
+        assert "TS811" not in warnings_of(text.replace("SIZE", "SECONDS")), text

@@ -1,4 +1,4 @@
-"""What a warning offers is right: with its repair the program has no mistake and no new warning."""
+"""Offers of warnings are right: the repaired program has no mistake and no new warning."""
 
 from __future__ import annotations
 
@@ -46,16 +46,16 @@ COMES_TO_LIGHT = {
 }
 
 
-def repaired(text: str, warning: Diagnostic) -> str:
-    """Return a program with the repair of a warning in its place; "" where it offers none."""
+def repair(text: str, warning: Diagnostic) -> str:
+    """Return a program with the repair of a warning in its place; "" if it offers none."""
     fix = warning.values.get("fix", "")
     start, end = warning.place or warning.span
     if not fix:
         return ""
     if warning.code is codes.IDLE_STOP:
-        move, after = warning.values["move"], warning.values["next"]
-        start = text.rfind(move, 0, start) if move else text.index(after, end)
-        end = start + len(move or after)
+        move, text_after = warning.values["move"], warning.values["next"]
+        start = text.rfind(move, 0, start) if move else text.index(text_after, end)
+        end = start + len(move or text_after)
     elif warning.code is codes.FROZEN_WHILE:
         brackets = re.compile(r"\w+\((?:[^()]|\([^()]*\))*\)").match(text, start)
         end = brackets.end() if brackets else end
@@ -65,13 +65,17 @@ def repaired(text: str, warning: Diagnostic) -> str:
 def new_in(text: str) -> list[tuple[str, str]]:
     """Return the repairs of a program's warnings that make a new warning or mistake, with those."""
     diagnostics = check(text)
-    before = Counter(diagnostic.code for diagnostic in diagnostics)
+    counter_before = Counter(diagnostic.code for diagnostic in diagnostics)
     wrong = []
     for diagnostic in diagnostics:
-        after = "" if diagnostic.is_mistake else repaired(text, diagnostic)
-        new = Counter(other.code for other in check(after)) - before if after else Counter()
+        text_after = "" if diagnostic.is_mistake else repair(text, diagnostic)
+        new = (
+            Counter(other.code for other in check(text_after)) - counter_before
+            if text_after
+            else Counter()
+        )
         new -= Counter(COMES_TO_LIGHT.get(diagnostic.code, ()))
-        wrong += [(after, code.number) for code in new]
+        wrong += [(text_after, code.number) for code in new]
     return wrong
 
 
@@ -100,8 +104,8 @@ def test_no_repair_of_a_warning_makes_a_new_one() -> None:
     ],
 )  # fmt: skip
 def test_what_is_offered(text: str, fix: str) -> None:
-    offered = [message(diagnostic, Source(text), "en").fix for diagnostic in check(text)]
-    assert fix in offered[-1]
+    offers = [message(diagnostic, Source(text), "en").fix for diagnostic in check(text)]
+    assert fix in offers[-1]
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What is done or read only once, or alone, where its writer meant more.
+"""Actions or readings that happen once, or alone, where the author meant more.
 
 A key of the remote control outside all that repeats, and a TASK with nothing beside it.
 """
@@ -50,14 +50,14 @@ def of(code: codes.Code, text: str) -> list[Diagnostic]:
 @pytest.mark.parametrize("read", READ)
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_a_question_that_is_asked_once_is_told(around: str, read: str, question: str) -> None:
-    asked = read.format(q=question)
-    text = around.format(asked)
+    asked_text = read.format(q=question)
+    text = around.format(asked_text)
     (diagnostic,) = of(codes.ASKED_ONCE, text)
     name = re.findall(r"(?:KEY|PAD)_\w+", question)[0]
     assert text[slice(*diagnostic.span)] == name
     assert name in (diagnostic.values.get("early"), diagnostic.values.get("name"))
     is_early = around in ("{}", "SI|{}", *AROUND[4:5], AROUND[6], AROUND[9])
-    assert ("early" in diagnostic.values) == is_early or "W(1);ELSEIF" in asked
+    assert ("early" in diagnostic.values) == is_early or "W(1);ELSEIF" in asked_text
     if diagnostic.repair and "IF(DISTANCE < 9)" not in text and "WHEN" not in text:
         assert not of(codes.ASKED_ONCE, apply_edits(text, diagnostic.repair.edits))
 
@@ -116,17 +116,17 @@ def test_of_a_lone_task_that_drives_and_beeps_one_goes_outside(
     text = f"SI|{between.join(['TASK', *inside, 'END_TASK'])}"
     (diagnostic,) = of(codes.LONE_TASK, text)
     assert diagnostic.repair is not None
-    after = apply_edits(text, diagnostic.repair.edits)
-    assert after == f"SI|{between.join(['TASK', BEEP, 'END_TASK', move])}"
-    assert not of(codes.LONE_TASK, after)
+    text_after = apply_edits(text, diagnostic.repair.edits)
+    assert text_after == f"SI|{between.join(['TASK', BEEP, 'END_TASK', move])}"
+    assert not of(codes.LONE_TASK, text_after)
     assert diagnostic.values["fix"] == f"TASK;{BEEP};END_TASK;{move}"
 
 
 @pytest.mark.parametrize("inside", [*MOVES, f"F(1, 50);{BEEP};S", "LOOP(FOREVER);F(1, 50);END_LOOP",
                                     f"{BEEP} // F\nF(1, 50)"])  # fmt: skip
-@pytest.mark.parametrize("before", ["SI|", "N = 3;", "DEF A;S;END_DEF;"])
-def test_each_task_with_nothing_beside_it_is_told(inside: str, before: str) -> None:
-    text = f"{before}TASK\n{inside}\nEND_TASK"
+@pytest.mark.parametrize("text_before", ["SI|", "N = 3;", "DEF A;S;END_DEF;"])
+def test_each_task_with_nothing_beside_it_is_told(inside: str, text_before: str) -> None:
+    text = f"{text_before}TASK\n{inside}\nEND_TASK"
     assert "fix" not in of(codes.LONE_TASK, text)[0].values
 
 

@@ -26,7 +26,7 @@ def short(text: str) -> str:
     [
         ("SHOW(-(2 - 5) / 4)", "Show 0.75\n"),
         ("SHOW(NOT TRUE)", "Show yes_no0\n"),
-        # what faults is left to fault
+        # Faulting code is not optimized away.
         ("SHOW(1 / 0)", "Show 1 0 DIV\n"),
         ("SHOW(0 * (1 / 0))", "Show 0 1 0 DIV MUL\n"),
         # AND and OR
@@ -44,7 +44,7 @@ def short(text: str) -> str:
         ("WHILE(TRUE); S; END_WHILE; W(1)", "Loop FOREVER\n  Stop\n"),
         ("LOOP(2); BREAK; S; END_LOOP", "Loop 2\n  Break\n"),
         ("DEF A; S; END_DEF; DEF B1; W(1); END_DEF; B1", "DEF B1\n  Move W 1\nCall 1\n"),
-        # readings stay, whatever becomes of what needs them
+        # Readings stay, even if their users are removed.
         ("WHILE(DISTANCE > 1 AND FALSE); S; END_WHILE", "Read 2\n"),
         ("IF(FALSE); S; ELSEIF(DISTANCE > 1); W(1); ENDIF",
          "Read 2\nIf\n  arm () s2 1 GT\n    Move W 1\n  else\n"),

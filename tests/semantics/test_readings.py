@@ -22,7 +22,7 @@ def meaning(text: str) -> list[str]:
 
 
 def reads_before_show(text: str) -> bool:
-    """Whether the last SHOW(DISTANCE) of a program takes a reading of its own."""
+    """Return whether a program's last SHOW(DISTANCE) takes its own reading."""
     lines = meaning(text)
     assert lines[-1] == "Show s2"
     assert lines[-2] in ("Read 2", "Stop")
@@ -42,7 +42,7 @@ def test_readings_of_an_instruction_are_not_kept_for_the_next() -> None:
 
 
 @each_row(
-    "before",
+    "text_before",
     [
         "DISTANCE;W(1);S;X = 5;F(1, 80)",
         "IF(TIME > 1);DISTANCE;ELSE;DISTANCE;ENDIF",
@@ -56,12 +56,12 @@ def test_readings_of_an_instruction_are_not_kept_for_the_next() -> None:
         "DISTANCE;F(1, 80) UNTIL(DISTANCE < 5)",
     ],
 )
-def test_what_is_surely_read_is_kept(before: str) -> None:
-    assert not reads_before_show(f"{before};S;SHOW(DISTANCE)")
+def test_what_is_surely_read_is_kept(text_before: str) -> None:
+    assert not reads_before_show(f"{text_before};S;SHOW(DISTANCE)")
 
 
 @each_row(
-    "before",
+    "text_before",
     [
         "IF(TIME > 1);DISTANCE;ENDIF",
         "IF(TIME > 1);S;ELSE;DISTANCE;ENDIF",
@@ -76,8 +76,8 @@ def test_what_is_surely_read_is_kept(before: str) -> None:
         "DEF LOOK;DISTANCE;END_DEF;IF(TIME > 1);LOOK;ENDIF",
     ],
 )
-def test_what_one_way_does_not_read_is_not_kept(before: str) -> None:
-    assert reads_before_show(f"{before};S;SHOW(DISTANCE)")
+def test_what_one_way_does_not_read_is_not_kept(text_before: str) -> None:
+    assert reads_before_show(f"{text_before};S;SHOW(DISTANCE)")
 
 
 @each_row(
@@ -87,7 +87,7 @@ def test_what_one_way_does_not_read_is_not_kept(before: str) -> None:
         ("DISTANCE;IF(TIME > 1);S;ELSE;SHOW(DISTANCE);ENDIF", False),
         ("IF(TIME > 1);DISTANCE;ELSE;SHOW(DISTANCE);ENDIF", True),
         ("IF(DISTANCE > 1);SHOW(DISTANCE);ENDIF", True),
-        # a body may run again: what was read before it is old then
+        # A body may run again, when earlier readings are old.
         ("DISTANCE;LOOP(2);SHOW(DISTANCE);END_LOOP", True),
         ("DISTANCE;WHILE(TIME < 3);SHOW(DISTANCE);END_WHILE", True),
         ("LOOP(2);DISTANCE;S;SHOW(DISTANCE);END_LOOP", False),

@@ -1,4 +1,4 @@
-"""What a remote control says, as programs read it, and the words of kits that give way."""
+"""The remote control as programs read it, and kit words that give way to names."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def kit_of(count: int) -> Kit:
     return Kit(sensors, (Device("LAMP", YES_NO, "", 0, 1),))
 
 
-def codes_of(compiled: Compilation) -> list[str]:
-    return [diagnostic.code.number for diagnostic in compiled.diagnostics]
+def codes_of(compilation: Compilation) -> list[str]:
+    return [diagnostic.code.number for diagnostic in compilation.diagnostics]
 
 
 # -- what programs of before see of it ----------------------------------------------------------
@@ -142,8 +142,8 @@ def test_a_word_of_the_profile_stays_what_it_is_there(is_actuator: bool) -> None
     compilation = compile_text("KEY_A(TRUE)" if is_actuator else "SHOW(KEY_A)", kit)
     assert compilation.is_right and compilation.verdict is not None
     assert compilation.verdict.uses == (("actuator" if is_actuator else "sensor", 0),)
-    wanted = codes.ACTUATOR_SET if is_actuator else codes.SENSOR_SET
-    assert codes_of(compile_text("KEY_A = TRUE", kit)) == [wanted.number]
+    wanted_code = codes.ACTUATOR_SET if is_actuator else codes.SENSOR_SET
+    assert codes_of(compile_text("KEY_A = TRUE", kit)) == [wanted_code.number]
     other = compile_text("SHOW(KEY_B)", kit)
     assert other.verdict is not None
     assert other.verdict.uses == (("sensor", 5 if is_actuator else 6),)
@@ -153,7 +153,7 @@ def test_an_image_is_refused_where_its_numbers_mean_something_else() -> None:
     image = compile_text("SHOW(KEY_UP)", TINIBOT).image
     assert load_image(image, TINIBOT).devices == TINIBOT.hashes[3]
     with pytest.raises(ImageRefused, match="OTHER_KIT"):
-        load_image(image, robots.load("liner").kit)  # where it is BATTERY
+        load_image(image, robots.load("liner").kit)  # on liner this number is BATTERY
     with pytest.raises(Refused, match="NO_SUCH_DEVICE"):
         load_image(compile_text("SHOW(PAD_Y)", TINIBOT).image, kit_of(9))
 
@@ -186,7 +186,7 @@ STAYS = {
 }  # fmt: skip
 
 
-def written(text: str, name: str) -> str:
+def fill_in_name(text: str, name: str) -> str:
     question = name if name.startswith("KEY") else f"{name} > 0"
     return text.format(n=name, q=question)
 
@@ -194,17 +194,17 @@ def written(text: str, name: str) -> str:
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("role", GIVES_WAY)
 def test_what_compiled_before_compiles_still(role: str, name: str) -> None:
-    """With a warning where the name first stands, and with the code of any other name."""
-    text = written(GIVES_WAY[role], name)
+    """There is a warning at the name's first place, and the code is that of any other name."""
+    text = fill_in_name(GIVES_WAY[role], name)
     compilation = compile_text(text, TINIBOT)
     assert compilation.is_right, codes_of(compilation)
-    warned = [
+    warned_diagnostics = [
         diagnostic for diagnostic in compilation.diagnostics if diagnostic.code is codes.GIVES_WAY
     ]
     place = re.search(rf"{name}", re.sub("//.*", lambda it: " " * len(it[0]), text))
     assert place is not None
-    assert [diagnostic.span for diagnostic in warned] == [place.span()]
-    assert warned[0].values["since"] == KIT_WORDS_SINCE[name] == "0.3"
+    assert [diagnostic.span for diagnostic in warned_diagnostics] == [place.span()]
+    assert warned_diagnostics[0].values["since"] == KIT_WORDS_SINCE[name] == "0.3"
     assert compilation.image == compile_text(text.replace(name, MINE), TINIBOT).image
     assert compile_text(text.lower(), TINIBOT).image == compilation.image
 
@@ -212,9 +212,9 @@ def test_what_compiled_before_compiles_still(role: str, name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("role", STAYS)
 def test_what_was_no_name_before_is_the_remote_control(role: str, name: str) -> None:
-    text, wanted = STAYS[role]
-    compilation = compile_text(written(text, name), TINIBOT)
-    assert codes_of(compilation) == [code.number for code in wanted]
+    text, wanted_codes = STAYS[role]
+    compilation = compile_text(fill_in_name(text, name), TINIBOT)
+    assert codes_of(compilation) == [code.number for code in wanted_codes]
 
 
 @pytest.mark.parametrize("name", ["DISTANCE", "LIGHT_L"])
@@ -245,7 +245,7 @@ def test_a_robot_reads_them_as_tsc_does(flags: tuple[str, ...]) -> None:
     texts = [*GIVES_WAY.values(), *(text for text, _ in STAYS.values()), "SHOW({n})", "{n}",
              "W(1) UNTIL({q})", "{n} = 0;SHOW({n} + 1);{n} = 3"]  # fmt: skip
     read = 0
-    for text in (written(text, name) for text in texts for name in NAMES):
+    for text in (fill_in_name(text, name) for text in texts for name in NAMES):
         if flags and ("DEF" in text or "TASK" in text):
             continue
         compilation = compile_text(text, TINIBOT)
@@ -308,9 +308,9 @@ def test_a_robot_without_room_for_it_is_told_before_anything_is_sent(
 
 def test_the_example_runs_and_is_that_of_the_documents() -> None:
     text = (ROOT / "examples" / "remote.ts").read_text(encoding="utf-8")
-    shown = run(text, sensors={"PAD_Y": 60, "PAD_X": [0, 20], "KEY_A": [False, True, False]},
+    shown_trace = run(text, sensors={"PAD_Y": 60, "PAD_X": [0, 20], "KEY_A": [False, True, False]},
                 max_time=0.06)  # fmt: skip
-    assert str(shown).split("\n")[:-1] == [
+    assert str(shown_trace).split("\n")[:-1] == [
         "0 READ PAD_Y 60", "0 READ PAD_X 0", "0 MOTORS 60 60", "0 READ KEY_A FALSE",
         "20 READ KEY_A TRUE", "20 BEEP 440 200", "50 READ PAD_Y 60", "50 READ PAD_X 20",
         "50 MOTORS 80 40", "60 LIMIT",
@@ -324,8 +324,8 @@ def test_the_example_runs_and_is_that_of_the_documents() -> None:
 
 
 def test_a_stick_at_rest_may_be_asked_for() -> None:
-    """It reads exactly 0 then, and hardly ever another number that is asked for."""
-    asked = "LOOP(FOREVER);IF(PAD_X = {});SHOW(1);ENDIF;W(1);END_LOOP"
-    assert not compile_text(asked.format(0), TINIBOT).diagnostics
-    assert codes_of(compile_text(asked.format(50), TINIBOT)) == [codes.EXACT.number]
+    """At rest it reads exactly 0, and hardly ever any other number."""
+    asked_text = "LOOP(FOREVER);IF(PAD_X = {});SHOW(1);ENDIF;W(1);END_LOOP"
+    assert not compile_text(asked_text.format(0), TINIBOT).diagnostics
+    assert codes_of(compile_text(asked_text.format(50), TINIBOT)) == [codes.EXACT.number]
     assert REMOTE[-1].kind == NUMBER

@@ -1,4 +1,4 @@
-"""What the checker offers instead of a value of the wrong type, and up to where it looks."""
+"""The checker's offers for values of the wrong type, and their range."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
 KIT = robots.load("tinibot").kit
 
 
-def offered(text: str) -> list[object]:
-    """Return for each mistake what may stand there instead."""
+def list_offers(text: str) -> list[object]:
+    """Return the offer for each mistake."""
     return [diagnostic.values.get("fix") for diagnostic in check_text(text, KIT).diagnostics]
 
 
@@ -20,11 +20,11 @@ def test_a_short_question_is_asked_again_of_the_second_number(length: int, fix: 
     digits = "1" if length % 2 else "11"
     left = "X = " + "1+" * ((length - 5) // 2) + digits
     assert len(left) == length
-    assert offered(f"X = 1; IF({left} OR 6); S; ENDIF") == [fix]
+    assert list_offers(f"X = 1; IF({left} OR 6); S; ENDIF") == [fix]
 
 
 def test_where_in_a_program_a_question_stands_does_not_matter() -> None:
-    assert offered("X = 1;" + "S;" * 50 + "IF(X = 5 OR 6); S; ENDIF") == ["X = 6"]
+    assert list_offers("X = 1;" + "S;" * 50 + "IF(X = 5 OR 6); S; ENDIF") == ["X = 6"]
 
 
 def test_a_name_of_two_sensors_is_told_which_until_there_are_enough_mistakes() -> None:

@@ -17,7 +17,7 @@ from tiniscript.base.words import WORDS
 from tiniscript.library.compiling import analyze
 
 KIT = robots.load("tinibot").kit
-# Where a sound may stand; `{}` is the sound.
+# Places of a sound; `{}` is the sound.
 PLACES = (
     "{}", "{};F(2, 80)", "M(50, 50);{}", "M(50, 50);{};S", "LOOP(FOREVER);{};END_LOOP",
     "IF(DISTANCE < 10);S;{};ENDIF;F(5, 60)", "IF(DISTANCE < 10);{};ENDIF;F(9, 60)",

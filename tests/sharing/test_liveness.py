@@ -1,5 +1,6 @@
-"""Who shares a port waits for a holder that answers, however long, and gives up one that does not:
-on a fake clock."""
+"""Clients of a shared port wait for a holder that answers, however slowly, and give up a silent
+one: on a fake clock.
+"""
 
 from __future__ import annotations
 
@@ -67,10 +68,10 @@ class Holder:
         return data
 
     def close(self) -> None:
-        """It has no other end."""
+        """Do nothing, because there is no other end."""
 
 
-def shared(monkeypatch: pytest.MonkeyPatch, holder: Holder) -> SharedConnection:
+def open_shared_connection(monkeypatch: pytest.MonkeyPatch, holder: Holder) -> SharedConnection:
     monkeypatch.setattr(shared_connection, "monotonic", holder.clock)
     at = Registration("P", 1, "token", "answer", "upload", 9600, 1)
     peer = cast(socket.socket, holder)
@@ -78,7 +79,7 @@ def shared(monkeypatch: pytest.MonkeyPatch, holder: Holder) -> SharedConnection:
 
 
 def listens(line: SharedConnection, holder: Holder, seconds: float) -> float:
-    """Let it wait for events; return how long it has, until it has ended."""
+    """Listen for events until the end; return the time."""
     began_s = holder.now_s
     while holder.now_s - began_s < seconds:
         try:
@@ -91,11 +92,11 @@ def listens(line: SharedConnection, holder: Holder, seconds: float) -> float:
 
 @pytest.mark.parametrize("seed", range(40))
 def test_a_holder_that_answers_is_waited_for(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
-    """At once, now and then late, or always nearly too late; what it says meanwhile counts, too."""
+    """At once, sometimes late, or always nearly too late; other messages count as well."""
     rng = random.Random(seed)
     longest_s = rng.choice((0.0, 1.0, DEAF_S - 3 * LOOK_S))
     holder = Holder(lambda: rng.choice((0.0, longest_s)))
-    line = shared(monkeypatch, holder)
+    line = open_shared_connection(monkeypatch, holder)
     if seed % 2:
         for second in range(int(LONG_S)):
             holder.says(SHOWN, second + rng.random())
@@ -108,7 +109,7 @@ def test_a_holder_that_falls_silent_is_given_up(monkeypatch: pytest.MonkeyPatch,
     rng = random.Random(seed)
     dies_s = rng.choice((0.0, rng.uniform(0, LONG_S)))
     holder = Holder(lambda: rng.choice((0.0, 1.0)), dies_s)
-    line = shared(monkeypatch, holder)
+    line = open_shared_connection(monkeypatch, holder)
     ended_s = listens(line, holder, LONG_S * 2)
     assert line.has_ended
     assert dies_s - 1.0 + DEAF_S - LOOK_S < ended_s < dies_s + DEAF_S + 1.0 + 3 * LOOK_S
@@ -121,7 +122,7 @@ def test_a_request_that_takes_long_is_answered(
     monkeypatch: pytest.MonkeyPatch, takes_s: float
 ) -> None:
     holder = Holder(lambda: 0.1)
-    line = shared(monkeypatch, holder)
+    line = open_shared_connection(monkeypatch, holder)
     request: PendingRequest[EmptyReply] = line.begin(lambda session: session.name(b"Pia"))
     holder.says(ANSWER, takes_s)
     assert line.wait(request).status == OK

@@ -23,7 +23,7 @@ from urllib.request import urlopen
 import pytest
 
 from tests.support.command import process
-from tests.support.port_strangers import driven, registration_of, say_all
+from tests.support.port_strangers import drive_robot, registration_of, say_all
 from tests.support.waiting import HANGS_S
 from tiniscript.studio.serving import MOST_CONNECTIONS
 
@@ -32,9 +32,9 @@ pytestmark = pytest.mark.skipif(
 )
 
 TESTED = 400  # connections of a test
-FILES = 140  # that a listener may have open more than before: those who have not said anything yet
-GROWN_KB = 8_000  # of memory; a Python that has handled errors has more than one that has not
-# Who comes and how. Each says something, and hears nothing.
+FILES = 140  # extra open files of a listener, for silent clients
+GROWN_KB = 8_000  # extra memory of a Python process that has handled errors
+# Clients and their first bytes. Each sends something, and reads nothing.
 KINDS = ("closed", "silent", "half-open", "slow", "half a frame", "half a greeting", "browser")
 VISITORS = """
 import contextlib, socket, sys, time
@@ -70,8 +70,8 @@ class Had(NamedTuple):
     memory_kb: int
 
 
-def had(pid: int) -> Had:
-    """Return what a process has open, and how much memory it fills."""
+def measure_process(pid: int) -> Had:
+    """Return the open files and the memory of a process."""
     status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
     [memory] = [row.split()[1] for row in status.splitlines() if row.startswith("VmRSS")]
     return Had(len(list(Path(f"/proc/{pid}/fd").iterdir())), int(memory))
@@ -95,10 +95,12 @@ def visitors(port: int, kind: str, count: int) -> Iterator[None]:
             visitor.communicate()
 
 
-def settled(pid: int, files: int) -> Had:
-    """Wait until a process has no more files than this; return what it has, more where it hangs."""
+def wait_until_settled(pid: int, files: int) -> Had:
+    """Wait until a process has no more files than this; return the final numbers, larger if it
+    hangs.
+    """
     end_s = time.monotonic() + HANGS_S
-    while (child := had(pid)).files > files and time.monotonic() < end_s:
+    while (child := measure_process(pid)).files > files and time.monotonic() < end_s:
         time.sleep(0.1)
     return child
 
@@ -108,7 +110,7 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
 
     Before, while they are there, and when they have gone.
     """
-    with driven() as (robot, port, command, _):
+    with drive_robot() as (robot, port, command, _):
         places = [
             ("virtual robot", robot.pid, int(port.rpartition(":")[2])),
             ("shared port", command.pid, registration_of(port).number),
@@ -116,21 +118,23 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
         say_all(port, 15, 100)
         children = []
         for name, pid, number in places:
-            before = had(pid)
+            usage_before = measure_process(pid)
             with visitors(number, kind, count):
-                meanwhile = had(pid)
+                meanwhile = measure_process(pid)
                 state = json.loads(process("doctor", "--port", port, "--json").out)["robot"][
                     "state"
                 ]
                 assert state == "RUNNING"
-            children.append((name, before, meanwhile, settled(pid, before.files + 3)))
+            children.append(
+                (name, usage_before, meanwhile, wait_until_settled(pid, usage_before.files + 3))
+            )
         with visitors(places[0][2], kind, count), visitors(places[1][2], kind, count):
             assert process("stop", "--port", port).code == 0
         out, err = command.communicate(timeout=HANGS_S)
         assert command.returncode == 3
         assert b"was stopped from a computer" in out + err
-        # Nobody holds it: a caller is let in after those who came before, 256 a second at most.
-        # Half a greeting is text to it, and whoever types holds the robot.
+        # Without a holder, clients are admitted in order, 256 a second at most. Half a greeting is
+        # text, and a typing client holds the robot.
         with visitors(places[0][2], kind, min(count, TESTED)):
             result = process("stop", "--port", port)
             assert kind == "half a greeting" or (result.code, result.err) == (0, "")
@@ -142,10 +146,10 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
 @pytest.mark.sampled("kind")
 @pytest.mark.parametrize("kind", KINDS)
 def test_nothing_grows_and_a_stop_gets_through(kind: str) -> None:
-    for name, before, meanwhile, after in attack(kind, TESTED):
-        assert meanwhile.files <= before.files + FILES, name
-        assert after.files <= before.files + 3, name
-        assert after.memory_kb <= before.memory_kb + GROWN_KB, name
+    for name, usage_before, meanwhile, usage_after in attack(kind, TESTED):
+        assert meanwhile.files <= usage_before.files + FILES, name
+        assert usage_after.files <= usage_before.files + 3, name
+        assert usage_after.memory_kb <= usage_before.memory_kb + GROWN_KB, name
 
 
 @contextmanager
@@ -181,20 +185,22 @@ def attack_studio(count: int) -> list[tuple[str, Had, Had, Had]]:
     with studio() as (pid, port):
         assert page(port) == b"<!doctype html>"
         for kind in KINDS:
-            before = had(pid)
+            usage_before = measure_process(pid)
             with visitors(port, kind, count):
                 assert page(port) == b"<!doctype html>"
-                meanwhile = settled(pid, before.files + MOST_CONNECTIONS + 3)
-            children.append((kind, before, meanwhile, settled(pid, before.files + 3)))
+                meanwhile = wait_until_settled(pid, usage_before.files + MOST_CONNECTIONS + 3)
+            children.append(
+                (kind, usage_before, meanwhile, wait_until_settled(pid, usage_before.files + 3))
+            )
             assert page(port) == b"<!doctype html>"
     return children
 
 
 def test_the_studio_gives_its_page_among_many_who_come() -> None:
-    for kind, before, meanwhile, after in attack_studio(TESTED):
-        assert meanwhile.files <= before.files + MOST_CONNECTIONS + 3, kind
-        assert after.files <= before.files + 3, kind
-        assert after.memory_kb <= before.memory_kb + GROWN_KB, kind
+    for kind, usage_before, meanwhile, usage_after in attack_studio(TESTED):
+        assert meanwhile.files <= usage_before.files + MOST_CONNECTIONS + 3, kind
+        assert usage_after.files <= usage_before.files + 3, kind
+        assert usage_after.memory_kb <= usage_before.memory_kb + GROWN_KB, kind
 
 
 def campaign(count: int) -> None:
@@ -202,10 +208,11 @@ def campaign(count: int) -> None:
     print("|---|---|---|---|")
     of_robots = ((kind, *row) for kind in KINDS for row in attack(kind, count))
     of_the_studio = ((row[0], "studio", *row[1:]) for row in attack_studio(count))
-    for kind, name, before, meanwhile, after in chain(of_robots, of_the_studio):
+    for kind, name, usage_before, meanwhile, usage_after in chain(of_robots, of_the_studio):
         print(
-            f"| {count:,} {kind} | {name} | {before.files}, {meanwhile.files}, {after.files} "
-            f"| {before.memory_kb:,}, {after.memory_kb:,} |", flush=True,
+            f"| {count:,} {kind} | {name} "
+            f"| {usage_before.files}, {meanwhile.files}, {usage_after.files} "
+            f"| {usage_before.memory_kb:,}, {usage_after.memory_kb:,} |", flush=True,
         )  # fmt: skip
 
 

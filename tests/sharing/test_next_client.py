@@ -1,8 +1,8 @@
-"""What a client of a shared port does and hears is what one hears who is the first.
+"""A later client of a shared port has the same actions and messages as the first one.
 
 A command asks random things of a simulated robot and leaves, breaks off, falls silent or breaks the
 protocol at any moment; then comes the next one. Of it all that can be seen, its answers, its events
-and what the robot does, is what there is where nobody came before. Port, robot and server take
+and what the robot does, is what there is if nobody came before. Port, robot and server take
 their turns on the clock of the test.
 
 `python -m tests.sharing.test_next_client 500` tries more.
@@ -21,7 +21,7 @@ from typing import Any, cast
 
 import pytest
 
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.images import TINIBOT, image_of
 from tests.support.robot_on_host import computer, switched_on
 from tiniscript.base.version import __version__
@@ -34,7 +34,7 @@ from tiniscript.link.sharing.server import Server
 
 STEP_MS = 20
 MARK, MARKED = "BEEP(0.001, 31);", "BEEP 31 1"
-# What is about the robot, its runs and the clock, not about the client.
+# Messages about the robot, its runs and the clock, not about the client.
 STRIPPED = re.compile(r'"(run|ms|boot|nonce|epoch|heard|noise|reset|fault\w*|state|program|length'
                       r'|slot|saved|answer|cause)": ?("[^"]*"|\d+)')  # fmt: skip
 Json = dict[str, Any]
@@ -58,7 +58,7 @@ class SteppedLine:
         self._on_events = on_events
 
     def post_event(self, event: Event) -> None:
-        """Of this process alone."""
+        """Post an event of this process alone."""
 
     def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
         return make(self.session)
@@ -84,7 +84,7 @@ class SteppedLine:
 
 
 class Client:
-    """A command, that says what the test says."""
+    """A command that sends what the test asks for."""
 
     def __init__(self, server: Server, verb: str) -> None:
         port = server.registration.number
@@ -108,7 +108,7 @@ class Client:
         with suppress(OSError, BlockingIOError):
             self.heard += cast(list[Json], self.reader.read_messages(self.socket.recv(1 << 20)))
 
-    def answered(self) -> int:
+    def count_answers(self) -> int:
         return sum("status" in message for message in self.heard)
 
 
@@ -121,7 +121,7 @@ class Desk:
         self.server = Server(line, "/dev/ttyUSB0", 9600, "link")
         self.clients: list[Client] = []
 
-    def joined(self, verb: str) -> Client:
+    def join(self, verb: str) -> Client:
         self.clients.append(Client(self.server, verb))
         return self.clients[-1]
 
@@ -129,7 +129,7 @@ class Desk:
         for client in self.clients:
             if client.beats and self.line.robot_itself.now_ms % 200 < STEP_MS:
                 client.says({"do": "beat"})
-        for _ in range(3):  # what has come, and what came of that
+        for _ in range(3):  # requests that arrived, and their answers
             self.server._attend()
         self.line.step()
         self.server._attend()
@@ -162,12 +162,14 @@ def desk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
 
 def upload(text: str, is_detached: bool = False) -> Json:
     image = image_of(text)
-    given = image._asdict() | {"isa": bytes(image.isa)}
-    answer = {k: value.hex() if isinstance(value, bytes) else value for k, value in given.items()}
+    given_fields = image._asdict() | {"isa": bytes(image.isa)}
+    answer = {
+        k: value.hex() if isinstance(value, bytes) else value for k, value in given_fields.items()
+    }
     return {**answer, "runs": True, "saves": False, "is_detached": is_detached, "kit": 0}
 
 
-def drawn(rng: random.Random) -> str:
+def draw_program(rng: random.Random) -> str:
     moves = ";".join(rng.choice(("F(0.3, 60)", "W(0.2)", "SHOW(TIME > 3)", "M(20, 30)", "S",
                                  "B(2, 40) UNTIL(TIME > 0.5)"))
                      for _ in range(rng.randint(1, 5)))  # fmt: skip
@@ -175,11 +177,11 @@ def drawn(rng: random.Random) -> str:
 
 
 ASKED = ("upload", "upload", "live", "status", "trim", "identify")
-OF_WHAT_IT_HOLDS = ("start", "undo")  # these tell the next one of the one before
+OF_WHAT_IT_HOLDS = ("start", "undo")  # these report the previous client to the next one
 
 
 def asks(rng: random.Random, client: Client, what: str) -> None:
-    text = drawn(rng)
+    text = draw_program(rng)
     if what == "upload":
         is_detached = rng.random() < 0.2
         client.has_detached |= is_detached
@@ -189,8 +191,8 @@ def asks(rng: random.Random, client: Client, what: str) -> None:
         code = image_of(f"SI|{MARK}F({seconds}, 30)").code
         client.asks("live", code=code.hex(), kit=TINIBOT.fingerprint)
     else:
-        given: dict[str, Json] = {"start": {"is_detached": False}, "trim": {"trim": ""}}
-        client.asks(what, **given.get(what, {}))
+        given_fields: dict[str, Json] = {"start": {"is_detached": False}, "trim": {"trim": ""}}
+        client.asks(what, **given_fields.get(what, {}))
 
 
 def stops(client: Client) -> None:
@@ -212,12 +214,12 @@ ENDS: dict[str, Callable[[random.Random, Client], object]] = {
 
 
 def comes_first(rng: random.Random, at: Desk) -> str:
-    client = at.joined(rng.choice(("upload", "run", "monitor", "python")))
+    client = at.join(rng.choice(("upload", "run", "monitor", "python")))
     at.steps(rng.choice((20, 200)))
     for _ in range(rng.randint(1, 3)):
         asks(rng, client, rng.choice((*ASKED, *OF_WHAT_IT_HOLDS)))
         at.steps(rng.choice((0, 20, 40, 100, 400, 1500)))
-    if rng.random() < 0.6:  # of its run, or while it is on its way
+    if rng.random() < 0.6:  # during its run, or while it is under way
         for _ in range(rng.choice((1, 1, 3))):
             asks(rng, client, rng.choice(("upload", "live")))
         at.steps(rng.choice((0, 20, 40, 60, 400)))
@@ -238,7 +240,7 @@ def comes_first(rng: random.Random, at: Desk) -> str:
     at.steps(2500)
     if at.line.session.is_running:
         assert client.has_detached, f"{ends}: the run of a client that has gone goes on"
-        other = at.joined("stop")
+        other = at.join("stop")
         other.says({"do": "stop"})
         at.steps(400)
         other.socket.close()
@@ -247,9 +249,9 @@ def comes_first(rng: random.Random, at: Desk) -> str:
 
 
 def second(rng: random.Random, at: Desk) -> tuple[list[str], list[str]]:
-    """Return what the second one hears from its first run on, and what the robot does."""
+    """Return the second client's messages from its first run on, and the robot's actions."""
     robot = at.line.robot_itself
-    client = at.joined("run")
+    client = at.join("run")
     at.steps(60)
     robot.did.clear()
     client.heard.clear()
@@ -266,18 +268,19 @@ def second(rng: random.Random, at: Desk) -> tuple[list[str], list[str]]:
         STRIPPED.sub(r'"\1"', protocol.encode_message(message).decode())
         for message in heard[begins:]
     ]
-    did = [line.split(" ", 1)[1] for line in robot.did if not line.endswith(" 200")]  # its sign
-    return messages, did[did.index(MARKED) :] if MARKED in did else did
+    # The mark of its program.
+    actions = [line.split(" ", 1)[1] for line in robot.did if not line.endswith(" 200")]
+    return messages, actions[actions.index(MARKED) :] if MARKED in actions else actions
 
 
 def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:
     with desk(monkeypatch) as at:
         ends = comes_first(random.Random(seed), at)
-        heard, did = second(random.Random(-seed), at)
+        heard_lines, actions = second(random.Random(-seed), at)
     with desk(monkeypatch) as at:
         want, its = second(random.Random(-seed), at)
-    explanation = f"seed {seed} {ends}\n{heard}\n{did}\nnot\n{want}\n{its}"
-    assert did == its and heard == want, explanation
+    explanation = f"seed {seed} {ends}\n{heard_lines}\n{actions}\nnot\n{want}\n{its}"
+    assert actions == its and heard_lines == want, explanation
     return ends if len(its) > 1 else "little"
 
 
@@ -290,4 +293,4 @@ def test_the_next_client_is_as_the_first_one(part: int, monkeypatch: pytest.Monk
 
 if __name__ == "__main__":
     with pytest.MonkeyPatch.context() as patch:
-        each_seed(lambda seed: check(seed, patch), wanted(500, 5_000))
+        each_seed(lambda seed: check(seed, patch), make_options(500, 5_000))

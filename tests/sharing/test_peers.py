@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import Command, inside, process
-from tests.support.port_strangers import driven, registration_of
+from tests.support.port_strangers import drive_robot, registration_of
 from tests.support.socket_pairs import connected_pair
 from tests.support.virtual_command import Robot, robot, visitor
 from tests.support.waiting import HANGS_S
@@ -52,7 +52,7 @@ def test_the_end_of_a_connection_has_its_user() -> None:
         owner = peers._socket_owner(own_end.getpeername(), own_end.getsockname())
         assert owner == (os.geteuid(), os.fstat(other_end.fileno()).st_ino)
         assert peers.is_of_this_user(own_end)
-        other_end.shutdown(socket.SHUT_WR)  # it listens on
+        other_end.shutdown(socket.SHUT_WR)  # the other end still listens
         assert peers.is_of_this_user(own_end)
 
 
@@ -126,15 +126,15 @@ def test_another_user_moves_nothing(how: str) -> None:
         with visitor(running_robot.port) as own:
             own.settimeout(HANGS_S)
             own.sendall(LINE)
-            heard = b""
-            while not heard.endswith(b"// DONE\r\n"):
-                heard += own.recv(1000)
+            heard_bytes = b""
+            while not heard_bytes.endswith(b"// DONE\r\n"):
+                heard_bytes += own.recv(1000)
         assert running_robot.until("DONE")[1:] == ["0 MOTORS 50 50", "100 MOTORS 0 0", "100 DONE"]
 
 
 # -- who listens where a robot was ----------------------------------------------------------------
 
-# Listens at a port as another user, and says what it gets.
+# Listens at a port as another user, and prints what it receives.
 LISTENER = """
 import os, socket, sys
 os.setgid(65534); os.setuid(65534)
@@ -153,13 +153,13 @@ def test_whoever_listens_at_a_port_has_its_user(monkeypatch: pytest.MonkeyPatch)
         assert not peers.is_of_another_user(number)
         monkeypatch.setattr(os, "geteuid", lambda: NOBODY)
         assert peers.is_of_another_user(number) == (os.getuid() != 0)  # root has every right
-    assert not peers.is_of_another_user(number)  # nobody listens
+    assert not peers.is_of_another_user(number)  # nobody is listening
 
 
 def test_a_robot_at_whose_port_another_user_listens_is_none(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """As after a crash: its file is still there."""
+    """After a crash, the robot's file is still there."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         number = server.getsockname()[1]
         address = f"socket://127.0.0.1:{number}"
@@ -205,7 +205,7 @@ def test_a_pseudo_terminal_is_for_its_user_alone(monkeypatch: pytest.MonkeyPatch
     open_pty = pty.openpty
 
     def open_to_a_group() -> tuple[int, int]:
-        """As most systems make it."""
+        """Open a listener with the usual settings."""
         ours, theirs = open_pty()
         os.fchmod(theirs, 0o620)
         return ours, theirs
@@ -220,8 +220,8 @@ def test_a_pseudo_terminal_is_for_its_user_alone(monkeypatch: pytest.MonkeyPatch
 
 @linux
 def test_the_token_is_in_one_private_file() -> None:
-    """In no command line, no environment, no output and no other file."""
-    with driven() as (virtual, port, command, receipt):
+    """It is in no command line, environment, output or other file."""
+    with drive_robot() as (virtual, port, command, receipt):
         registration = registration_of(port)
         secrets = [secret.encode() for secret in (registration.token, registration.answer)]
         assert process("doctor", "--port", port).code == 0
@@ -315,7 +315,7 @@ def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The port was taken again between looking at the note and removing it."""
-    before, now = (
+    registration_before, now = (
         Registration("/dev/x", number, "a" * 32, "b" * 32, "link", 9600, os.getpid())
         for number in (1, 2)
     )
@@ -325,10 +325,10 @@ def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
 
     def read(path: Path) -> Registration | None:
         paths.append(path)
-        return before if len(paths) == 1 else real(path)
+        return registration_before if len(paths) == 1 else real(path)
 
     with monkeypatch.context() as patch:
         patch.setattr(registry, "_read", read)
-        registry.remove(before)
+        registry.remove(registration_before)
     assert len(paths) == 2
     assert registry.find_registration("/dev/x") == now

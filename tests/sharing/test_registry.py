@@ -1,4 +1,4 @@
-"""Whoever has a port has it, whatever other commands do to the files of ports at any moment.
+"""Anyone who has a port has it, whatever other commands do to the files of ports at any moment.
 
 Something happens before each line of the registry that another command is at: a server registers,
 or a lock is taken or let go. What is there then is what would be there had they come one after the
@@ -59,12 +59,12 @@ def at_line(wanted: int, does: Callable[[], object], runs: Callable[[], object])
                 does()
         return trace
 
-    before = sys.gettrace()
+    gettrace_before = sys.gettrace()
     sys.settrace(trace)
     try:
         runs()
     finally:
-        sys.settrace(before)
+        sys.settrace(gettrace_before)
     return lines >= wanted
 
 
@@ -89,9 +89,9 @@ def test_a_server_that_registers_while_another_command_removes_is_found(
     live = registration(number, "live")
 
     def prepare() -> tuple[Callable[[], object], Callable[[], object]]:
-        gone = dead()
-        registry.write(gone)
-        runs = registry.tidy if other == "tidies" else lambda: registry.remove(gone)
+        gone_registration = dead()
+        registry.write(gone_registration)
+        runs = registry.tidy if other == "tidies" else lambda: registry.remove(gone_registration)
         return (lambda: registry.write(live)), runs
 
     for has_registered in each_line(prepare):
@@ -124,7 +124,7 @@ def check_one_owner(owners: list[IO[bytes] | None]) -> None:
 
 def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
     def leftover() -> None:
-        registry.lock_path(PORT).write_bytes(b"")  # of a command that was killed
+        registry.lock_path(PORT).write_bytes(b"")  # left by a command that was killed
 
     registry._make_folder()
     for runs in ("claims", "tidies", "lets go"):
@@ -138,12 +138,12 @@ def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
             ) -> tuple[Callable[[], object], Callable[[], object]]:
                 owners.clear()
                 leftover()
-                owned = lock() if happens == "is let go" or runs == "lets go" else None
-                owners.append(owned)
+                owned_io = lock() if happens == "is let go" or runs == "lets go" else None
+                owners.append(owned_io)
 
                 def does() -> None:
-                    if happens == "is let go" and owned is not None:
-                        owned.close()
+                    if happens == "is let go" and owned_io is not None:
+                        owned_io.close()
                     elif happens == "is tidied":
                         registry.tidy()
                     elif happens != "is let go":
@@ -155,8 +155,8 @@ def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
                     return does, lambda: owners.append(lock())
                 if runs == "tidies":
                     return does, registry.tidy
-                assert owned is not None
-                return does, owned.close
+                assert owned_io is not None
+                return does, owned_io.close
 
             for _ in each_line(prepare):
                 check_one_owner(owners)
@@ -177,7 +177,7 @@ def test_who_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one() -> 
 def test_a_computer_leaves_what_another_one_has_written_in_a_shared_home(
     does: str, other: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whether somebody listens at its number can be asked there alone."""
+    """Only the other computer can check whether somebody listens at the number."""
     foreign = dead()
     monkeypatch.setattr(registry, "gethostname", lambda: other)
     registry.write(foreign)

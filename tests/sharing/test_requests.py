@@ -1,4 +1,4 @@
-"""What a client asks for arrives at the session as it was asked; what is none is refused."""
+"""Requests of a client reach the session unchanged; invalid ones are refused."""
 
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ def test_it_is_asked_of_the_session_as_of_the_client(asked: Asked) -> None:
     assert request.limit_ms == 700
 
 
-def of(method: str, *given: object, **changed: object) -> dict[str, Any]:
-    return {**Asked(method, given).message(), **changed}
+def of(method: str, *arguments: object, **changed: object) -> dict[str, Any]:
+    return {**Asked(method, arguments).message(), **changed}
 
 
 BAD: tuple[dict[str, Any], ...] = (
@@ -140,13 +140,13 @@ def _knows_nod(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("_knows_nod")
 @pytest.mark.parametrize("values", [(0, -128, 0, b"a"), (255, 127, (1 << 32) - 1, b"abc")])
 def test_a_message_of_the_table_and_its_method_are_a_request(values: tuple[Any, ...]) -> None:
-    """Of this process and of a client of a shared port; no other file has to know it."""
+    """From this process and from a client of a shared port; no other file has to know it."""
     session = Mock()
     request_maker(Asked("nod", values).message(), 700)(session)
     ((name, taken, _),) = session.method_calls
     assert (name, taken) == ("nod", values)
-    given = dict(zip((its.name for its in NOD.request), values, strict=True))
-    assert next(exchange_by_name("nod")(Mock(), **given)) == Request("NOD", given)
+    given_fields = dict(zip((its.name for its in NOD.request), values, strict=True))
+    assert next(exchange_by_name("nod")(Mock(), **given_fields)) == Request("NOD", given_fields)
 
 
 @pytest.mark.usefixtures("_knows_nod")

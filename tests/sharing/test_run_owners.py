@@ -28,7 +28,7 @@ PORT = "/dev/ttyUSB0"
 
 
 class FakeLine:
-    """A line whose robot does what the test says: begins run 7, ends it, and tells events."""
+    """A line with a scripted robot: begins run 7, ends it, and sends events."""
 
     address, end_reason, robot, holder_verb = PORT, None, None, ""
     heard_count, early_bytes, is_echoed, boot, has_ended = 0, b"", False, 0, False
@@ -52,7 +52,7 @@ class FakeLine:
         return self.asked[-1]
 
     def begin_run(self) -> None:
-        """Let the run begin that was asked for last."""
+        """Begin the run that was requested last."""
         self.is_running = True
         self.asked[-1].outcome = Reply(OK, 0, ReceiptReply(1, 7, 0, 0))
 
@@ -118,7 +118,7 @@ STARTS: list[Callable[[Requester], PendingRequest[Any]]] = [
 def test_nothing_of_what_starts_reaches_a_robot_that_was_just_stopped(
     line: FakeLine, asked: int
 ) -> None:
-    """It is over, and what comes after it and starts nothing is asked for."""
+    """Such requests end, and later ones without a start are sent."""
     with (
         closing(Server(cast(PortConnection, line), PORT, 9600, "studio", lambda: True)) as server,
         closing(cast(SharedConnection, join(PORT, "upload"))) as command,
@@ -150,7 +150,7 @@ def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
     until(lambda: len(line.asked) == 2, "both requests arrive")
     command.close()
     until(lambda: line.withdrawn == line.asked, "they are withdrawn")
-    line.asked[0].outcome = Reply(OK, 0, ReceiptReply(1, 7, 0, 0))  # it was under way
+    line.asked[0].outcome = Reply(OK, 0, ReceiptReply(1, 7, 0, 0))  # the request was under way
     line.is_running = True
     line.post_event(event("SHOW"))
     until(lambda: line.halted == [7], "its run is ended")
@@ -158,7 +158,7 @@ def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
     with closing(cast(SharedConnection, join(PORT, "upload"))) as other:
         other.begin(lambda requests: requests.start())
         until(lambda: len(line.asked) == 3, "its request arrives")
-        line.begin_run()  # of a robot that was reset, and counts its runs anew
+        line.begin_run()  # a reset robot restarts its run numbers
         line.post_event(event("SHOW"))
         wait_for_event(other, "SHOW")
         line.post_event(event("SHOW"))
@@ -191,16 +191,16 @@ def test_an_end_that_is_told_late_takes_no_owner_from_the_next_run(
     line.is_running = False
     line.post_event(DoneEvent(7) if end == "DONE" else event(end))
     wait_for_event(command, end)
-    line.is_running = True  # the same number again, of somebody else
+    line.is_running = True  # the same number from another client
     assert not server.has_run
 
 
 @pytest.mark.parametrize(
-    ("asked", "is_stopped"),
+    ("asked_text", "is_stopped"),
     [("start", True), ("detached", False), ("ping", False), ("over", False), ("begun", True)],
 )
 def test_a_run_that_begins_while_its_server_leaves_is_stopped(
-    asked: str, is_stopped: bool, line: FakeLine, monkeypatch: pytest.MonkeyPatch
+    asked_text: str, is_stopped: bool, line: FakeLine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Two uploads at once: the first is replaced by its own client, and leaves."""
     monkeypatch.setattr(opening, "connection_to", lambda *_: line)
@@ -209,14 +209,14 @@ def test_a_run_that_begins_while_its_server_leaves_is_stopped(
     command = join(PORT, "upload")
     assert command is not None
     with closing(command):
-        if asked == "ping":
+        if asked_text == "ping":
             command.begin(lambda requests: requests.ping())
             until(lambda: bool(line.asked), "the request arrives")
         else:
-            asks(command, line, asked == "detached")
-        if asked in ("over", "begun"):
+            asks(command, line, asked_text == "detached")
+        if asked_text in ("over", "begun"):
             line.begin_run()
-            line.is_running = asked == "begun"
+            line.is_running = asked_text == "begun"
         client.close()
     assert line.stops == is_stopped
     assert line.is_closed
@@ -225,7 +225,7 @@ def test_a_run_that_begins_while_its_server_leaves_is_stopped(
 def test_each_client_presses_keys_of_its_own_and_lets_go_when_it_leaves(
     line: FakeLine, command: SharedConnection
 ) -> None:
-    def pressed() -> list[tuple[object, object]]:
+    def list_pressed_keys() -> list[tuple[object, object]]:
         messages = [
             cast(ClientRequest[Any], pending_request).message for pending_request in line.asked
         ]
@@ -237,5 +237,5 @@ def test_each_client_presses_keys_of_its_own_and_lets_go_when_it_leaves(
         other.begin(lambda requests: requests.press(2))
         until(lambda: len(line.asked) == 2, "the second word arrives")
     until(lambda: len(line.asked) == 3, "the second client has left")
-    assert pressed() == [(1, 1), (2, 2), (2, 0)]
+    assert list_pressed_keys() == [(1, 1), (2, 2), (2, 0)]
     assert line.stops == 0 and line.halted == []

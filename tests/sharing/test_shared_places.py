@@ -1,4 +1,4 @@
-"""Where a program is, through a port that another command holds: told to who asks for it alone."""
+"""Places of programs through another command's port: only clients that ask get them."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def until_done(connection: LinkConnection) -> list[Event]:
 
 def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
     image = image_of("SI|F(2, 80);R(2, 60)")  # each is asked for often, on a busy computer too
-    shared = Shared()
-    with shared as (pty_robot, _):
+    shared_port = Shared()
+    with shared_port as (pty_robot, _):
         client, other = join(pty_robot.port, "studio"), join(pty_robot.port, "monitor")
         assert client and other
         client.enable_place_events()
@@ -41,7 +41,7 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
         ]
         assert len(places) == 2 and {place.program for place in places} == {image.checksum}
         assert places[0].at < places[1].at < len(image.code)
-        for connection in (other, shared.line):
+        for connection in (other, shared_port.line):
             assert "PLACE" not in {event.name for event in until_done(connection)}
         client.close()
         other.close()

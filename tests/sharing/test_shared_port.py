@@ -1,4 +1,4 @@
-"""One port, many commands: whoever holds it lets the others use its session."""
+"""One port for many commands: its holder lets the others use its session."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.shared_connection import join
 
-TRIES = 8  # of a command that is told that another one has left
-# On a busy computer it takes whoever has opened a port a while to share it.
+TRIES = 8  # tries of a command whose predecessor has just left
+# On a busy computer, sharing a newly opened port takes a while.
 PATIENT = (
     "import sys; from tiniscript.cli import main; from tiniscript.library import opening; "
     "opening.BUSY_TIMEOUT_S = 100; sys.exit(main(sys.argv[1:]))"
@@ -33,7 +33,7 @@ PATIENT = (
 
 
 def hellos(pty_robot: PtyRobot) -> int:
-    """Return how many times a session was begun: as often as the port was opened."""
+    """Return the number of sessions begun, which is that of openings of the port."""
     frames = map(decode_frame, pty_robot.heard.split(b"\0"))
     return sum(frame is not None and frame.number == 1 for frame in frames)
 
@@ -48,7 +48,7 @@ def test_stop_works_while_another_terminal_drives(pty_robot: PtyRobot) -> None:
         0, f"Stopped: the robot on {pty_robot.port} has confirmed the stop.\n",
     )  # fmt: skip
     assert not pty_robot.moves
-    command.ended().gives(3, out="The robot was stopped from a computer.")
+    command.wait_for_result().gives(3, out="The robot was stopped from a computer.")
     assert hellos(pty_robot) == 1
 
 
@@ -67,13 +67,13 @@ def test_commands_share_a_session_that_is_begun_once(
     assert theirs.read_bytes() == ours.read_bytes()
     assert (
         json.loads(on(pty_robot, "start", "--previous", "--json").out)["saved"] == "STORED"
-    )  # it was not saved
+    )  # the program was not saved
     assert on(pty_robot, "set", "name", "Ñandú").code == 0
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["name"] == "Ñandú"
     assert on(pty_robot, "start").out.endswith("Done.\n")
     assert hellos(pty_robot) == 1
     link.signal(signal.SIGINT)
-    link.ended().gives(0, out=("tsc upload: connected.", "SHOW 1.5"))
+    link.wait_for_result().gives(0, out=("tsc upload: connected.", "SHOW 1.5"))
 
 
 def test_all_names_of_a_port_lead_to_its_server(
@@ -111,7 +111,7 @@ while data := peer.recv(1000):
 
 @pytest.fixture
 def address(pty_robot: PtyRobot) -> Iterator[str]:
-    """A network address with the robot behind it."""
+    """A network address connected to the robot."""
     bridge = Command(code=BRIDGE.format(port=pty_robot.port))
     assert bridge.process.stdout
     yield f"socket://127.0.0.1:{int(bridge.process.stdout.readline())}"
@@ -122,20 +122,20 @@ def test_an_address_is_held_like_a_port(pty_robot: PtyRobot, address: str) -> No
     command = Command("upload", "-e", FOREVER, "--port", address.replace("127.0.0.1", "localhost"))
     command.until("running")
     assert process("stop", "--port", address).code == 0
-    assert command.ended().code == 3
+    assert command.wait_for_result().code == 3
     assert hellos(pty_robot) == 1
 
 
 def test_a_client_may_have_chosen_another_robot(pty_robot: PtyRobot) -> None:
     command = Command("monitor", "--port", pty_robot.port, "--robot", "grabber")
     assert command.process.stderr
-    command.process.stderr.readline()  # it watches
+    command.process.stderr.readline()  # waits until it watches
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
     assert "DISTANCE 42" in on(pty_robot, "live", "SHOW(DISTANCE)").out
     on(pty_robot, "live", "GRIPPER(90)", "--robot", "grabber").gives(3, "--robot tinibot")
     on(pty_robot, "upload", "-e", "SHOW(LINE_L)", "--robot", "liner").gives(3, "--robot tinibot")
     command.signal(signal.SIGINT)
-    assert command.ended().code == 0
+    assert command.wait_for_result().code == 0
 
 
 def test_monitor_shows_what_live_does_and_not_its_bookkeeping(
@@ -147,7 +147,7 @@ def test_monitor_shows_what_live_does_and_not_its_bookkeeping(
     live = Command("live", "--port", pty_robot.port)
     assert live.process.stdin and live.process.stdout
     live.process.stdin.write(b"X = 3; SHOW(X)\nX = X + 1\nSHOW(X)\n")
-    result = live.ended()
+    result = live.wait_for_result()
     assert [line for line in result.out.splitlines() if line != "Done."] == ["X 3", "X 4"]
     assert monitor.process.stdout
     rows = [json.loads(monitor.process.stdout.readline()) for _ in range(5)]
@@ -155,14 +155,14 @@ def test_monitor_shows_what_live_does_and_not_its_bookkeeping(
         ("SHOW", 3), ("DONE", None), ("DONE", None), ("SHOW", 4), ("DONE", None),
     ]  # fmt: skip
     monitor.signal(signal.SIGINT)
-    assert monitor.ended().out == ""
+    assert monitor.wait_for_result().out == ""
 
 
 IMPORTS = (
     "import sys; from tiniscript.cli import main; assert main(sys.argv[1:]) == 0; "
     "print(' '.join(sys.modules))"
 )
-# Commands for whose robot a person waits, and what each must not import.
+# Commands with a waiting person, and the modules that each must not import.
 AT_ONCE = [
     pytest.param(("upload", "-e", "SI|F(0.1, 30)"), set[str](), id="upload"),
     pytest.param(("stop",), {"csv", "tiniscript.codegen", "tiniscript.semantics"}, id="stop"),
@@ -174,19 +174,19 @@ NEVER = {"tomllib", "tomli", "rich", "ssl", "asyncio", "bleak", "zeroconf", "was
 OF_A_PORT = {"serial", "cobs", "threading", "tiniscript.link.session", "tiniscript.link.ports"}
 
 
-@pytest.mark.parametrize(("arguments", "unwanted"), AT_ONCE)
+@pytest.mark.parametrize(("arguments", "unwanted_modules"), AT_ONCE)
 def test_a_command_imports_no_more_than_it_needs(
-    pty_robot: PtyRobot, arguments: tuple[str, ...], unwanted: set[str]
+    pty_robot: PtyRobot, arguments: tuple[str, ...], unwanted_modules: set[str]
 ) -> None:
     def imported_by(port: str) -> set[str]:
-        result = Command(*arguments, "--port", port, code=IMPORTS).ended()
+        result = Command(*arguments, "--port", port, code=IMPORTS).wait_for_result()
         return set(result.out.splitlines()[-1].split())
 
     modules = imported_by(pty_robot.port)
-    assert sorted((NEVER | unwanted) & modules) == []
+    assert sorted((NEVER | unwanted_modules) & modules) == []
     assert modules >= OF_A_PORT
-    with Shared() as (shared, _):
-        assert sorted((NEVER | OF_A_PORT | unwanted) & imported_by(shared.port)) == []
+    with Shared() as (shared_robot, _):
+        assert sorted((NEVER | OF_A_PORT | unwanted_modules) & imported_by(shared_robot.port)) == []
 
 
 # -- whose run it is ------------------------------------------------------------------------------
@@ -195,7 +195,7 @@ def test_a_command_imports_no_more_than_it_needs(
 def test_a_robot_stops_without_the_command_that_has_started_it(
     pty_robot: PtyRobot, link: Command
 ) -> None:
-    """At once, if the server sees it go."""
+    """It stops immediately if the server sees the client leave."""
     for number, within_ms in (
         (signal.SIGKILL, 900), (signal.SIGTERM, 900), (signal.SIGSTOP, 1500),
     ):  # fmt: skip
@@ -203,7 +203,7 @@ def test_a_robot_stops_without_the_command_that_has_started_it(
         gone_ms = pty_robot.robot_ms
         command.signal(number)
         pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
-        assert int(pty_robot.timed[-1].split()[0]) <= gone_ms + within_ms, number
+        assert int(pty_robot.timed_actions[-1].split()[0]) <= gone_ms + within_ms, number
         on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").gives(0, "")  # others drive
         command.kill()
 
@@ -213,8 +213,8 @@ def test_an_upload_whose_command_is_killed_starts_nothing_and_refuses_nobody(
     pty_robot: PtyRobot, link: Command, number: int, request: pytest.FixtureRequest
 ) -> None:
     if number != signal.SIGKILL:  # a command that nohup has begun is to outlive SIGHUP
-        before = signal.signal(number, signal.SIG_DFL)
-        request.addfinalizer(lambda: signal.signal(number, before))
+        signal_before = signal.signal(number, signal.SIG_DFL)
+        request.addfinalizer(lambda: signal.signal(number, signal_before))
     pty_robot.bytes_per_ms = 1  # a long program takes a while
     for options in ((), ("--detach",)):
         pty_robot.heard = b""
@@ -223,8 +223,8 @@ def test_an_upload_whose_command_is_killed_starts_nothing_and_refuses_nobody(
         command.signal(number)
         command.process.wait()
         on(pty_robot, "live", "SHOW(7)").gives(0, "", out="SHOW 7")
-        driven = [line for line in pty_robot.did if line.startswith("MOTORS")]
-        assert set(driven) <= {"MOTORS 0 0"}
+        motor_lines = [line for line in pty_robot.actions if line.startswith("MOTORS")]
+        assert set(motor_lines) <= {"MOTORS 0 0"}
 
 
 def test_a_program_ends_with_its_command_unless_it_needs_nobody(
@@ -232,7 +232,7 @@ def test_a_program_ends_with_its_command_unless_it_needs_nobody(
 ) -> None:
     command = uploading(pty_robot)
     command.signal(signal.SIGINT)
-    command.ended().gives(2, "the robot has confirmed the stop")
+    command.wait_for_result().gives(2, "the robot has confirmed the stop")
     assert not pty_robot.moves
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     pty_robot.ask(lambda robot: robot.wait(1500))
@@ -247,8 +247,8 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
     """Through the first command, which has nothing more to do of its own."""
     first = uploading(pty_robot)
     second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
-    second.ended().gives(0, out="Done.")
-    result = first.ended().gives(
+    second.wait_for_result().gives(0, out="Done.")
+    result = first.wait_for_result().gives(
         3, "another command started a program", "holds the port until the other command has ended."
     )
     assert result.err.index("holds the port") < result.err.index(
@@ -264,9 +264,9 @@ def test_a_replaced_command_that_is_interrupted_stops_the_robot(pty_robot: PtyRo
     second.until("running")
     first.until("holds the port", is_aside=True)
     first.signal(signal.SIGINT)
-    assert first.ended().code == 2
+    assert first.wait_for_result().code == 2
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
-    second.ended().gives(3, out="The robot was stopped from a computer.")
+    second.wait_for_result().gives(3, out="The robot was stopped from a computer.")
 
 
 def test_a_stop_ends_a_program_that_a_replaced_command_holds_the_port_for(
@@ -278,8 +278,8 @@ def test_a_stop_ends_a_program_that_a_replaced_command_holds_the_port_for(
     first.until("holds the port", is_aside=True)
     assert on(pty_robot, "stop").code == 0
     assert not pty_robot.moves
-    second.ended().gives(3, out="The robot was stopped from a computer.")
-    first.ended().gives(3, "another command started a program")
+    second.wait_for_result().gives(3, out="The robot was stopped from a computer.")
+    first.wait_for_result().gives(3, "another command started a program")
 
 
 # -- endings of a server --------------------------------------------------------------------------
@@ -290,9 +290,9 @@ def test_a_server_that_leaves_stops_the_run_of_its_client(
 ) -> None:
     command = uploading(pty_robot)
     link.signal(signal.SIGINT)
-    assert link.ended().code == 0
+    assert link.wait_for_result().code == 0
     assert not pty_robot.moves
-    command.ended().gives(3, "(tsc monitor --hold) has ended")
+    command.wait_for_result().gives(3, "(tsc monitor --hold) has ended")
     assert registry.find_registration(pty_robot.port) is None
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     assert hellos(pty_robot) == 2
@@ -301,7 +301,7 @@ def test_a_server_that_leaves_stops_the_run_of_its_client(
 def test_a_server_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Command) -> None:
     command = uploading(pty_robot)
     link.process.kill()
-    command.ended().gives(3, "(tsc monitor --hold) has ended")
+    command.wait_for_result().gives(3, "(tsc monitor --hold) has ended")
     pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
     assert registry.find_registration(pty_robot.port) is not None
     rows = json.loads(process("doctor", "--ports", "--json").out)
@@ -311,13 +311,13 @@ def test_a_server_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Comman
 
 
 def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
-    """Whoever comes in the middle opens the port itself."""
+    """A command that arrives in between opens the port itself."""
     for wait_s in (0, 0.1):
         server = uploading(pty_robot)
         stop = Command("stop", "--port", pty_robot.port)
         time.sleep(wait_s)
         server.process.kill()
-        stop.ended().gives(0, "")
+        stop.wait_for_result().gives(0, "")
         assert not pty_robot.moves
         server.process.communicate()
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
@@ -332,7 +332,7 @@ def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
             peer.recv(1000)
             peer.sendall(protocol.encode_message({"tsc": __version__, "answer": "b"}))
             assert b"stop" in peer.recv(1000)
-    assert stop.ended().code == 0
+    assert stop.wait_for_result().code == 0
     assert not pty_robot.moves
 
 
@@ -340,7 +340,7 @@ def test_a_cable_that_is_pulled_is_said_to_all(pty_robot: PtyRobot, link: Comman
     command = uploading(pty_robot)
     pty_robot.pull()
     for running in (command, link):
-        running.ended().gives(3, "is gone")
+        running.wait_for_result().gives(3, "is gone")
 
 
 def test_a_robot_that_was_lost_is_found_again(pty_robot: PtyRobot, link: Command) -> None:
@@ -361,28 +361,28 @@ def test_of_three_who_want_a_place_one_gets_it(
         lambda: sum(command.process.poll() is not None for command in commands) == 2, "one stays"
     )
     [holder] = [command for command in commands if command.process.poll() is None]
-    losers = [command.ended() for command in commands if command is not holder]
+    losers = [command.wait_for_result() for command in commands if command is not holder]
     assert [loser.code for loser in losers] == [3, 3]
     assert all("already shared" in loser.err for loser in losers)
     assert process("stop", "--port", wanted).code == 0
     holder.signal(signal.SIGINT)
-    result = holder.ended()
+    result = holder.wait_for_result()
     assert (result.code, result.err) == (0, "\n")
 
 
 def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
-    """Whoever came through one that has left in the middle is told so, and comes again."""
+    """A client whose server leaves is told so, and connects again."""
 
-    def begun(*words: str) -> Command:
+    def start_command(*words: str) -> Command:
         return Command(*words, "--port", pty_robot.port, code=PATIENT)
 
     asked = [["doctor", "--identify"]] * 3 + [["upload", "-e", "SB|S"]]
-    commands = [begun(*words) for words in asked]
+    commands = [start_command(*words) for words in asked]
     for words, command in zip(asked, commands, strict=True):
-        result = command.ended()
+        result = command.wait_for_result()
         for _ in range(TRIES):
             if "has ended; without --detach" in result.err:
-                result = begun(*words).ended()
+                result = start_command(*words).wait_for_result()
         assert (result.code, result.err) == (0, "")
 
 
@@ -395,7 +395,7 @@ def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
     for language, words in (("en", "another version of tsc, 9.1"), ("es", "otra versión, 9.1")):
         on(pty_robot, "show", "--lang", language).gives(3, words)
     assert on(pty_robot, "stop").code == 0
-    assert command.ended().code == 3
+    assert command.wait_for_result().code == 3
 
 
 def test_a_run_that_begins_after_its_client_has_left_ends_and_nobody_else_is_refused() -> None:

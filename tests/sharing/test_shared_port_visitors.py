@@ -1,4 +1,4 @@
-"""Who may come to a port that is shared, and how little a bad visitor disturbs."""
+"""Visitors of a shared port, and the small effect of bad ones."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def visitor(registration: Registration) -> socket.socket:
 
 
 def is_let_go(peer: socket.socket) -> bool:
-    """Whether a server closes a connection without a word."""
+    """Return whether a server closes a connection without a message."""
     try:
         return peer.recv(100) == b""
     except ConnectionError:
@@ -43,8 +43,10 @@ def is_let_go(peer: socket.socket) -> bool:
 def test_too_many_who_say_nothing_let_the_oldest_go(monkeypatch: pytest.MonkeyPatch) -> None:
     """Long before the time for their greeting is over."""
     monkeypatch.setattr("tiniscript.link.sharing.server.GREETING_S", 600.0)
-    with Shared() as (_, registration), ExitStack() as opened:
-        silent = [opened.enter_context(visitor(registration)) for _ in range(MOST_CLIENTS + 10)]
+    with Shared() as (_, registration), ExitStack() as opened_exit_stack:
+        silent = [
+            opened_exit_stack.enter_context(visitor(registration)) for _ in range(MOST_CLIENTS + 10)
+        ]
         assert all(is_let_go(peer) for peer in silent[:10])
         silent[10].settimeout(0.2)
         with pytest.raises(TimeoutError):
@@ -66,7 +68,7 @@ def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
     assert pty_robot.moves
     silent = [visitor(registration) for _ in range(100)]
     assert on(pty_robot, "stop").code == 0
-    assert command.ended().code == 3
+    assert command.wait_for_result().code == 3
     for peer in silent:
         assert is_let_go(peer)
         peer.close()
@@ -95,15 +97,15 @@ def _rest(peer: socket.socket) -> bytes:
 
 
 def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
-    shared = Shared()
-    with shared as (pty_robot, registration), visitor(registration) as peer:
+    shared_port = Shared()
+    with shared_port as (pty_robot, registration), visitor(registration) as peer:
         peer.sendall(greeting(registration))
         reader = protocol.MessageReader(protocol.LINE_BYTES)
         messages = reader.read_messages(peer.recv(65536))
         count = 50 * FULL_BYTES // 60
         for k in range(count):
-            shared.server._on_events([(k, ShownEvent(k, 0))])
-        shared.server._on_events([(count, DoneEvent(9))])
+            shared_port.server._on_events([(k, ShownEvent(k, 0))])
+        shared_port.server._on_events([(count, DoneEvent(9))])
         assert "SHOW 1" in on(pty_robot, "live", "SHOW(1)").out
         while not any(message.get("event") == "DONE" for message in messages):
             data = peer.recv(65536)
@@ -121,9 +123,9 @@ def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
 def test_nothing_is_shared_where_nothing_can_be_written(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    blocked = tmp_path / "file"
-    blocked.write_text("")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
+    blocked_path = tmp_path / "file"
+    blocked_path.write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked_path))
     assert tsc("upload", "-e", "SI|F(0.1, 30)", "--port", pty_robot.port).code == 0
     tsc("monitor", "--hold", "--port", pty_robot.port).gives(3, "cannot be shared")
 
@@ -148,22 +150,22 @@ def test_somebody_else_at_the_number_of_a_crashed_server_is_no_server(pty_robot:
         with peer:
             peer.recv(1000)
             peer.sendall(protocol.encode_message({"tsc": __version__, "answer": "c"}))
-            result = command.ended()
+            result = command.wait_for_result()
     assert (result.code, result.err) == (0, "")
     assert registry.find_registration(pty_robot.port) is None
 
 
 def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:
     for part in ("session", "server"):
-        shared = Shared()
-        with shared as (_, registration), visitor(registration) as peer:
+        shared_port = Shared()
+        with shared_port as (_, registration), visitor(registration) as peer:
             if part == "session":
-                shared.line.session._queue.append(cast("Any", None))
+                shared_port.line.session._queue.append(cast("Any", None))
             else:
-                shared.server._orphaned_requests.append(cast("Any", None))
+                shared_port.server._orphaned_requests.append(cast("Any", None))
             with pytest.raises(AttributeError):
                 while True:
-                    shared.line.event()
+                    shared_port.line.event()
             peer.settimeout(HANGS_S)
             assert is_let_go(peer)
 

@@ -1,4 +1,4 @@
-"""Whatever somebody without the token says to a shared port, the session there goes on."""
+"""Whatever a client without the token sends to a shared port, the session there goes on."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ def test_no_bytes_of_a_stranger_end_a_run_or_its_server(pty_robot: PtyRobot, lin
     command = uploading(pty_robot)
     say_all(pty_robot.port, 14, 1500)
     assert pty_robot.moves
-    assert not [line for line in pty_robot.did if "FAULT" in line or "STOP" in line]
+    assert not [line for line in pty_robot.actions if "FAULT" in line or "STOP" in line]
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["state"] == "RUNNING"
     assert on(pty_robot, "stop").code == 0
-    assert command.ended().code == 3
+    assert command.wait_for_result().code == 3
     link.signal(signal.SIGINT)
-    result = link.ended()
+    result = link.wait_for_result()
     assert (result.code, result.err) == (0, "\n")
-    assert result.out.count(": connected.") == 3  # strangers are not told of
+    assert result.out.count(": connected.") == 3  # strangers are not reported
 
 
 # -- of `test_many_strangers.py`, too --------------------------------------------------------------

@@ -16,7 +16,7 @@ import pytest
 from tests.machines.host import once
 from tests.support import studio
 from tests.support.casefile import ROOT
-from tests.support.platformio import shared
+from tests.support.platformio import shared_folder
 from tests.support.rows import each_row
 from tools import CannotMake
 from tools.builds import site
@@ -34,15 +34,15 @@ if TYPE_CHECKING:
 
 
 @pytest.fixture(scope="session")
-def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def site_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return once(
-        shared(tmp_path_factory) / "site",
+        shared_folder(tmp_path_factory) / "site",
         lambda path: site.build(ROOT, path, has_studio=not studio_build.why_stale()),
     )
 
 
 @pytest.fixture(scope="module")
-def address(built: Path) -> Iterator[str]:
+def address(site_folder: Path) -> Iterator[str]:
     class Quiet(http.server.SimpleHTTPRequestHandler):
         def log_message(self, *words: object) -> None:
             """Say nothing."""
@@ -51,7 +51,7 @@ def address(built: Path) -> Iterator[str]:
         def handle_error(self, request: object, client_address: object) -> None:
             """Say nothing of a browser that has left."""
 
-    handler = functools.partial(Quiet, directory=str(built))
+    handler = functools.partial(Quiet, directory=str(site_folder))
     server = Server(("127.0.0.1", 0), handler)
     thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
     thread.start()
@@ -63,39 +63,41 @@ def address(built: Path) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    with studio.driver() as driver, studio.browser(driver) as opened:
-        yield opened
+    with studio.driver() as driver, studio.browser(driver) as browser:
+        yield browser
 
 
 @pytest.fixture
 def visitor(browser: Browser, address: str) -> Iterator[Page]:
     """A page whose requests must stay on the site."""
     context = browser.new_context(service_workers="block")
-    opened = context.new_page()
-    asked: list[str] = []
+    opened_page = context.new_page()
+    questions: list[str] = []
     wrong: list[str] = []
-    opened.on("request", lambda request: asked.append(request.url))
-    opened.on("pageerror", lambda failure: wrong.append(str(failure)))
-    yield opened
+    opened_page.on("request", lambda request: questions.append(request.url))
+    opened_page.on("pageerror", lambda failure: wrong.append(str(failure)))
+    yield opened_page
     context.close()
-    assert asked
+    assert questions
     assert [
-        address_asked for address_asked in asked if not address_asked.startswith((address, "data:"))
+        address_asked
+        for address_asked in questions
+        if not address_asked.startswith((address, "data:"))
     ] == []
     assert wrong == []
 
 
-def test_every_document_is_on_the_site_and_in_a_part_of_it(built: Path) -> None:
-    listed = documents(ROOT, built_texts())
-    sources = {source for document in listed for source in document.sources.values()}
+def test_every_document_is_on_the_site_and_in_a_part_of_it(site_folder: Path) -> None:
+    listed_documents = documents(ROOT, built_texts())
+    sources = {source for document in listed_documents for source in document.sources.values()}
     paths = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"),
              *ROOT.glob("compiler/tiniscript/lessons/*/*.md")]  # fmt: skip
     kept = {path.relative_to(ROOT).as_posix() for path in paths}
     assert kept | {name for name in built_texts() if name.endswith(".md")} == sources
-    assert {document.part for document in listed} == set(PARTS)
-    for document in listed:
+    assert {document.part for document in listed_documents} == set(PARTS)
+    for document in listed_documents:
         for language in document.sources:
-            assert (built / language / f"{document.name}.html").is_file()
+            assert (site_folder / language / f"{document.name}.html").is_file()
 
 
 @pytest.fixture
@@ -113,7 +115,7 @@ def test_a_link_that_leads_nowhere_ends_the_build(
 ) -> None:
     few = [
         document for document in documents(ROOT) if document.name in ("link", "store")
-    ]  # in English alone
+    ]  # only in English
     monkeypatch.setattr(site, "documents", lambda root, built: few)
     store = clone / "docs" / "develop" / "store.md"
     text = "# A title\n"
@@ -122,7 +124,7 @@ def test_a_link_that_leads_nowhere_ends_the_build(
     store.write_text(f"{text}\n[no](nowhere.md)\n", encoding="utf-8")
     with pytest.raises(CannotMake, match=r"^docs/develop/store\.md: nowhere\.md$"):
         site.build(clone, tmp_path / "site", has_studio=False)
-    # what Sphinx looks at itself
+    # Files that Sphinx reads itself.
     store.write_text(f"{text}\n[no](link.md#elsewhere)\n\n```strange\nx\n```\n", encoding="utf-8")
     with pytest.raises(CannotMake) as why:
         site.build(clone, tmp_path / "site", has_studio=False)
@@ -133,9 +135,9 @@ def test_a_link_that_leads_nowhere_ends_the_build(
 
 
 def test_a_dead_link_ends_the_build(
-    tmp_path: Path, built: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, site_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of what no half sees: links between them, and what a template has."""
+    """Links that neither half sees: those between the halves, and in templates."""
 
     def render(half: Path, folder: Path, link: object, has_studio: bool) -> None:
         folder.mkdir(parents=True)
@@ -224,14 +226,16 @@ def test_each_half_leads_to_the_other(visitor: Page, address: str) -> None:
     visitor.click(".halves a[lang=es]")
     assert visitor.url == f"{address}es/monday.html"
     assert visitor.locator("html").get_attribute("lang") == "es"
-    visitor.goto(f"{address}en/link.html")  # which is in English only
+    visitor.goto(f"{address}en/link.html")  # the page exists only in English
     visitor.click(".halves a[lang=es]")
     assert visitor.url == f"{address}es/index.html"
 
 
 @each_row("name", ["class", "index", "search", "lessons/01_first_line_pupil"])
-def test_what_is_around_a_spanish_page_is_spanish(built: Path, name: str) -> None:
-    english, spanish = (_around(built / language / f"{name}.html") for language in ("en", "es"))
+def test_what_is_around_a_spanish_page_is_spanish(site_folder: Path, name: str) -> None:
+    english, spanish = (
+        _around(site_folder / language / f"{name}.html") for language in ("en", "es")
+    )
     assert len(english) > 15
     assert english & spanish <= {"TiniScript", "Furo", "tsc", "Português"}
 
@@ -243,8 +247,8 @@ def _around(path: Path) -> set[str]:
     return {" ".join(text.split()) for text in (*re.findall(r">([^<>]+)<", text), *labels)} - {""}
 
 
-def test_the_studio_is_on_the_site(visitor: Page, address: str, built: Path) -> None:
-    assert not (built / "studio" / studio_build.STAMP).exists()
+def test_the_studio_is_on_the_site(visitor: Page, address: str, site_folder: Path) -> None:
+    assert not (site_folder / "studio" / studio_build.STAMP).exists()
     visitor.goto(f"{address}en/lessons.html")
     visitor.click(".halves a:has-text('Studio')")
     visitor.wait_for_selector("[data-state]", state="attached")

@@ -1,4 +1,4 @@
-"""Whether a sketch on a simulated board does what a trace says: the same, at the same times.
+"""Compares a sketch on a simulated board with a trace: the same actions at the same times.
 
 A trace says what motors, buzzer, actuators and SHOW get, and when. Both are signals; what is
 shorter than the tolerance may be missing in the other.
@@ -23,9 +23,9 @@ from tiniscript.robots.profile import Robot
 from tiniscript.robots.reader import read
 
 PRESS_MS, RELEASE_MS, UP_MS = 20.0, 60.0, 90.0  # the button of a program that begins with SB
-NEAR_MS = 6.0  # how late or early something may be
+NEAR_MS = 6.0  # tolerance in time
 MAX_MS, MAX_STEPS = 3_000, 3_000
-PLAIN_MS = 250  # of SHOW that may be under way at the end
+PLAIN_MS = 250  # time at the end in which a SHOW may be under way
 WIDE = """
 [[kit.sensors]]
 name = "TEMPERATURE"
@@ -105,7 +105,7 @@ WIDE_NAMES = ("TEMPERATURE", "TOUCH", "LINE", "GRIPPER", "LIFT", "LED")
 
 
 class Wanted(NamedTuple):
-    """What a trace says, as signals."""
+    """The content of a trace, as signals."""
 
     motors: Signal
     tones: Signal
@@ -115,7 +115,7 @@ class Wanted(NamedTuple):
     is_cut: bool
 
 
-def wanted(trace: str) -> Wanted:
+def parse_trace(trace: str) -> Wanted:
     expected = Wanted([(0.0, (0, 0))], [(0.0, (0,))], {}, [], 0.0, False)
     for line in trace.splitlines():
         ms, what, *words = line.split()
@@ -149,7 +149,7 @@ def spans(signal: Signal, end: float) -> list[tuple[float, float, tuple[int, ...
 
 
 def same(want: Signal, actual: Signal, end: float, near: float, apart: float = 0) -> list[str]:
-    """Return how two signals differ; what lasts less than twice `near` may be missing."""
+    """Return the difference of two signals; pulses shorter than twice `near` may be missing."""
 
     def agree(a: tuple[int, ...], b: tuple[int, ...]) -> bool:
         return all(abs(x - y) <= apart * max(abs(x), abs(y)) for x, y in zip(a, b, strict=True))
@@ -162,7 +162,7 @@ def same(want: Signal, actual: Signal, end: float, near: float, apart: float = 0
             wrong.append(f"{value} from {at} to {until}, but {inner[:4]}")
     for at, until, value in theirs:
         around = [v for a, u, v in ours if a < until + near and u > at - near]
-        if at > end - near:  # what comes after the end
+        if at > end - near:  # events after the end
             continue
         if until - at > 2 * near and not any(agree(value, v) for v in around):
             wrong.append(f"{value} from {at:.1f} to {until:.1f} is not in the trace")
@@ -170,53 +170,58 @@ def same(want: Signal, actual: Signal, end: float, near: float, apart: float = 0
 
 
 def nearness(trace: str, echo_us: float = 0) -> float:
-    """Return how late or early a sketch may be: what waits 25 ms for an echo begins then."""
+    """Return the time tolerance of a sketch, which may wait 25 ms for an echo."""
     return NEAR_MS + (2 if echo_us else min(160, 27 * trace.count(" READ DISTANCE ")))
 
 
-def shifted(signal: Signal, by: float, first: tuple[int, ...]) -> Signal:
+def shift_signal(signal: Signal, by: float, first: tuple[int, ...]) -> Signal:
     """Return a signal from the start of the program on."""
     return [(0.0, first), *((max(0.0, at - by), value) for at, value in signal)]
 
 
 def differences(
     trace: str,
-    ran: Ran,
+    run: Ran,
     robot: Robot,
     start_ms: float,
     near: float = NEAR_MS,
     apart: float = 0,
 ) -> list[str]:
-    """Return where a sketch's run is not what the trace says; numbers may be so far apart."""
-    want = wanted(trace)
+    """Return the differences between a sketch's run and the trace, with a tolerance for numbers."""
+    want = parse_trace(trace)
     end = want.end_ms
     motors = [*want.motors]
-    wrong = same(motors, shifted(ran.motors, start_ms, (0, 0)), end, near)
-    wrong += same(want.tones, shifted(ran.tones, start_ms, (0,)), end, near, 0.02)
+    wrong = same(motors, shift_signal(run.motors, start_ms, (0, 0)), end, near)
+    wrong += same(want.tones, shift_signal(run.tones, start_ms, (0,)), end, near, 0.02)
     for device, wiring in zip(robot.kit.actuators, robot.board.actuators, strict=True):
-        signal = shifted(ran.pins[wiring.pins["pin"]], start_ms, (0,))
-        asked = want.settings.get(device.name, [(0.0, (0,))])
+        signal = shift_signal(run.pins[wiring.pins["pin"]], start_ms, (0,))
+        asked_signal = want.settings.get(device.name, [(0.0, (0,))])
         if wiring.driver == "digital":
             low = wiring.settings["yes_is_low"]
-            levels: Signal = [(at, ((value[0] ^ low) * 255,)) for at, value in asked]
+            levels: Signal = [(at, ((value[0] ^ low) * 255,)) for at, value in asked_signal]
             wrong += same(levels, signal, end, near)
         elif wiring.driver == "servo":
-            wrong += pulses(device.low, device.high, wiring.settings, asked, signal, end)
-    return wrong + shown(want, ran, apart, near)
+            wrong += pulses(device.low, device.high, wiring.settings, asked_signal, signal, end)
+    return wrong + compare_shows(want, run, apart, near)
 
 
 def pulses(
-    low: int, high: int, settings: Mapping[str, int], asked: Signal, signal: Signal, end: float
+    low: int,
+    high: int,
+    settings: Mapping[str, int],
+    asked_signal: Signal,
+    signal: Signal,
+    end: float,
 ) -> list[str]:
-    """Return which pulses of a servo are not those of its settings."""
+    """Return the pulses of a servo that do not match its settings."""
     wrong, first, last = [], settings["low_us"], settings["high_us"]
-    for k, (at, until, value) in enumerate(spans(asked, end)):
+    for k, (at, until, value) in enumerate(spans(asked_signal, end)):
         lengths_us = [
             1000 * (gone - came)
             for came, gone, level in spans(signal, end)
             if level[0] and came > at + 30 and gone < until - 2
         ]
-        if k == 0 and (len(asked) == 1 or asked[1][0] > 0):
+        if k == 0 and (len(asked_signal) == 1 or asked_signal[1][0] > 0):
             if lengths_us:
                 wrong.append(f"pulses before a SET: {lengths_us[:3]}")
             continue
@@ -228,30 +233,30 @@ def pulses(
     return wrong
 
 
-def shown(want: Wanted, ran: Ran, apart: float, near: float) -> list[str]:
-    """Return what SHOW has said that it should not, or not said."""
-    lines = ran.text.split("\r\n")[:-1]
-    asked = [line for _, line in want.lines]
-    common = min(len(lines), len(asked))
-    least = len(asked)
+def compare_shows(want: Wanted, run: Ran, apart: float, near: float) -> list[str]:
+    """Return the superfluous and missing values of SHOW."""
+    lines = run.text.split("\r\n")[:-1]
+    questions = [line for _, line in want.lines]
+    common = min(len(lines), len(questions))
+    least = len(questions)
     if want.is_cut:
         least = sum(at < want.end_ms - near for at, _ in want.lines)
-    is_same = all(map(_is_line, lines[:common], asked[:common], [apart] * common))
+    is_same = all(map(_is_line, lines[:common], questions[:common], [apart] * common))
     if is_same and len(lines) >= least and (want.is_cut or len(lines) == least):
         return []
-    return [f"shown {lines[:20]}, not {asked[:20]}"]
+    return [f"shown {lines[:20]}, not {questions[:20]}"]
 
 
-def _is_line(line: str, asked: str, apart: float) -> bool:
-    if line == asked or not apart:
-        return line == asked
-    return not asked[-1:].isalpha() and abs(float(line) - float(asked)) <= apart
+def _is_line(line: str, asked_text: str, apart: float) -> bool:
+    if line == asked_text or not apart:
+        return line == asked_text
+    return not asked_text[-1:].isalpha() and abs(float(line) - float(asked_text)) <= apart
 
 
 def sketch(text: str, robot: Robot, language: str = "en") -> str:
-    compiled = compile_text(text, robot.kit, "prog.ts")
-    assert compiled.program is not None and compiled.is_right, compiled.diagnostics
-    return sketch_of(compiled.source, compiled.program, robot, language)
+    compilation = compile_text(text, robot.kit, "prog.ts")
+    assert compilation.program is not None and compilation.is_right, compilation.diagnostics
+    return sketch_of(compilation.source, compilation.program, robot, language)
 
 
 # -- random programs
@@ -261,13 +266,13 @@ class Example(NamedTuple):
     seed: int
     text: str
     trace: str
-    counts: Mapping[str, int]  # of the converter; levels of digital pins
+    counts: Mapping[str, int]  # converter values, and levels of digital pins
 
 
 def example(seed: int, robot: Robot) -> Example | None:
     """Return a random program and what the oracle says of it.
 
-    None where it calculates without end, which takes no time for the oracle, or where TIME can
+    None if it calculates without end, which takes no time for the oracle, or where TIME can
     tell how long it waited for an echo.
     """
     rng = random.Random(seed)
@@ -311,9 +316,9 @@ def check(example: Example, robot: Robot, language: str = "en") -> None:
         start = UP_MS
         board.level(PRESS_MS, robot.board.start_button, False)
         board.level(RELEASE_MS, robot.board.start_button, True)
-    want = wanted(example.trace)
+    want = parse_trace(example.trace)
     reads = example.trace.count(" READ DISTANCE ")
-    ran = board.ran(start + want.end_ms + (0 if want.is_cut else PLAIN_MS + 30 * reads))
+    run = board.run_for(start + want.end_ms + (0 if want.is_cut else PLAIN_MS + 30 * reads))
     near = nearness(example.trace)
-    wrong = differences(example.trace, ran, robot, start, near)
+    wrong = differences(example.trace, run, robot, start, near)
     assert not wrong, f"seed {example.seed}: {wrong[:3]}\n{example.text}\n{example.trace[:3000]}"

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines import MACHINES, Senses
-from tests.machines.sketch_board import Ran, SketchBoard, built
+from tests.machines.sketch_board import Ran, SketchBoard, build_sketch
 from tests.sketch.agreement import (
     PRESS_MS,
     RELEASE_MS,
@@ -20,15 +20,14 @@ from tests.sketch.agreement import (
     differences,
     example,
     nearness,
-    shifted,
+    parse_trace,
+    shift_signal,
     sketch,
     spans,
-    wanted,
     with_wide_kit,
 )
-from tests.support.board_states import BRIDGE_STATES, DRIVERS, SERVOS, driven, robot_with
-from tests.support.campaign import each_seed
-from tests.support.campaign import wanted as wanted_seeds
+from tests.support.board_states import BRIDGE_STATES, DRIVERS, SERVOS, robot_with, robot_with_driver
+from tests.support.campaign import each_seed, make_options
 from tests.support.casefile import example_robot, sketch_examples
 from tiniscript import compile_text, robots
 from tiniscript.base.fixed_point import ONE
@@ -40,14 +39,14 @@ EXAMPLES = sketch_examples()
 
 
 def has_sketch(text: str) -> bool:
-    """Whether `tsc show --arduino` makes one, on the robot that a lesson's answer is for."""
+    """Return whether `tsc show --arduino` supports it on the robot of the lesson's answer."""
     kit = robots.load("tinibot").kit
-    compiled = compile_text(text, kit)
-    if not compiled.is_right:
+    compilation = compile_text(text, kit)
+    if not compilation.is_right:
         kit = robots.load("liner").kit
-        compiled = compile_text(text, kit)
-    assert compiled.program is not None and compiled.is_right
-    return missing_feature(compiled.program, kit) is None
+        compilation = compile_text(text, kit)
+    assert compilation.program is not None and compilation.is_right
+    return missing_feature(compilation.program, kit) is None
 
 
 ANSWERS = [
@@ -57,19 +56,19 @@ ANSWERS = [
     if has_sketch(answer.program)
 ]
 START_MS = 0.5
-FAR, NEAR = 0.0, 8 * 2 / 0.0343  # echoes: none, and that of 8 cm
+FAR, NEAR = 0.0, 8 * 2 / 0.0343  # echoes: none, and one of 8 cm
 
 
-def ran(text: str, ms: float, robot: Robot | None = None) -> Ran:
+def run_sketch(text: str, ms: float, robot: Robot | None = None) -> Ran:
     robot = robot or robots.load("tinibot")
-    return SketchBoard(robot, sketch(text, robot)).ran(ms)
+    return SketchBoard(robot, sketch(text, robot)).run_for(ms)
 
 
 def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float) -> None:
     """A sketch does what the trace says, with readings that stay as they are."""
-    compiled = compile_text(text, robot.kit, "prog.ts")
-    assert compiled.program is not None and compiled.is_right
-    board = SketchBoard(robot, sketch_of(compiled.source, compiled.program, robot, "es"))
+    compilation = compile_text(text, robot.kit, "prog.ts")
+    assert compilation.program is not None and compilation.is_right
+    board = SketchBoard(robot, sketch_of(compilation.source, compilation.program, robot, "es"))
     readings: dict[str, list[int]] = {}
     for device, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True):
         pins = wiring.pins
@@ -84,13 +83,15 @@ def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float)
             board.count(pins["pin"], [count])
             readings[device.name] = [count * ONE]
     start = START_MS
-    if compiled.program.start == "SB":
+    if compilation.program.start == "SB":
         start = UP_MS
         board.level(PRESS_MS, robot.board.start_button, False)
         board.level(RELEASE_MS, robot.board.start_button, True)
-    trace = MACHINES["python"](compiled.image, robot.kit, Senses(readings, round(seconds * 1000)))
-    want = wanted(trace)
-    run = board.ran(start + want.end_ms + (0 if want.is_cut else 400))
+    trace = MACHINES["python"](
+        compilation.image, robot.kit, Senses(readings, round(seconds * 1000))
+    )
+    want = parse_trace(trace)
+    run = board.run_for(start + want.end_ms + (0 if want.is_cut else 400))
     near = nearness(trace, echo_us)
     wrong = differences(trace, run, robot, start, near, 0.2 if echo_us else 0)
     assert not wrong, f"{wrong[:3]}\n{text}\n{trace[:2000]}"
@@ -132,7 +133,7 @@ POWERS = [(80, 80), (-40, -40), (50, -100), (0, 0)]
 
 @pytest.mark.parametrize("name", sorted(DRIVERS))
 def test_drivers_of_motors(name: str) -> None:
-    motors = shifted(ran(MOVES, 400, driven(name)).motors, START_MS, (0, 0))
+    motors = shift_signal(run_sketch(MOVES, 400, robot_with_driver(name)).motors, START_MS, (0, 0))
     lasting = [value for at, until, value in spans(motors, 399) if until - at > 5]
     assert lasting == POWERS
 
@@ -141,7 +142,7 @@ def test_a_tb6612_is_awake_while_it_drives() -> None:
     robot = robots.load("liner")
     board = SketchBoard(robot, sketch("SI|F(0.1, 80)", robot))
     standby = robot.board.motors.pins["standby"]
-    levels = shifted(board.ran(150).pins[standby], START_MS, (0,))
+    levels = shift_signal(board.run_for(150).pins[standby], START_MS, (0,))
     assert [value for at, until, value in spans(levels, 149) if until - at > 2] == [(255,), (0,)]
     assert BRIDGE_STATES  # the states of the other pins are those of the drivers above
 
@@ -150,7 +151,7 @@ def test_servos_that_turn_get_their_pulses() -> None:
     """Still for a second after a stop, then none; the right one turns the other way."""
     robot = robot_with(SERVOS)
     board = SketchBoard(robot, sketch("SI|F(0.2, 100);W(2)", robot))
-    run = board.ran(1900)
+    run = board.run_for(1900)
     for side, driving, still in (("left", 2010, 1500), ("right", 970, 1480)):
         signal = run.pins[robot.board.motors.pins[f"{side}_pin"]]
         pulse_list = [
@@ -175,8 +176,8 @@ def test_a_pwm_actuator() -> None:
     for line in ("at_stop = ", "low_us = ", "high_us = "):
         text = "\n".join(row for row in text.splitlines() if not row.startswith(line))
     robot = read(text, "test")
-    run = ran("SI|GRIPPER(90);W(0.1);X = 180;GRIPPER(X);W(1)", 190, robot)
-    signal = shifted(run.pins[11], START_MS, (0,))
+    run = run_sketch("SI|GRIPPER(90);W(0.1);X = 180;GRIPPER(X);W(1)", 190, robot)
+    signal = shift_signal(run.pins[11], START_MS, (0,))
     assert [value for at, until, value in spans(signal, 189) if until - at > 5] == [(128,), (255,)]
 
 
@@ -186,17 +187,17 @@ def test_an_echo_is_a_distance(distance_cm: int) -> None:
     board = SketchBoard(robot, sketch("SI|DISTANCE;SHOW(DISTANCE)", robot))
     pins = robot.board.sensors[2].pins
     board.echoes(pins["trigger"], pins["echo"], [distance_cm * 2 / 0.0343])
-    assert abs(float(board.ran(400).text) - distance_cm) < 0.5
+    assert abs(float(board.run_for(400).text) - distance_cm) < 0.5
 
 
 def test_two_pings_are_30_ms_apart() -> None:
-    """What is asked sooner gets the reading before."""
+    """An earlier request gets the previous reading."""
     robot = robots.load("tinibot")
     text = "SI|DISTANCE;SHOW(ROUND(DISTANCE, 0));DISTANCE;SHOW(ROUND(DISTANCE, 0));W(0.05);"
     board = SketchBoard(robot, sketch(text + "DISTANCE;SHOW(ROUND(DISTANCE, 0))", robot))
     pins = robot.board.sensors[2].pins
     board.echoes(pins["trigger"], pins["echo"], [20 * 2 / 0.0343, 40 * 2 / 0.0343])
-    assert board.ran(500).text.split() == ["20", "20", "40"]
+    assert board.run_for(500).text.split() == ["20", "20", "40"]
 
 
 @pytest.mark.parametrize("text", [
@@ -210,7 +211,7 @@ def test_two_pings_are_30_ms_apart() -> None:
     "SI|X = MIN(RANDOM(1, 2), RANDOM(3, 4))",
 ])  # fmt: skip
 def test_numbers_of_every_kind_compile(text: str) -> None:
-    built(sketch(text, with_wide_kit()), "uno")
+    build_sketch(sketch(text, with_wide_kit()), "uno")
 
 
 # -- start, end, stop
@@ -226,7 +227,7 @@ def test_a_button_starts_and_stops() -> None:
     )
     for ms, is_high in ((100, False), (200, True), (500, False), (600, True)):
         board.level(ms, button, is_high)
-    run = board.ran(900)
+    run = board.run_for(900)
     assert [value for at, until, value in spans(run.motors, 899) if until - at > 5] == [
         (0, 0), (50, 50), (0, 0),
     ]  # fmt: skip
@@ -243,11 +244,11 @@ def test_a_spike_starts_nothing() -> None:
     board = SketchBoard(robot, sketch("SB|F(1, 50)", robot))
     board.level(100, robot.board.start_button, False)
     board.level(110, robot.board.start_button, True)
-    assert {value for _, value in board.ran(300).motors} == {(0, 0)}
+    assert {value for _, value in board.run_for(300).motors} == {(0, 0)}
 
 
 def test_a_program_that_has_ended_plays_its_tune() -> None:
-    tones = spans(ran("SI|F(0.1, 50)", 500).tones, 499)
+    tones = spans(run_sketch("SI|F(0.1, 50)", 500).tones, 499)
     assert [(round(until - at, -1), value[0] // 10) for at, until, value in tones if value[0]] == [
         (120, 105), (120, 157),
     ]  # fmt: skip
@@ -259,14 +260,14 @@ def test_a_program_that_has_ended_plays_its_tune() -> None:
     ("SI|M(50, 50);X = 0;SHOW(1 % X)", "FAULT DIVIDE_BY_ZERO"),
 ])  # fmt: skip
 def test_a_fault_stops_the_motors_and_says_its_name(text: str, name: str) -> None:
-    run = ran(text, 60)
+    run = run_sketch(text, 60)
     assert run.text == name + "\r\n"
     assert run.motors[-1][1] == (0, 0) and (50, 50) in [value for _, value in run.motors]
 
 
 @pytest.mark.parametrize("text", ["PING|check_connection", "", "SI|"])
 def test_a_program_that_does_nothing(text: str) -> None:
-    run = ran(text, 50)
+    run = run_sketch(text, 50)
     assert {value for _, value in run.motors} == {(0, 0)} and run.text == ""
 
 
@@ -279,4 +280,4 @@ def check_seed(seed: int) -> str:
 
 
 if __name__ == "__main__":
-    each_seed(check_seed, wanted_seeds(200, 0))
+    each_seed(check_seed, make_options(200, 0))

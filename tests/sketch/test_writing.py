@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.sketch_board import built
+from tests.machines.sketch_board import build_sketch
 from tests.sketch.agreement import sketch as sketch_for
 from tests.support.casefile import ROOT, example_robot, sketch_examples
 from tests.support.texts import LANGUAGES
@@ -121,7 +121,7 @@ def test_comments_stay_where_they_were() -> None:
 def test_a_comment_stays_a_comment(comment: str) -> None:
     text = sketch(f"SI|F(1, 50) // {comment}\nS // {comment}")
     assert part(text, "void setup()")[-1] == "  finish();"
-    built(text, "uno")
+    build_sketch(text, "uno")
 
 
 @pytest.mark.parametrize("block", ["", "LOOP(2)\n"])
@@ -176,11 +176,11 @@ def test_names_of_cpp_and_of_the_core_can_be_variables(first: int) -> None:
     usable = [word for word in (*odd, *words) if compile_text(f"{word} = 1", kit).is_right]
     for start in range(0, len(usable), 30):
         program = ";".join(f"{word} = 1" for word in usable[start : start + 30])
-        built(sketch(f"{program};W({usable[start]})"), "uno")
+        build_sketch(sketch(f"{program};W({usable[start]})"), "uno")
 
 
 def test_no_name_of_a_helper_is_in_the_other_language() -> None:
-    """In Spanish no parameter is English, and where helpers meet, both sides say the same."""
+    """In Spanish no parameter is English, and combined helpers agree."""
     program = (
         "SI|X = RANDOM(1, 6) / 2 % 3;SHOW(ROUND(ABS(MIN(X, -X)), 1));SHOW(MAX(X, 1) > 2);M(X, X);"
         "BEEP(X, 440);GRIPPER(X);W(TIME) UNTIL(X > 3);F(FOREVER, 50) UNTIL(DISTANCE < 9)"
@@ -246,9 +246,9 @@ def test_no_line_is_too_long_and_no_gap_stays_open(
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_the_sketch_on_the_page_is_what_tsc_writes(language: str) -> None:
     page = (ROOT / "docs" / language / "language.md").read_text(encoding="utf-8")
-    before, _, after = page.partition("```cpp\n")
-    program = before.rpartition("```tiniscript\n")[2].partition("```")[0]
-    assert "\n" + after.partition("```")[0] in sketch(program, language)
+    text_before, _, text_after = page.partition("```cpp\n")
+    program = text_before.rpartition("```tiniscript\n")[2].partition("```")[0]
+    assert "\n" + text_after.partition("```")[0] in sketch(program, language)
 
 
 def test_each_loop_inside_others_has_a_counter_of_its_own() -> None:

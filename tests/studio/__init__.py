@@ -1,1 +1,1 @@
-# Ends what has the scope of this package, the browser's event loop, before other tests run.
+# Ends the objects of package scope, such as the browser's event loop, before other tests run.

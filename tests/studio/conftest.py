@@ -26,7 +26,7 @@ def own(server: serving.Server) -> str:
 
 
 @pytest.fixture
-def unhurried(monkeypatch: pytest.MonkeyPatch) -> None:
+def no_page_timeouts(monkeypatch: pytest.MonkeyPatch) -> None:
     """A page may be silent for as long as a busy computer keeps it so: its robot drives on."""
     monkeypatch.setattr(attending, "ATTENDED_S", HANGS_S)
     monkeypatch.setattr(attending, "LEFT_S", HANGS_S)
@@ -40,14 +40,14 @@ def playwright() -> Iterator[Playwright]:
 
 @pytest.fixture(scope="package")
 def browser(playwright: Playwright) -> Iterator[Browser]:
-    with studio.browser(playwright) as opened:
-        yield opened
+    with studio.browser(playwright) as browser:
+        yield browser
 
 
 @pytest.fixture(scope="module")
 def server(browser: Browser) -> Iterator[serving.Server]:
     """A `tsc studio` that holds the robots of its pages."""
-    with studio.hosted() as server:
+    with studio.serve_robots() as server:
         yield server
 
 
@@ -62,7 +62,7 @@ def hosted_pages(browser: Browser, server: serving.Server) -> Iterator[studio.Pa
 
 @pytest.fixture(scope="package")
 def address(browser: Browser) -> Iterator[str]:
-    with studio.served() as server:
+    with studio.serve_page() as server:
         yield server.address
 
 
@@ -76,7 +76,7 @@ def pages(browser: Browser, address: str) -> Iterator[studio.Pages]:
 
 @pytest.fixture(scope="module")
 def only_page(browser: Browser, address: str) -> Iterator[tuple[studio.Pages, Page]]:
-    """One page for many tests: Python takes a while to start in it."""
+    """A page shared by many tests, because Python starts slowly."""
     opened_pages = studio.Pages(browser, address)
     yield opened_pages, opened_pages.open()
     opened_pages.close()

@@ -23,9 +23,9 @@ def programs() -> list[Program]:
     program_list = []
     for case in all_cases():
         if "tiniscript" in case.parts:
-            named = _ROBOT.search(case.parts.get("senses", ""))
+            named_match = _ROBOT.search(case.parts.get("senses", ""))
             own = shipped_name_in(case.parts["tiniscript"].encode()) or "tinibot"
-            robot = named[1] if named and named[1] in robots.names() else own
+            robot = named_match[1] if named_match and named_match[1] in robots.names() else own
             program_list.append(Program(case.id, case.parts["tiniscript"], robot))
     for path in sorted((ROOT / "examples").glob("*.ts")):
         program_list.append(
@@ -35,18 +35,19 @@ def programs() -> list[Program]:
 
 
 def image(program: Program) -> str:
-    """Return the image that `tsc compile` makes, in hexadecimal; none where there are mistakes."""
+    """Return the image that `tsc compile` makes, in hexadecimal; none if there are mistakes."""
     try:
         return compile(program.text, program.robot).image.hex()
     except ProgramError:
         return ""
 
 
-LACKING = ("TS313", "TS315")  # said of a right program that a robot cannot run, when it is sent
+# Reported at the upload of a correct program that the robot cannot run.
+LACKING = ("TS313", "TS315")
 
 
 def messages_of(text: str, language: str) -> list[Message]:
-    """Return what `tsc compile` says of a program."""
+    """Return the messages of `tsc compile` about a program."""
     try:
         return list(compile(text, language=language).diagnostics)
     except ProgramError as wrong:

@@ -34,7 +34,7 @@ ROUND = """async ({name, forms}) => {
 }"""
 
 
-def wanted(text: str) -> str:
+def compile_to_hex(text: str) -> str:
     try:
         return compile(text, "tinibot").image.hex()
     except ProgramError:
@@ -42,10 +42,10 @@ def wanted(text: str) -> str:
 
 
 def images(page: Page, texts: list[str]) -> list[str]:
-    """Return what the page's compiler makes of texts; empty where they are wrong."""
+    """Return the images of the page's compiler for texts; empty for wrong ones."""
     request = {"do": "check", "robot": "tinibot", "language": "en"}
     requests = [{**request, "text": text} for text in texts]
-    return [answer["image"] for answer in studio.asked(page, requests)]
+    return [answer["image"] for answer in studio.ask_worker(page, requests)]
 
 
 def without_places(form: Any) -> Any:
@@ -66,11 +66,11 @@ def round_trip(page: Page, forms: list[Any]) -> list[Any]:
 def through_blocks(page: Page, texts: list[str]) -> list[str]:
     """Return the texts that the page makes of its blocks of texts."""
     requests = [{"do": "blocks", "robot": "tinibot", "text": text} for text in texts]
-    forms = studio.asked(page, requests)
+    forms = studio.ask_worker(page, requests)
     for form in forms:
         del form["size"]
     forms_seen = round_trip(page, without_places(forms))
-    answers = studio.asked(page, [{"do": "text", "form": form} for form in forms_seen])
+    answers = studio.ask_worker(page, [{"do": "text", "form": form} for form in forms_seen])
     return [answer["text"] for answer in answers]
 
 
@@ -79,7 +79,7 @@ def compare(page: Page, count: int, seed: int) -> int:
     texts = [
         oracle_programs.program(random.Random(seed + k), oracle.PAPER_KIT) for k in range(count)
     ]
-    want = [wanted(text) for text in texts]
+    want = [compile_to_hex(text) for text in texts]
     from_blocks = images(page, through_blocks(page, texts))
     rows = zip(texts, want, images(page, texts), from_blocks, strict=True)
     for k, (text, image, from_text, from_block) in enumerate(rows):
@@ -93,11 +93,11 @@ def main() -> int:
     parser.add_argument("count", type=int)
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
-    begun = time.monotonic()
+    start_s = time.monotonic()
     with (
         studio.driver() as driver,
         studio.browser(driver) as browser,
-        studio.served() as server,
+        studio.serve_page() as server,
     ):
         pages = Pages(browser, server.address, patience_s=300)
         page = pages.open()
@@ -107,7 +107,7 @@ def main() -> int:
         )
         assert not pages.wrong, pages.wrong[:3]
         pages.close()
-    seconds = time.monotonic() - begun
+    seconds = time.monotonic() - start_s
     print(
         f"{options.count} programs, {right} right: from text and from blocks"
         f" the image of tsc compile: {seconds:.0f} s"

@@ -24,9 +24,11 @@ from tiniscript.virtual.robot import Settings
 ROBOTS = ("tinibot", "tinibot2", "tinibot32", "grabber")  # an Uno, discs, an ESP32, a Mega
 
 
-def recorded(number: int, is_held: bool = False) -> tuple[bytes, list[Row]]:
-    """Return the file of a random run, and what happened in it, without what somebody did. One that
-    `is_held` ends at a breakpoint, if it comes to one."""
+def record_run(number: int, is_held: bool = False) -> tuple[bytes, list[Row]]:
+    """Return the file of a random run, and its events without a person's inputs.
+
+    A run that `is_held` ends at a breakpoint, if it reaches one.
+    """
     rng = random.Random(number)
     while True:
         profile = robots.load(rng.choice(ROBOTS))
@@ -67,15 +69,15 @@ def _act(rng: random.Random, run: Simulation) -> None:
 
 
 def differs(number: int, is_held: bool = False) -> str | None:
-    """Return how a random run differs when it is played again, or None."""
-    data, happened = recorded(number, is_held)
-    played = play(prepare(decode(data)))
-    replayed = [row for row in played.rows() if not row.is_input]
-    parting = played.divergence
-    played.close()
-    if parting is None or parting.what != "again" or parting.agreed != len(happened):
+    """Return the difference between a random run and its replay, or None."""
+    data, rows = record_run(number, is_held)
+    played_run = play(prepare(decode(data)))
+    replayed_rows = [row for row in played_run.rows() if not row.is_input]
+    parting = played_run.divergence
+    played_run.close()
+    if parting is None or parting.what != "again" or parting.agreed != len(rows):
         return f"{parting}\n{data.decode()}"
-    return None if replayed[: len(happened)] == happened else f"{replayed}\n{data.decode()}"
+    return None if replayed_rows[: len(rows)] == rows else f"{replayed_rows}\n{data.decode()}"
 
 
 if __name__ == "__main__":

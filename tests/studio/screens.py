@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from tests.support.studio import SETTLED, in_phase, shown, turn, write
+from tests.support.studio import SETTLED, in_phase, turn, wait_for_blocks, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-Size = tuple[int, int]  # in pixels
+Size = tuple[int, int]  # width and height in pixels
 # Beside the program; on a phone a screen of their own.
 BESIDE = {"running", "paused", "driven", "trace", "plot", "floor", "drawing", "box", "flag",
           "lesson", "checked", "real", "teacher", "programs"}  # fmt: skip
-STARTS = {"start", "own programs"}  # which have no halves
+STARTS = {"start", "own programs"}  # screens without halves
 WRONG = "SI|" + "F(-2, 80);\nIF(DISTANCE < 10;\n" * 6
 See = Callable[["Page"], None]
 
@@ -28,7 +28,7 @@ def _write(page: Page, text: str) -> None:
 def _blocks(page: Page) -> None:
     page.click("#start_write")
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
 
 
 def _wrong(page: Page) -> None:
@@ -44,12 +44,12 @@ def _running(page: Page) -> None:
     in_phase(page, "running")
 
 
-def _paused(page: Page) -> None:
+def _pause_run(page: Page) -> None:
     page.click("#pause")
     in_phase(page, "paused")
 
 
-def _driven(page: Page) -> None:
+def _drive_run(page: Page) -> None:
     """A fault, and a score."""
     page.select_option("#speed", "20")
     page.click("#pause")
@@ -77,7 +77,7 @@ def _lesson(page: Page) -> None:
     page.locator("#lesson_check:enabled").wait_for(state="attached")
 
 
-def _checked(page: Page) -> None:
+def _check_lesson(page: Page) -> None:
     page.locator("#lesson_steps button").last.click()
     page.click("#lesson_hint summary")
     page.click("#lesson_check")
@@ -111,8 +111,8 @@ SCREENS: dict[str, See] = {
     "wrong": _wrong,
     "waiting blocks": lambda page: page.click("#view_blocks"),
     "running": _running,
-    "paused": _paused,
-    "driven": _driven,
+    "paused": _pause_run,
+    "driven": _drive_run,
     "trace": lambda page: page.click("#seen_trace"),
     "plot": lambda page: page.click("#seen_plot"),
     "floor": _floor,
@@ -120,7 +120,7 @@ SCREENS: dict[str, See] = {
     "box": _part(2),
     "flag": _part(-1),
     "lesson": _lesson,
-    "checked": _checked,
+    "checked": _check_lesson,
     "real": _real,
     "teacher": lambda page: page.click("#link_teacher summary"),
     "programs": _programs,

@@ -1,4 +1,4 @@
-"""The programs behind the pictures of the start screen."""
+"""The programs of the pictures on the start screen."""
 
 from __future__ import annotations
 

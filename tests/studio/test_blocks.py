@@ -53,7 +53,7 @@ def words(text: str) -> list[str]:
 
 @each_row("program", programs())
 def test_every_program_is_the_same_from_its_blocks(program: Program) -> None:
-    """Those of the paper, of all documents and cases, and the examples."""
+    """Programs of the paper, of all documents and cases, and the examples."""
     kit = robots.load(program.robot).kit
     if compile_text(program.text, kit).is_right:
         check_blocks(program.text, kit)
@@ -74,7 +74,7 @@ def test_nothing_of_a_broken_text_is_lost(first: int) -> None:
     for seed in range(first, first + 250):
         rng = random.Random(seed)
         theirs, kit = KITS[seed % len(KITS)]
-        text = oracle_programs.broken(rng, oracle_programs.program(rng, theirs))
+        text = oracle_programs.break_text(rng, oracle_programs.program(rng, theirs))
         if re.search(r"[~.]|\b0\d", text):  # checksums are made anew, and numbers are shorter
             format_blocks(read_blocks(text, kit))
         else:
@@ -96,9 +96,9 @@ def test_what_pupils_write_becomes_blocks_and_text() -> None:
 def test_every_word_of_the_language_is_in_blocks(word: str) -> None:
     text = of_word(word)
     check_blocks(text, TINIBOT)
-    printed = format_blocks(read_blocks(text, TINIBOT)).text
+    printed_text = format_blocks(read_blocks(text, TINIBOT)).text
     assert ALIASES.get(word, word) in words(text.upper()) or word == "CHECK_CONNECTION"
-    assert sorted(words(printed)) == sorted(words(text))
+    assert sorted(words(printed_text)) == sorted(words(text))
 
 
 @pytest.mark.parametrize("word", ["F", "B", "L", "R", "W"])
@@ -148,7 +148,7 @@ def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch)
 
 
 @pytest.mark.parametrize(
-    ("text", "printed"),
+    ("text", "printed_text"),
     [
         ("", ""),
         ("si|", "SI|\n"),
@@ -169,8 +169,8 @@ def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch)
         ("F(1, // fast\n 80)", "F(1, 80)  // fast\n"),
     ],
 )  # fmt: skip
-def test_what_blocks_are_as_text(text: str, printed: str) -> None:
-    assert format_blocks(touched_form(read_blocks(text, TINIBOT))).text == printed
+def test_what_blocks_are_as_text(text: str, printed_text: str) -> None:
+    assert format_blocks(touched_form(read_blocks(text, TINIBOT))).text == printed_text
 
 
 def test_who_changes_a_block_changes_its_line_alone() -> None:
@@ -196,19 +196,19 @@ def test_a_line_that_does_not_parse_is_a_grey_block() -> None:
         ("grey", "F(1; 80)"), ("grey", "¿qué? // hm")
     ]  # fmt: skip
     assert [block.kind for block in form.body] == ["move", "grey", "grey", "if"]
-    printed = format_blocks(form)
-    assert printed.text == (
+    printed_form = format_blocks(form)
+    assert printed_form.text == (
         "SI|F(2, 80);\nF(1; 80)\n¿qué? // hm\nIF(DISTANCE < 10);\n  S;\nENDIF;\n"
     )
-    assert printed.places[:3] == ((1, 4, 1, 12), (2, 1, 2, 9), (3, 1, 3, 12))
-    assert format_blocks(read_blocks(printed.text, TINIBOT)).text == printed.text
+    assert printed_form.places[:3] == ((1, 4, 1, 12), (2, 1, 2, 9), (3, 1, 3, 12))
+    assert format_blocks(read_blocks(printed_form.text, TINIBOT)).text == printed_form.text
 
 
 @pytest.mark.parametrize("text", ["F(1)", "S(2)", "S UNTIL(TRUE)", "HOP(1, 2)", "F(1, 2, 3)"])
 def test_what_no_block_has_room_for_is_grey(text: str) -> None:
     assert kinds(text) == ["grey"]
-    printed = format_blocks(read_blocks(f"{text} // no", TINIBOT)).text
-    assert printed.split() == [*text.split(), "//", "no"]
+    printed_text = format_blocks(read_blocks(f"{text} // no", TINIBOT)).text
+    assert printed_text.split() == [*text.split(), "//", "no"]
 
 
 def test_a_header_that_is_never_closed_keeps_its_lines() -> None:
@@ -266,12 +266,12 @@ def test_the_page_asks_for_blocks_and_for_text() -> None:
 
 
 def test_a_very_long_program_stays_text() -> None:
-    asked = '{"do": "blocks", "robot": "tinibot"}'
+    asked_text = '{"do": "blocks", "robot": "tinibot"}'
     few, many = (b"S;" * count for count in (MOST_BLOCKS, MOST_BLOCKS + 1))
-    assert len(json.loads(answer(asked, few))["body"]) == MOST_BLOCKS
-    assert json.loads(answer(asked, many)) == {"size": MOST_BLOCKS + 1}
+    assert len(json.loads(answer(asked_text, few))["body"]) == MOST_BLOCKS
+    assert json.loads(answer(asked_text, many)) == {"size": MOST_BLOCKS + 1}
     deep = f"X = {'(' * 5000}1{')' * 5000}{' + 1' * MOST_BLOCKS}"
-    assert json.loads(answer(asked, deep.encode())) == {"size": 2 * MOST_BLOCKS + 2}
+    assert json.loads(answer(asked_text, deep.encode())) == {"size": 2 * MOST_BLOCKS + 2}
     assert size_of(read_blocks("/// F(1, 2)", TINIBOT)) == 3
 
 
@@ -297,7 +297,7 @@ def test_the_beginning_of_a_program_is_of_its_first_blocks(program: Program) -> 
 
 def test_the_page_asks_for_the_beginning() -> None:
     text = ";".join(["SHOW(1)"] * (2 * MOST_BLOCKS))
-    asked = {"do": "blocks", "robot": "tinibot"}
-    assert set(json.loads(answer(json.dumps(asked), text.encode()))) == {"size"}
-    form = json.loads(answer(json.dumps({**asked, "first": 150}), text.encode()))
+    request = {"do": "blocks", "robot": "tinibot"}
+    assert set(json.loads(answer(json.dumps(request), text.encode()))) == {"size"}
+    form = json.loads(answer(json.dumps({**request, "first": 150}), text.encode()))
     assert form["size"] == 149 and form["body"][-1]["word"] == "…"

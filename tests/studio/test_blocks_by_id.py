@@ -136,7 +136,7 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
     if seed % 2:  # an answer was on its way when the blocks were shown
         ana.step(is_heard=False)
         ana.show()
-    before = {id: node.copy() for id, node in program.tree.node_by_id.items()}
+    nodes_before = {id: node.copy() for id, node in program.tree.node_by_id.items()}
     nodes = dict(page_together._newest.blocks.nodes)  # type: ignore[union-attr]
     touched: set[str] = set()
     for _ in range(rng.randrange(1, 5)):
@@ -149,14 +149,14 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
     assert text_of(program.tree) == ana.text
     ids = {nodes[id] for id in touched if id in nodes}
     below = {node for id in ids for node in
-             ([id, *before[id].children] if id in before else [id])}  # fmt: skip
-    for id, node in before.items():
+             ([id, *nodes_before[id].children] if id in nodes_before else [id])}  # fmt: skip
+    for id, node in nodes_before.items():
         if id not in below and id not in (ROOT, START):
             now = program.tree[id]
             assert (now.text, now.mark("text")) == (node.text, node.mark("text")), id
     present_ids = {node["id"] for node in ana.inside(ana.form["body"])}
     for block, id in nodes.items():
-        assert block not in present_ids or id not in before or id in program.tree, (block, id)
+        assert block not in present_ids or id not in nodes_before or id in program.tree, (block, id)
 
 
 @pytest.mark.parametrize("seed", range(40))

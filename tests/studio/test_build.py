@@ -1,4 +1,4 @@
-"""How the page is built: of what, from where, and how large it is."""
+"""The build of the page: its inputs, their source, and its size."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tools.builds.page_texts import page_texts
 from tools.studio.pack import MODULES_NOT_HERE
 
 LARGEST = 6_000_000  # bytes of all files, gzipped, with one language: no browser fetches another
-GROUP_LARGEST = 35_000  # of what pupils fetch who edit together
+GROUP_LARGEST = 35_000  # most bytes that pupils of a group download
 SOURCES = ROOT / "tools" / "studio"
 PACKAGE = ROOT / "compiler" / "tiniscript"
 PAGE_SOURCES = {
@@ -32,7 +32,7 @@ PAGE_SOURCES = {
     for path in sorted((SOURCES / "src").rglob("*"))
     if path.suffix in (".js", ".html")
 }
-OTHERS = ("block", "blockly", "editor", "tip")  # of other tables: see below
+OTHERS = ("block", "blockly", "editor", "tip")  # keys of other tables, which follow below
 
 
 @pytest.fixture(scope="module")
@@ -54,8 +54,8 @@ def test_the_packages_are_pinned_and_come_from_nowhere_in_particular() -> None:
 def test_no_part_is_packed_of_what_no_browser_has(page: Path) -> None:
     modules = []
     for archive in page.glob("*.zip"):
-        with zipfile.ZipFile(archive) as packed:
-            modules += [name.replace("/", ".") for name in packed.namelist()]
+        with zipfile.ZipFile(archive) as zip_file:
+            modules += [name.replace("/", ".") for name in zip_file.namelist()]
     assert len(modules) > 200
     assert not [
         name for name in modules if name.startswith(tuple(f"{name}." for name in MODULES_NOT_HERE))
@@ -63,7 +63,7 @@ def test_no_part_is_packed_of_what_no_browser_has(page: Path) -> None:
 
 
 def test_node_trusts_the_certificates_of_the_system(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Those of a school's proxy, say; whoever runs the build may decide otherwise."""
+    """For example those of a school's proxy; the environment may override it."""
     asks = [sys.executable, "-c", "import os; print(os.environ['NODE_USE_SYSTEM_CA'])"]
     monkeypatch.delenv("NODE_USE_SYSTEM_CA", raising=False)
     assert studio.run(asks) == "1\n"
@@ -84,18 +84,20 @@ def test_a_text_has_the_places_of_the_english_one(language: str) -> None:
 def test_every_sentence_is_said_somewhere() -> None:
     """By its name, or by a name in two parts: `why_${reason}` and the reason's name."""
     sources = "".join(PAGE_SOURCES.values())
-    named = set(re.findall(r"['\"]([\w/]+)['\"]", sources))
+    names = set(re.findall(r"['\"]([\w/]+)['\"]", sources))
     heads = tuple(re.findall(r"`(\w+[_/])\$\{", sources))
     package = (path.read_text(encoding="utf-8") for path in (PACKAGE.rglob("*.py")))
-    built = (ROOT / "tools/builds/studio.py").read_text(encoding="utf-8")  # the frame of the page
-    words = set(re.findall(r"\w+", "".join((*package, sources, built))))
+    built_text = (ROOT / "tools/builds/studio.py").read_text(
+        encoding="utf-8"
+    )  # the frame of the page
+    words = set(re.findall(r"\w+", "".join((*package, sources, built_text))))
     keys = set(page_texts(SOURCE_LANGUAGE)) - {""}
     assert len(keys) > 600
     for key in keys:
         if key.partition("/")[0] not in OTHERS:
             rest = [key[len(head) :] for head in heads if key.startswith(head)]
             own = key.removesuffix("_sure")  # a button that is pressed twice
-            assert own in named or words & {own, *rest}, key
+            assert own in names or words & {own, *rest}, key
 
 
 def test_every_block_says_something_and_nothing_else_does() -> None:
@@ -118,8 +120,8 @@ def test_a_plural_has_the_form_of_its_number() -> None:
         forms = texts[""]
         for number in (*range(200), 1000, 1001, 2101, 1_000_000):
             form = forms[number if number < 100 else 100 + number % 100]
-            wanted = plural_text("studio", "mistakes", number, language)
-            assert texts["mistakes"][int(form)] == wanted, (language, number)
+            wanted_text = plural_text("studio", "mistakes", number, language)
+            assert texts["mistakes"][int(form)] == wanted_text, (language, number)
 
 
 def test_nothing_makes_markup_of_a_text() -> None:
@@ -187,7 +189,7 @@ def test_no_address_of_the_building_computer_is_in_it(page: Path) -> None:
 def test_the_same_sources_give_the_same_page(
     page: Path, tmp_path: Path, part: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One of them is made again, the other one is taken as it is."""
+    """One page is built again, the other one is the existing page."""
 
     def packs(call: list[str], *words: str) -> str:
         return (
@@ -244,21 +246,23 @@ def test_firmware_is_beside_the_page_and_in_no_count(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`tsc studio` and a static host give the same files, by the same list."""
-    brought = ready.ReadyFile("tinibot", "uno", "digest", tmp_path / "tinibot-uno-digest.hex")
-    brought.path.write_text(":0100000001FE\n:00000001FF\n")
+    brought_ready_file = ready.ReadyFile(
+        "tinibot", "uno", "digest", tmp_path / "tinibot-uno-digest.hex"
+    )
+    brought_ready_file.path.write_text(":0100000001FE\n:00000001FF\n")
     (tmp_path / "page").mkdir()
     monkeypatch.setattr(ready, "files", list)
     with pytest.raises(CannotMake, match="firmware_files"):
         studio.bring_firmware(tmp_path / "page")
-    monkeypatch.setattr(ready, "files", lambda: [brought])
+    monkeypatch.setattr(ready, "files", lambda: [brought_ready_file])
     studio.bring_firmware(tmp_path / "page")
-    given = serving.with_firmware({})
-    assert {path.name for path in (tmp_path / "page").iterdir()} == set(given)
-    for name, file in given.items():
+    given_fields = serving.with_firmware({})
+    assert {path.name for path in (tmp_path / "page").iterdir()} == set(given_fields)
+    for name, file in given_fields.items():
         assert (tmp_path / "page" / name).read_bytes() == file.data
-    [row] = json.loads(given[serving.FIRMWARE_FILE].data)
-    assert row == {"title": "tinibot", "board": "uno", "file": brought.path.name}
-    assert given[row["file"]].data == brought.path.read_bytes()
+    [row] = json.loads(given_fields[serving.FIRMWARE_FILE].data)
+    assert row == {"title": "tinibot", "board": "uno", "file": brought_ready_file.path.name}
+    assert given_fields[row["file"]].data == brought_ready_file.path.read_bytes()
     assert len(studio.size_rows(tmp_path / "page")) == 2  # the head, and the sum
 
 

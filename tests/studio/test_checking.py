@@ -1,4 +1,4 @@
-"""What the page is told about a program: the same as the command says."""
+"""The page's diagnostics of a program are those of the command."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_a_right_program_has_the_image_of_the_command() -> None:
 @pytest.mark.parametrize("first", range(2))
 @pytest.mark.parametrize("part", range(12))
 def test_messages_are_those_of_the_command_and_repairs_help(first: int, part: int) -> None:
-    """In one language and the next in the other: no repair that is offered makes it worse."""
+    """Languages alternate; no offered repair makes a program worse."""
     offered = 0
     for k, entry in enumerate(corpus.entries()[part::12]):
         language = LANGUAGES[(first + k) % len(LANGUAGES)]
@@ -41,9 +41,11 @@ def test_messages_are_those_of_the_command_and_repairs_help(first: int, part: in
         for repair in buttons(entry.program):
             if repair:
                 offered += 1
-                changed = changed_by(entry.program, repair)
-                assert mistakes(check(changed)) <= mistakes([f.message for f in result.findings])
-                assert changed != entry.program
+                changed_text = changed_by(entry.program, repair)
+                assert mistakes(check(changed_text)) <= mistakes(
+                    [f.message for f in result.findings]
+                )
+                assert changed_text != entry.program
     assert offered > 100
 
 
@@ -53,8 +55,8 @@ def test_messages_are_those_of_the_command_and_repairs_help(first: int, part: in
      ("SI|S // /// W(1)\n/// not a program", 0), ("F(-2, 80)\n/// W(1)", 1)],
 )  # fmt: skip
 def test_what_hangs_on_nothing_is_counted(text: str, loose: int) -> None:
-    asked = '{"do": "check", "robot": "tinibot", "language": "en"}'
-    assert json.loads(worker.answer(asked, text.encode()))["loose"] == loose
+    asked_text = '{"do": "check", "robot": "tinibot", "language": "en"}'
+    assert json.loads(worker.answer(asked_text, text.encode()))["loose"] == loose
 
 
 def test_a_program_that_is_too_large_for_the_robot_is_wrong() -> None:
@@ -69,11 +71,11 @@ def test_the_first_value_of_a_variable_is_offered_in_place_of_its_declaration() 
 
 
 @pytest.mark.parametrize(
-    ("program", "wanted"),
+    ("program", "wanted_text"),
     [
         ("R(90, 60)", "R(90 DEG, 60)"),
         ("SI|F(30, 60)  // 30 cm", "SI|F(30 CM, 60)  // 30 cm"),
-        ("R(MIN(90, 80), POWER)", ""),  # nobody knows its power: it is another mistake
+        ("R(MIN(90, 80), POWER)", ""),  # its power is unknown, so the mistake is different
         ("R(MIN(90, 80), DISTANCE)", "R(MIN(90, 80) DEG, DISTANCE)"),
         ("R(90, 60) UNTIL(DISTANCE < 5)", "R(90 DEG, 60) UNTIL(DISTANCE < 5)"),
         ("R(90 // degrees\n, 60)", ""),
@@ -94,17 +96,17 @@ def test_the_first_value_of_a_variable_is_offered_in_place_of_its_declaration() 
         ("SI|R(90, 60)~1A2B", ""),
     ],
 )  # fmt: skip
-def test_a_button_does_what_the_message_names(program: str, wanted: str) -> None:
-    """And leaves the rest; the command repairs none of it, as it is not sure."""
+def test_a_button_does_what_the_message_names(program: str, wanted_text: str) -> None:
+    """It changes nothing else; the command repairs none of it, as it is uncertain."""
     finding = checking.check(program.encode(), "tinibot", "en").findings[0]
     repair = buttons(program)[0]
-    assert (changed_by(program, repair) if repair else "") == wanted
-    if wanted:
-        assert finding.message not in check(wanted)
-        assert not [message for message in check(wanted) if message.severity == "mistake"]
+    assert (changed_by(program, repair) if repair else "") == wanted_text
+    if wanted_text:
+        assert finding.message not in check(wanted_text)
+        assert not [message for message in check(wanted_text) if message.severity == "mistake"]
     kit = robots.load("tinibot").kit
     left = repair_program(program, lambda text: compile_text(text, kit).diagnostics)
-    assert wanted.startswith("B(") or left.text == program  # -2 seconds forward are 2 back
+    assert wanted_text.startswith("B(") or left.text == program  # -2 seconds forward are 2 back
 
 
 def test_each_of_many_mistakes_has_its_own_button() -> None:
@@ -119,7 +121,7 @@ def test_each_of_many_mistakes_has_its_own_button() -> None:
 
 
 def test_some_mistakes_are_not_repaired() -> None:
-    """Of a line with a checksum none is, and of very many only the first."""
+    """A line with a checksum gets no repair, and of many mistakes only the first do."""
     repairs = buttons("SI|F(2, 80~1A2B")
     assert repairs and not any(repairs)
     repairs = buttons("SI|" + "F(2, 80\n" * 90)
@@ -145,8 +147,8 @@ def test_answers_are_json() -> None:
     (finding,) = answer["findings"]
     assert finding["severity"] == "mistake" and finding["code"] == "TS206"
     assert finding["may_repair"]
-    asked = json.dumps({"do": "repair", "robot": "tinibot", "which": 0})
-    changes = json.loads(worker.answer(asked, "SI|F(-1, 80) // ñ 🤖".encode()))["changes"]
+    asked_text = json.dumps({"do": "repair", "robot": "tinibot", "which": 0})
+    changes = json.loads(worker.answer(asked_text, "SI|F(-1, 80) // ñ 🤖".encode()))["changes"]
     assert changes[0]["text"] == "B(1, 80)"
     opened = json.loads(worker.answer(json.dumps({**request, "do": "open"}), b"\xff"))
     assert opened["message"]
@@ -242,14 +244,14 @@ def test_a_variable_is_a_yes_no_however_its_value_gets_there(
 def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
     monkeypatch: pytest.MonkeyPatch, wrong: str
 ) -> None:
-    """Of a program with a hundred warnings; what the buttons do is tried when somebody pauses."""
+    """For a program with a hundred warnings; the buttons' effects are tried during a pause."""
     texts: list[bytes] = []
 
-    def counted(data: bytes, *arguments: Any, **named: Any) -> Compilation:
+    def count_compilation(data: bytes, *arguments: Any, **named: Any) -> Compilation:
         texts.append(data)
         return compile_source(data, *arguments, **named)
 
-    monkeypatch.setattr(checking, "compile_source", counted)
+    monkeypatch.setattr(checking, "compile_source", count_compilation)
     text = ";\n".join(f"IF(DISTANCE < {k});R(90, 60);END_IF" for k in range(1, 101)) + f";\n{wrong}"
     findings = checking.check(text.encode(), "tinibot", "en").findings
     assert len(texts) == 1 and sum(finding.may_repair for finding in findings) == (
@@ -264,7 +266,7 @@ def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
 
 
 def buttons(program: str) -> list[tuple[checking.Change, ...]]:
-    """Return what the button of each finding does, as the page asks for it."""
+    """Return the effect of each finding's button, as the page requests it."""
     findings = checking.check(program.encode(), "tinibot", "en").findings
     return [
         checking.repair(program.encode(), "tinibot", k) if finding.may_repair else ()

@@ -47,17 +47,17 @@ class History:
         self.room = Room(ROBOTS)
         self.room.teaches("class_places", places=MOST_PUPILS)
         self.pages: dict[str, Page] = {}
-        self.gone: dict[str, Page] = {}  # whose work is kept, by name
+        self.gone: dict[str, Page] = {}  # pages whose work is kept, by name
         self.brought: set[str] = set()
         self.texts = 0
-        self.failed_s: dict[str, float] = {}  # when a robot met nobody, by port
-        self.order: list[str] = []  # who waits, as it was seen last
+        self.failed_s: dict[str, float] = {}  # time of each robot's last failed search, by port
+        self.order: list[str] = []  # last seen order of waiting pupils
 
     def state(self) -> Json:
         return self.room.teaches("class")
 
     def answer(self, who: Page, do: str, **more: Any) -> Json | None:
-        """Ask as a page; None where it was taken out."""
+        """Ask as a page; None if it was taken out."""
         try:
             answer = self.room.made.answer(who.token, "192.0.2.9", {"do": do, **more})
         except BadRequest:
@@ -83,12 +83,12 @@ class History:
         name = self.chance.choice(NAMES)
         if name in self.pages:
             return
-        before = self.gone.get(name)
+        page_before = self.gone.get(name)
         request = {"do": "join", "code": self.room.made.code, "name": name}
-        if before is not None:
-            request["before"] = before.token
+        if page_before is not None:
+            request["before"] = page_before.token
         answer = self.room.made.answer("", "192.0.2.9", request)
-        page = self.gone.pop(name) if before is not None else Page(name, answer["token"])
+        page = self.gone.pop(name) if page_before is not None else Page(name, answer["token"])
         assert answer == {"token": page.token, "name": name}
         page.heard_s = self.room.now_s
         self.pages[name] = page
@@ -112,11 +112,13 @@ class History:
         given = answer.get("given")
         if given and self.chance.random() < 0.7:
             took = {"key": given["key"], "text": given["text"]}
-            before = self.version(page)
+            version_before = self.version(page)
             if self.answer(page, "here", took=took) is not None:
                 page.text = given["text"]
                 page.lessons = sorted({*given["lessons"], *page.lessons})
-                assert self.version(page) > before  # else the teacher sees the program before
+                assert (
+                    self.version(page) > version_before
+                )  # otherwise the teacher sees the previous program
                 self.brought.discard(page.text)
                 for name in [name for name, one in self.gone.items() if one.text == page.text]:
                     del self.gone[name]
@@ -171,9 +173,9 @@ class History:
         page = self.somebody()
         if page is None or self.chance.random() < 0.5:
             return
-        driven = page.robot if self.has_turn(page) else None
+        driven_fake_robot = page.robot if self.has_turn(page) else None
         self.room.teaches("class_remove", pupil=self.room.number(page.name))
-        assert driven is None or driven.has_ended
+        assert driven_fake_robot is None or driven_fake_robot.has_ended
         self.leaves(page)
 
     def has_turn(self, page: Page) -> bool:
@@ -194,7 +196,7 @@ class History:
             self.failed_s.pop(port, None)
         if not gives and holder in self.pages:
             robot = self.pages[holder].robot
-            assert robot is None or robot.has_ended  # nobody drives what is not the class's
+            assert robot is None or robot.has_ended  # the class controls only its own robots
 
     def next_one(self) -> None:
         page = self.somebody()
@@ -251,11 +253,13 @@ class History:
     had_turn = False
 
     def crash_loses_nothing(self, state: Json) -> None:
-        """What goes on after a crash has the same pupils, work, robots and settings."""
-        kept = json.loads(json.dumps(self.room.made.state_to_keep()))
-        after = Room(0)
-        assert after.made.resume(kept) == len(state["pupils"])
-        resumed = after.teaches("class")
+        """Check that a class resumes after a crash with the same pupils, work, robots and
+        settings.
+        """
+        kept_state = json.loads(json.dumps(self.room.made.state_to_keep()))
+        room_after = Room(0)
+        assert room_after.made.resume(kept_state) == len(state["pupils"])
+        resumed = room_after.teaches("class")
         for name in ("code", "turn_s", "places"):
             assert resumed[name] == state[name], name
         both = [
@@ -266,7 +270,8 @@ class History:
             row["port"] for row in state["robots"]
         ]
         works = [
-            sorted(map(str, room.teaches("class_work")["pupils"])) for room in (after, self.room)
+            sorted(map(str, room.teaches("class_work")["pupils"]))
+            for room in (room_after, self.room)
         ]
         assert works[0] == works[1]
         whom = [sorted((row["name"], numbers(work).get(row["given"], "")) for row in work["kept"])
@@ -293,12 +298,14 @@ def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
         for _ in range(history.chance.randrange(STEPS)):
             history.act()
         old = list(history.pages.values())
-        driven = [page.robot for page in old if page.robot and history.has_turn(page)]
+        driven_fake_robots = [page.robot for page in old if page.robot and history.has_turn(page)]
         room = history.room
         code, settings = room.made.code, {}
         before = room.teaches("class")
         anew = room.teaches("class_anew")
-        assert anew["code"] != code and all(robot.has_ended for robot in driven if robot)
+        assert anew["code"] != code and all(
+            robot.has_ended for robot in driven_fake_robots if robot
+        )
         fresh = Room(0).teaches("class")
         settings = {"code": anew["code"], "turn_s": before["turn_s"], "places": before["places"]}
         ports = [{**robot, "pupil": "", "left_s": 0} for robot in before["robots"]]

@@ -60,7 +60,7 @@ def test_a_page_that_does_not_take_its_turn_loses_it() -> None:
     room.checks_in(luz, True)
     for _ in range(10):
         room.now_s += 1.01
-        room.checks_in(ana)  # is there, and does not connect
+        room.checks_in(ana)  # she is present but does not connect
     assert room.checks_in(luz)["place"] == 0
     assert room.checks_in(ana)["place"] == -1
 
@@ -86,7 +86,7 @@ def test_who_leaves_in_whatever_way_is_followed_within_three_seconds() -> None:
     robot that a page has left before it answered is as good as before."""
     asleep: list[FakeRobot] = []
 
-    def waited(leaves: Callable[[Room, str], None]) -> float:
+    def wait_until_place_is_free(leaves: Callable[[Room, str], None]) -> float:
         room = Room()
         ana, luz = room.joins("Ana"), room.joins("Luz")
         room.checks_in(ana, True)
@@ -94,13 +94,13 @@ def test_who_leaves_in_whatever_way_is_followed_within_three_seconds() -> None:
         leaves(room, ana)
         began_s = room.now_s
         while room.checks_in(luz)["place"] != 0:
-            room.now_s += 0.3  # as often as the next one's page asks
+            room.now_s += 0.3  # about the interval of the next page's requests
             for robot in asleep:
                 robot.silent_s += 0.3
         return room.now_s - began_s
 
     def leaves_before(room: Room, ana: str) -> None:
-        room.now_s += 1  # its last word
+        room.now_s += 1  # her last request
 
     def leaves_while_it_connects(room: Room, ana: str) -> None:
         robot = room.connects(ana)
@@ -110,7 +110,7 @@ def test_who_leaves_in_whatever_way_is_followed_within_three_seconds() -> None:
         asleep.append(room.connects(ana))
 
     for way in (leaves_before, leaves_while_it_connects, sleeps):
-        assert waited(way) < 2.5, way.__name__
+        assert wait_until_place_is_free(way) < 2.5, way.__name__
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.checks_in(ana, True)
@@ -226,24 +226,24 @@ def test_codes_are_not_guessed() -> None:
 def test_a_code_may_be_written_small_and_apart() -> None:
     room = Room()
     code = room.made.code.lower()
-    given = {"do": "join", "code": f" {code[:3]} {code[3:]}", "name": "Ana"}
-    assert room.made.answer("", HERE, given)["name"] == "Ana"
+    given_fields = {"do": "join", "code": f" {code[:3]} {code[3:]}", "name": "Ana"}
+    assert room.made.answer("", HERE, given_fields)["name"] == "Ana"
     assert room.made.most_bytes("") == 1000
     assert room.made.most_bytes("0" * 32) == 0
 
 
 @pytest.mark.parametrize(
-    ("name", "shown"),
+    ("name", "shown_text"),
     [("  Ana \n Luz ", "Ana Luz"), ("Ana\u3164", "Ana"),
      ("Jose\u0301", "Jos\u00e9"), ("<b>x</b>", "<b>x</b>"), ("a\x1b[2J\u202eb", "a?[2J?b"),
      ("x" * 1000, "x" * 24 + "…"), ("ñandú 🤖", "ñandú 🤖")],
 )  # fmt: skip
-def test_names_are_plain(name: str, shown: str) -> None:
+def test_names_are_plain(name: str, shown_text: str) -> None:
     room = Room()
     room.joins(name)
-    assert room.teaches("class")["pupils"][0]["name"] == shown
+    assert room.teaches("class")["pupils"][0]["name"] == shown_text
     room.joins(name)
-    assert room.teaches("class")["pupils"][1]["name"] == f"{shown} (2)"
+    assert room.teaches("class")["pupils"][1]["name"] == f"{shown_text} (2)"
 
 
 def test_who_comes_back_to_a_computer_is_not_a_second_one() -> None:
@@ -262,7 +262,7 @@ def test_who_comes_back_to_a_computer_is_not_a_second_one() -> None:
     assert names() == ["Ana (2)", "Ana (3)", "Ana"]
     room.now_s += 6
     room.checks_in(second)
-    room.joins("Ana", "198.51.100.1")  # another one, and here
+    room.joins("Ana", "198.51.100.1")  # another pupil of this name, who is present
     assert names() == ["Ana (2)", "Ana (3)", "Ana", "Ana (4)"]
 
 
@@ -374,14 +374,14 @@ def key_of(room: Room, index: int = 0) -> str:
     return str(room.teaches("class")["kept"][index]["key"])
 
 
-def took(given: Json) -> Json:
-    return {"key": given["key"], "text": given["text"]}
+def take_change(arguments: Json) -> Json:
+    return {"key": arguments["key"], "text": arguments["text"]}
 
 
 def test_a_name_gets_its_work_from_the_teacher_alone() -> None:
     room = Room()
     room.teaches("class_bring", name="Ana", **WORK)
-    eve = room.joins("Ana")  # whoever that is
+    eve = room.joins("Ana")  # an unknown visitor
     assert "given" not in room.checks_in(eve)
     key, number = key_of(room), room.number("Ana")
     row = {"key": key, "name": "Ana", "lessons": ("01_first_line",), "given": 0, "alike": [number]}
@@ -391,7 +391,7 @@ def test_a_name_gets_its_work_from_the_teacher_alone() -> None:
     for _ in range(2):  # an answer may be lost
         given = room.checks_in(eve)["given"]
         assert given == {"key": key, **GIVEN}
-    assert "given" not in room.checks_in(eve, took=took(given))
+    assert "given" not in room.checks_in(eve, took=take_change(given))
     assert room.teaches("class")["kept"] == []
     assert room.teaches("class_give_back", key=key, pupil=number)["kept"] == []  # pressed again
 
@@ -423,14 +423,14 @@ def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
     ana, eve = room.joins("Ana"), room.joins("Eve")
     key = key_of(room)
     right = {"key": key, "text": WORK["text"]}
-    room.checks_in(ana, took=right)  # nobody has given it
+    room.checks_in(ana, took=right)  # nobody has offered it
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
     wrong: list[object] = [True, None, 5, [], {}, {"key": key}]
     wrong += [{**right, "text": text} for text in ("F(1, 51)", None)]
     wrong += [{**right, "key": other} for other in ("0" * 32, [key])]
     for text in wrong:
         assert room.checks_in(ana, took=text)["given"]["key"] == key
-    assert "given" not in room.checks_in(eve, took=right)  # it is not hers to say so
+    assert "given" not in room.checks_in(eve, took=right)  # another pupil cannot confirm it
     assert texts_of(room) == ["F(1, 50)"]
     # The page has it: so it is her work from then on, even before she reports it.
     assert "given" not in room.checks_in(ana, took=right)
@@ -439,7 +439,7 @@ def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
 
 
 def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
-    """It was given to a page that was closed, and the pupil joins again, from another device."""
+    """It was returned to a closed page, and the pupil joins again from another device."""
     room = Room()
     room.teaches("class_bring", name="Ana", **WORK)
     first = room.joins("Ana")
@@ -451,7 +451,7 @@ def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
     assert "given" not in room.checks_in(second)
     assert room.teaches("class")["kept"][0]["given"] == 0
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
-    assert "given" not in room.checks_in(second, took=took(room.checks_in(second)["given"]))
+    assert "given" not in room.checks_in(second, took=take_change(room.checks_in(second)["given"]))
     assert texts_of(room) == ["F(1, 50)"]
 
 
@@ -464,29 +464,30 @@ def test_a_crash_between_giving_and_having_loses_no_work(kept_at: Path) -> None:
     room.teaches("class_give_back", key=key_of(room), pupil=room.number("Ana"))
     states.append(room.made.state_to_keep())
     given = room.checks_in(ana)["given"]
-    room.checks_in(ana, took=took(given))
+    room.checks_in(ana, took=take_change(given))
     states.append(room.made.state_to_keep())
     for k, state in enumerate(states):
-        after = Room(0)
-        after.made.resume(json.loads(json.dumps(state)))
-        assert "F(1, 50)" in texts_of(after)
-        assert ("given" in after.checks_in(ana)) is (k == 1)
-        if k == 1:  # under the same key: a page that has it takes it no second time
-            assert after.checks_in(ana)["given"] == {**given, "lessons": ("01_first_line",)}
+        room_after = Room(0)
+        room_after.made.resume(json.loads(json.dumps(state)))
+        assert "F(1, 50)" in texts_of(room_after)
+        assert ("given" in room_after.checks_in(ana)) is (k == 1)
+        if k == 1:  # under the same key: a page that has it does not take it again
+            assert room_after.checks_in(ana)["given"] == {**given, "lessons": ("01_first_line",)}
 
 
 def test_the_teacher_chooses_between_an_impostor_and_who_comes_later() -> None:
     room = Room()
     room.teaches("class_bring", name="Ana", **WORK)
-    eve, ana = room.joins("Ana", "192.0.2.66"), room.joins("\u0410na")  # with a letter of Russian
+    eve, ana = room.joins("Ana", "192.0.2.66"), room.joins("\u0410na")  # with a Cyrillic letter
     pupils = room.teaches("class")["pupils"]
     assert [pupil["name"] for pupil in pupils] == ["Ana", "\u0410na (2)"]
     assert room.teaches("class")["kept"][0]["alike"] == [pupil["number"] for pupil in pupils]
     room.teaches("class_give_back", key=key_of(room), pupil=pupils[0]["number"])
-    room.teaches("class_give_back", key=key_of(room), pupil=pupils[1]["number"])  # has looked
+    # The teacher has looked at it.
+    room.teaches("class_give_back", key=key_of(room), pupil=pupils[1]["number"])
     assert "given" not in room.checks_in(eve)
     given = room.checks_in(ana)["given"]
-    room.checks_in(eve, took=took(given), text="")
+    room.checks_in(eve, took=take_change(given), text="")
     assert texts_of(room) == ["F(1, 50)"]
 
 
@@ -520,8 +521,8 @@ def test_no_number_of_names_pushes_kept_work_out(places: int) -> None:
     for k in range(200):
         room.checks_in(last_pupil, text="SHOW(29)")
         room.now_s += classroom.PLACE_S + 1
-        asked = {"do": "join", "code": room.made.code, "name": f"eve {k}"}
-        answer = room.made.answer("", "192.0.2.66", asked)
+        request = {"do": "join", "code": room.made.code, "name": f"eve {k}"}
+        answer = room.made.answer("", "192.0.2.66", request)
         if "token" in answer:
             room.checks_in(answer["token"], text=f"S {k}")
         failures += [answer["failure"]] if "failure" in answer else []
@@ -531,7 +532,7 @@ def test_no_number_of_names_pushes_kept_work_out(places: int) -> None:
     assert failures[-1] == (
         "class_crowded" if places == classroom.PLACES_PER_ADDRESS else "class_full"
     )
-    if places == classroom.PLACES_PER_ADDRESS:  # of others there is room
+    if places == classroom.PLACES_PER_ADDRESS:  # other addresses still have room
         assert room.joins("Luz", "198.51.100.77")
 
 
@@ -542,10 +543,10 @@ def test_who_comes_back_with_the_token_of_before_has_the_same_work() -> None:
     room.checks_in(ana, text="F(1, 50)")
 
     def come_back(name: str = "ana", token: object = ana) -> Json:
-        asked = {"do": "join", "code": room.made.code, "name": name, "before": token}
-        return room.made.answer("", HERE, asked)
+        request = {"do": "join", "code": room.made.code, "name": name, "before": token}
+        return room.made.answer("", HERE, request)
 
-    second = come_back()  # another tab, which is there, too
+    second = come_back()  # a second tab of the same pupil
     assert second["name"] == "ana (2)"
     room.teaches("class_remove", pupil=room.number("ana (2)"))
     room.now_s += classroom.PLACE_S + 1
@@ -609,22 +610,22 @@ def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
     room.checks_in(luz, text="S")
     room.teaches("class_remove", pupil=room.number("Luz"))
     keeper.keep(room.made.state_to_keep())
-    assert kept_at.stat().st_mode & 0o077 == 0  # it has tokens
+    assert kept_at.stat().st_mode & 0o077 == 0  # the file contains tokens
     when_s = kept_at.stat().st_mtime_ns
     keeper.keep(room.made.state_to_keep())
     assert kept_at.stat().st_mtime_ns == when_s
-    after = Room(0)
-    assert goes_on(after, keeper) == 1
-    state = after.teaches("class")
+    room_after = Room(0)
+    assert goes_on(room_after, keeper) == 1
+    state = room_after.teaches("class")
     assert (state["code"], state["goes_on"]) == (room.made.code, True)
     assert [robot["port"] for robot in state["robots"]] == ["port0"]
-    assert after.checks_in(ana)["name"] == "Ana"
-    assert sorted(texts_of(after)) == sorted(texts_of(room)) == ["F(1, 50)", "S"]
+    assert room_after.checks_in(ana)["name"] == "Ana"
+    assert sorted(texts_of(room_after)) == sorted(texts_of(room)) == ["F(1, 50)", "S"]
     with pytest.raises(BadRequest):
-        after.checks_in(luz)
+        room_after.checks_in(luz)
     request = {"do": "join", "code": room.made.code, "name": "Luz", "before": luz}
-    assert after.made.answer("", HERE, request) == {"token": luz, "name": "Luz"}
-    assert not after.teaches("class_anew")["goes_on"]
+    assert room_after.made.answer("", HERE, request) == {"token": luz, "name": "Luz"}
+    assert not room_after.teaches("class_anew")["goes_on"]
     room.teaches("class_over")
     keeper.keep(room.made.state_to_keep())
     assert not kept_at.exists() and goes_on(Room(), keeper) == 0
@@ -641,20 +642,20 @@ def test_a_damaged_class_goes_on_with_what_is_whole(kept_at: Path, keeper: Keepe
     damaged = {**whole, "pupils": [*bad, row], "kept": [5, {"name": "Eve"}], "robots": [5, ""]}
     odd = {**row, "token": [], "key": 5, "written": "\u2800", "given_to": token}
     kept_at.write_text(json.dumps({**damaged, "kept": [{"name": "Eve"}, odd], "code": "<b>"}))
-    after = Room(0)
-    assert goes_on(after, keeper) == 1
-    assert after.checks_in(token)["name"] == "Ana" and after.made.code != room.made.code
-    assert after.checks_in(token)["given"]["text"] == "F(1, 50)"
+    room_after = Room(0)
+    assert goes_on(room_after, keeper) == 1
+    assert room_after.checks_in(token)["name"] == "Ana" and room_after.made.code != room.made.code
+    assert room_after.checks_in(token)["given"]["text"] == "F(1, 50)"
     many = [{**row, "token": f"{k:032x}"} for k in range(99)]
     kept_at.write_text(json.dumps({**whole, "pupils": many, "kept": many}))
-    after = Room(0)
-    assert goes_on(after, keeper) == class_keeping.MOST_PUPILS
-    works = len(after.teaches("class_work")["pupils"])
+    room_after = Room(0)
+    assert goes_on(room_after, keeper) == class_keeping.MOST_PUPILS
+    works = len(room_after.teaches("class_work")["pupils"])
     assert works == class_keeping.MOST_WORKS
 
 
 def test_what_is_no_class_is_put_aside(kept_at: Path, keeper: Keeper) -> None:
-    """It may be one that another version, or a teacher, can read."""
+    """Another version, or a teacher, may be able to read it."""
     aside = kept_at.with_name("class.unread.json")
     for data in ("", "{", "[" * 100_000, "[]", '{"form": 2}'):
         kept_at.write_text(data)
@@ -678,7 +679,7 @@ def test_a_full_disk_that_has_room_again_is_written_to_at_once(
         for _ in range(3):
             keeper.keep(room.made.state_to_keep())
     assert not kept_at.exists()
-    keeper.keep(room.made.state_to_keep())  # nothing has changed since
+    keeper.keep(room.made.state_to_keep())  # unchanged state
     assert "F(1, 50)" in kept_at.read_text()
 
 
@@ -689,24 +690,26 @@ def test_a_clock_that_is_after_or_jumps_loses_no_work(kept_at: Path, keeper: Kee
     room.checks_in(token, text="F(1, 50)")
     keeper.keep(room.made.state_to_keep())
     whole = json.loads(kept_at.read_text())
-    for passed_s in (-50 * 365 * 86_400, -10, 0, 3500):  # since it was kept
+    for passed_s in (-50 * 365 * 86_400, -10, 0, 3500):  # age of the file
         kept_at.write_text(json.dumps({**whole, "kept_s": whole["kept_s"] - passed_s}))
-        after = Room(0)
-        assert goes_on(after, keeper) == 1
-        assert after.checks_in(token)["name"] == "Ana" and after.made.code == room.made.code
+        room_after = Room(0)
+        assert goes_on(room_after, keeper) == 1
+        assert (
+            room_after.checks_in(token)["name"] == "Ana" and room_after.made.code == room.made.code
+        )
     for kept_s in (whole["kept_s"] - 3700, 5, -5, None, "x", 1e400):
         kept_at.write_text(json.dumps({**whole, "kept_s": kept_s}))
-        after = Room(0)
-        assert goes_on(after, keeper) == 0
-        assert texts_of(after) == ["F(1, 50)"]
-        assert after.made.code != room.made.code and after.teaches("class")["goes_on"]
-        keeper.keep(after.made.state_to_keep())
+        room_after = Room(0)
+        assert goes_on(room_after, keeper) == 0
+        assert texts_of(room_after) == ["F(1, 50)"]
+        assert room_after.made.code != room.made.code and room_after.teaches("class")["goes_on"]
+        keeper.keep(room_after.made.state_to_keep())
         assert "F(1, 50)" in kept_at.read_text()  # nor does the next crash lose it
         with pytest.raises(BadRequest):
-            after.checks_in(token)
-        request = {"do": "join", "code": after.made.code, "name": "Ana", "before": token}
-        assert after.made.answer("", HERE, request) == {"token": token, "name": "Ana"}
-        assert texts_of(after) == ["F(1, 50)"]
+            room_after.checks_in(token)
+        request = {"do": "join", "code": room_after.made.code, "name": "Ana", "before": token}
+        assert room_after.made.answer("", HERE, request) == {"token": token, "name": "Ana"}
+        assert texts_of(room_after) == ["F(1, 50)"]
 
 
 def test_one_class_of_a_user_has_the_file(kept_at: Path, keeper: Keeper) -> None:
@@ -714,10 +717,10 @@ def test_one_class_of_a_user_has_the_file(kept_at: Path, keeper: Keeper) -> None
     with pytest.raises(class_keeping.ClassTaken):
         Keeper()
     assert kept_at.exists()
-    keeper.close()  # its command has ended
+    keeper.close()  # the command has ended
     with closing(Keeper()) as other:
         assert other.read() is not None
-        keeper.keep(None)  # and can do nothing more
+        keeper.keep(None)  # a closed keeper does nothing
         assert kept_at.exists()
 
 
@@ -852,7 +855,7 @@ def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.Mo
 
 
 def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() -> None:
-    """Whoever has read the code on the board fills no class with pupils that nobody is."""
+    """Someone who has read the code on the board cannot fill the class with fake pupils."""
     room = Room()
 
     def enters(name: str, address: str = HERE) -> Json:

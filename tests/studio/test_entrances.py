@@ -1,5 +1,6 @@
-"""Who gets the robots of `tsc studio`: the user who has started it, and whoever reads the address
-on a command line does not."""
+"""Access to the robots of `tsc studio`: the user who started it, but not someone who reads the
+address on a command line.
+"""
 
 from __future__ import annotations
 
@@ -87,29 +88,29 @@ def test_a_code_gives_the_token_once(peer: socket.socket) -> None:
 def test_the_code_of_a_browser_is_valid_for_a_while(peer: socket.socket) -> None:
     clock = Clock()
     doors = Entrances(clock)
-    early, late, printed = doors.new_code(True), doors.new_code(True), doors.new_code()
+    early, late, printed_text = doors.new_code(True), doors.new_code(True), doors.new_code()
     clock.now_s = OPEN_TIMEOUT_S
     assert doors.token_for(early, peer) == doors.token
     clock.now_s = OPEN_TIMEOUT_S + 1
     assert doors.token_for(late, peer) == ""
-    assert doors.token_for(printed, peer) == doors.token
+    assert doors.token_for(printed_text, peer) == doors.token
 
 
 def test_a_code_that_comes_again_ends_what_it_has_given(
     peer: socket.socket, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where no system tells the user, another one may have been quicker than the browser."""
+    """If no system identifies the user, another one may have been faster than the browser."""
     doors = Entrances()
     monkeypatch.setattr(peers, "tells_users", lambda: False)
     code = doors.new_code(True)
-    stolen = doors.token_for(code, peer)
-    assert doors.is_owner(stolen, peer)
+    stolen_text = doors.token_for(code, peer)
+    assert doors.is_owner(stolen_text, peer)
     assert doors.token_for(code, peer) == ""  # the browser
-    assert not doors.is_owner(stolen, peer)
+    assert not doors.is_owner(stolen_text, peer)
     monkeypatch.setattr(peers, "tells_users", lambda: True)
     second_code = doors.new_code()
-    given = doors.token_for(second_code, peer)
-    assert doors.token_for(second_code, peer) == "" and doors.token == given
+    given_text = doors.token_for(second_code, peer)
+    assert doors.token_for(second_code, peer) == "" and doors.token == given_text
 
 
 @pytest.mark.usefixtures("of_another")
@@ -125,11 +126,11 @@ def test_a_browser_s_code_is_for_this_computer_and_the_printed_one_is_not(
     peer: socket.socket, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     doors = Entrances()
-    shown, printed = doors.new_code(True), doors.new_code()
+    shown_text, printed_text = doors.new_code(True), doors.new_code()
     monkeypatch.setattr(peers, "is_on_this_computer", lambda peer: False)
     monkeypatch.setattr(peers, "is_of_this_user", lambda peer: False)
-    assert doors.token_for(shown, peer) == "" and doors.is_unused(shown)
-    assert doors.token_for(printed, peer) == doors.token  # the teacher's tablet
+    assert doors.token_for(shown_text, peer) == "" and doors.is_unused(shown_text)
+    assert doors.token_for(printed_text, peer) == doors.token  # the teacher's tablet
     assert doors.is_owner(doors.token, peer)
 
 
@@ -192,15 +193,15 @@ def test_another_user_reads_the_browser_s_command_line_and_gets_nothing(
     )  # fmt: skip
     try:
         assert command.stdout and command.stderr
-        printed = command.stdout.readline().strip()
+        printed_text = command.stdout.readline().strip()
         until(lambda: (tmp_path / "opened").exists(), "the browser is opened")
-        pid, opened = (tmp_path / "opened").read_text().split()
-        address, _, code = opened.partition("#code=")
+        pid, opened_text = (tmp_path / "opened").read_text().split()
+        address, _, code = opened_text.partition("#code=")
         own = address.removeprefix("http://").rstrip("/")
-        assert printed.startswith(f"{address}#code=") and code not in printed
+        assert printed_text.startswith(f"{address}#code=") and code not in printed_text
 
-        # The token is not on any command line, so it takes what another page was given.
-        token = enter(own, printed.rpartition("=")[2])[1]["token"]
+        # The token is not on any command line, so it is taken from another page.
+        token = enter(own, printed_text.rpartition("=")[2])[1]["token"]
         stranger = [sys.executable, "-I", "-c", STRANGER, own, token, code, pid, str(command.pid)]
         completed = subprocess.run(stranger, capture_output=True, text=True, timeout=HANGS_S)
         assert completed.returncode == 0, completed.stderr
@@ -212,7 +213,7 @@ def test_another_user_reads_the_browser_s_command_line_and_gets_nothing(
         assert enter(own, code) == (200, {"failure": "host_used"})
         assert post(own, token, {"do": "ports"})[0] == 200
         next_address = command.stdout.readline().strip()  # the printed address was opened
-        assert next_address.startswith(f"{address}#code=") and next_address != printed
+        assert next_address.startswith(f"{address}#code=") and next_address != printed_text
     finally:
         (tmp_path / "closed").touch()
         command.terminate()

@@ -1,6 +1,6 @@
 """An ESP32 gets its firmware from the page: its own code in node, onto the simulated ROM.
 
-And the page itself, where there is such firmware; a page without any never offers it.
+And the page itself, if there is such firmware; a page without any never offers it.
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ HEADS = {"esp32dev": (0x1000, 0), "esp32c3": (0, 5)}
 
 
 def image(board: str, size: int = 70_001) -> bytes:
-    """Return a whole firmware: what is packed well, what is not, and the heads where they are."""
+    """Return a whole firmware: compressible and random parts, with the headers in place."""
     head, chip = HEADS[board]
     data = bytearray(b"\xff" * head + Random(1).randbytes(9000) + bytes(size))[:size]
     data[head], data[head + 12] = 0xE9, chip
-    data[head + 13 : head + 17] = b"\xc0\xdb\xdc\xdd"  # what SLIP has to write differently
+    data[head + 13 : head + 17] = b"\xc0\xdb\xdc\xdd"  # bytes that SLIP must escape
     return bytes(data)
 
 
-def flashed(board: str, firmware: bytes, **how: Any) -> dict[str, Any]:
+def flash(board: str, firmware: bytes, **how: Any) -> dict[str, Any]:
     need("" if (MODULES / "esptool-js").is_dir() else "esptool-js is not fetched")
     case = {"board": board, "firmware": base64.b64encode(firmware).decode(), **how}
     lines = in_node(HERE / "flash_esp32_in_node.mjs", str(ROM), given=json.dumps(case))
@@ -56,18 +56,18 @@ def flashed(board: str, firmware: bytes, **how: Any) -> dict[str, Any]:
 @pytest.mark.parametrize("board", ["esp32dev", "esp32c3"])
 def test_a_new_board_gets_the_whole_firmware_and_starts_it(board: str) -> None:
     chip = {"esp32dev": "esp32", "esp32c3": "esp32c3"}[board]
-    outcome = flashed(board, image(board), chip=chip)
+    outcome = flash(board, image(board), chip=chip)
     assert (outcome["ended"], outcome["is_there"], outcome["starts"], outcome["seen"]) == (
         "done",
         True,
         1,
         1,
     )
-    assert {op for op, _ in outcome["refused"]} <= {0}  # but what an ESP32 does not know
+    assert {op for op, _ in outcome["refused"]} <= {0}  # only unknown commands are refused
 
 
 @pytest.mark.parametrize(
-    ("how", "ended"),
+    ("how", "ended_text"),
     [
         ({"isDeaf": True}, "flash_nobody_esp"),
         ({"chip": "esp32c3"}, "flash_other_esp"),
@@ -77,38 +77,38 @@ def test_a_new_board_gets_the_whole_firmware_and_starts_it(board: str) -> None:
         ({"heldUntil": "cancel"}, "flash_not_begun"),
     ],
 )
-def test_a_board_that_is_not_the_one_stays_as_it_is(how: dict[str, Any], ended: str) -> None:
-    outcome = flashed("esp32dev", image("esp32dev", 20_000), **how)
-    assert (outcome["ended"], outcome["is_untouched"]) == (ended, True)
+def test_a_board_that_is_not_the_one_stays_as_it_is(how: dict[str, Any], ended_text: str) -> None:
+    outcome = flash("esp32dev", image("esp32dev", 20_000), **how)
+    assert (outcome["ended_text"], outcome["is_untouched"]) == (ended_text, True)
 
 
-@pytest.mark.sampled("how", "ended")
+@pytest.mark.sampled("how", "ended_text")
 @pytest.mark.parametrize(
-    ("how", "ended"),
+    ("how", "ended_text"),
     [
         ({"breaksAt": 3}, "flash_broken_off"),
         ({"cancelAt": 0.3}, "flash_cancelled"),
         ({"spoils": True}, "flash_differs"),
     ],
 )
-def test_half_a_firmware_is_never_called_a_whole_one(how: dict[str, Any], ended: str) -> None:
-    assert flashed("esp32dev", image("esp32dev", 20_000), **how)["ended"] == ended
+def test_half_a_firmware_is_never_called_a_whole_one(how: dict[str, Any], ended_text: str) -> None:
+    assert flash("esp32dev", image("esp32dev", 20_000), **how)["ended"] == ended_text
 
 
 def test_what_is_no_firmware_of_the_board_is_not_written() -> None:
     whole = image("esp32dev", 20_000)
     for board, data in (
-        ("esp32dev", whole[0x1000:]),  # the image alone, without what comes before it
+        ("esp32dev", whole[0x1000:]),  # the image alone, without the part before it
         ("esp32dev", b":00000001FF\n"),
         ("esp32dev", whole + bytes(0x400000)),
         ("esp32c3", whole),
-        ("esp32c3", b"\xe9" + bytes(11) + b"\0" + bytes(99)),  # of another chip
+        ("esp32c3", b"\xe9" + bytes(11) + b"\0" + bytes(99)),  # firmware for another chip
     ):
-        outcome = flashed(board, data)
+        outcome = flash(board, data)
         assert (outcome["ended"], outcome["is_untouched"]) == ("flash_bad_image", True)
 
 
-# A browser's ports, behind one of which is the ROM; Python packs out and adds up for it.
+# A browser's ports, one of them with the ROM; Python decompresses and computes checksums for it.
 PORT = """
 window.rom = new globalThis.Esp32Rom({
   sum: (data) => window.summed([...data]),
@@ -133,7 +133,7 @@ def at_the_teachers(browser: Browser, folder: Path) -> Iterator[Page]:
     context.expose_function("unpacked", lambda data: list(zlib.decompress(bytes(data))))
     context.add_init_script(ROM.read_text(encoding="utf-8") + PORT)
     try:
-        with studio.served(page) as server:
+        with studio.serve_page(page) as server:
             opened_page = context.new_page()
             enter(opened_page, server.address)
             opened_page.click("#side_real")

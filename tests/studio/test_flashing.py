@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 
 from tests.machines.bootloaders import bootloader
-from tests.machines.uno import needed
+from tests.machines.uno import skip_unless_available
 from tests.support.command import process
 from tests.support.node import in_node
-from tests.support.platformio import firmware, shared
+from tests.support.platformio import firmware, shared_folder
 
 SCRIPT = Path(__file__).with_name("flash_in_node.mjs")
 PAGE = 128
@@ -25,13 +25,14 @@ IN_SYNC, OK, END = b"\x14", b"\x10", 0x20
 UNO = b"\x1e\x95\x0f"
 
 
-def flashed(port: str, board: str, file: Path, *cancelled: str) -> str:
-    """Return how the page's code has ended; `cancelled`: at which part of the work."""
+def flash(port: str, board: str, file: Path, *cancelled: str) -> str:
+    """Return the result of the page's code; `cancelled`: at which part of the work."""
     return "\n".join(in_node(SCRIPT, port, board, str(file), *cancelled))
 
 
 def hex_file(folder: Path, data: bytes) -> Path:
-    rows = [b"\2\0\0\4\0\0\xfa", b"\2\0\0\2\0\0\xfc"]  # as linkers write them: what follows is at 0
+    # Rows as linkers write them, followed by data at 0.
+    rows = [b"\2\0\0\4\0\0\xfa", b"\2\0\0\2\0\0\xfc"]
     for at in range(0, len(data), 16):
         part = data[at : at + 16]
         row = bytes([len(part), at >> 8, at & 255, 0]) + part
@@ -45,7 +46,7 @@ def hex_file(folder: Path, data: bytes) -> Path:
 # -- onto boards that lose and delay, on a clock of the script
 
 SLOW_SCRIPT = Path(__file__).with_name("slow_board_in_node.mjs")
-TRIES, SYNC_MS, ANSWER_MS = 8, 250, 1000  # as the page's code has them
+TRIES, SYNC_MS, ANSWER_MS = 8, 250, 1000  # values in the page's code
 
 
 def test_what_goes_on_is_written_and_what_does_not_ends_soon() -> None:
@@ -75,15 +76,15 @@ def test_a_new_board_becomes_a_robot(
 ) -> None:
     """An old Nano is found at the second speed, as by `tsc firmware`; an Uno that was left without
     firmware by somebody who cancelled is no worse than a new one."""
-    needed()
+    skip_unless_available()
     from tests.support.flashed_boards import new_board, to_hex
 
-    elf = firmware(board, tmp_path, shared(tmp_path_factory))
+    elf = firmware(board, tmp_path, shared_folder(tmp_path_factory))
     to_hex(elf, tmp_path / "firmware.hex")
     with new_board(bootloader(board)) as uno:
         if board == "uno":
-            assert flashed(uno.pty, board, tmp_path / "firmware.hex", "0.25") == "flash_cancelled"
-        assert flashed(uno.pty, board, tmp_path / "firmware.hex") == "done"
+            assert flash(uno.pty, board, tmp_path / "firmware.hex", "0.25") == "flash_cancelled"
+        assert flash(uno.pty, board, tmp_path / "firmware.hex") == "done"
         pong = process("doctor", "--identify", "--port", uno.pty)
         assert pong.code == 0, pong.err
         assert pong.out.startswith(f"tinibot on {uno.pty}")
@@ -92,13 +93,13 @@ def test_a_new_board_becomes_a_robot(
 def test_a_board_with_a_sketch_and_no_bootloader_stays_as_it_is(
     tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    needed()
+    skip_unless_available()
     from tools.uno import Uno
 
-    elf = firmware("uno", tmp_path, shared(tmp_path_factory))
+    elf = firmware("uno", tmp_path, shared_folder(tmp_path_factory))
     with Uno(elf, tells_sleep=False) as uno:
         uno.go()
-        assert flashed(uno.pty, "uno", hex_file(tmp_path, b"x" * 500)) == "flash_nobody"
+        assert flash(uno.pty, "uno", hex_file(tmp_path, b"x" * 500)) == "flash_nobody"
         assert process("doctor", "--identify", "--port", uno.pty).code == 0
 
 
@@ -115,12 +116,12 @@ class FakeBoard:
         self._at = 0
 
     def run(self, file: int) -> None:
-        heard = b""
-        with suppress(OSError):  # it is unplugged
+        heard_bytes = b""
+        with suppress(OSError):  # the device is unplugged
             while True:
-                heard += os.read(file, 4096)
-                while (length := self._length(heard)) and len(heard) >= length:
-                    command, heard = heard[:length], heard[length:]
+                heard_bytes += os.read(file, 4096)
+                while (length := self._length(heard_bytes)) and len(heard_bytes) >= length:
+                    command, heard_bytes = heard_bytes[:length], heard_bytes[length:]
                     self.commands.append(command[0])
                     answer = self._bends(command[0], IN_SYNC + self._answer(command) + OK)
                     if answer is None:
@@ -129,10 +130,10 @@ class FakeBoard:
                     os.write(file, answer)
 
     @staticmethod
-    def _length(heard: bytes) -> int:
-        if not heard:
+    def _length(heard_bytes: bytes) -> int:
+        if not heard_bytes:
             return 0
-        return {0x55: 4, 0x64: 5 + PAGE, 0x74: 5}.get(heard[0], 2)
+        return {0x55: 4, 0x64: 5 + PAGE, 0x74: 5}.get(heard_bytes[0], 2)
 
     def _answer(self, command: bytes) -> bytes:
         assert command[-1] == END
@@ -140,7 +141,7 @@ class FakeBoard:
             return UNO
         if command[0] == 0x55:
             self._at = 2 * int.from_bytes(command[1:3], "little")
-        elif command[0] == 0x64 and 0x50 in self.commands:  # it has been told to program
+        elif command[0] == 0x64 and 0x50 in self.commands:  # programming mode was entered
             self.flash[self._at : self._at + PAGE] = command[4:-1]
         elif command[0] == 0x74:
             return bytes(self.flash[self._at : self._at + PAGE])
@@ -148,7 +149,7 @@ class FakeBoard:
 
 
 @contextmanager
-def plugged(board: FakeBoard) -> Iterator[str]:
+def plug_in(board: FakeBoard) -> Iterator[str]:
     file, other = pty.openpty()
     tty.setraw(other)
     thread = threading.Thread(target=board.run, args=(file,), daemon=True)
@@ -176,8 +177,8 @@ def bent(at: int, *, by: bytes | None, times: int = 10_000) -> Callable[[int, by
 def test_all_bytes_arrive_and_are_read_back(tmp_path: Path) -> None:
     data = bytes(k * 7 % 251 for k in range(1000))
     board = FakeBoard()
-    with plugged(board) as port:
-        assert flashed(port, "uno", hex_file(tmp_path, data)) == "done"
+    with plug_in(board) as port:
+        assert flash(port, "uno", hex_file(tmp_path, data)) == "done"
     assert board.flash[:1000] == data and set(board.flash[1000:]) == {255}
     assert board.commands.count(0x64) == board.commands.count(0x74) == 8
     assert board.commands[-1] == 0x51
@@ -206,8 +207,8 @@ def test_how_it_may_end(
     bends: Callable[[int, bytes], bytes | None], how: str, tmp_path: Path
 ) -> None:
     board = FakeBoard(bends)
-    with plugged(board) as port:
-        assert flashed(port, "uno", hex_file(tmp_path, b"\x01" * 1000)) == how
+    with plug_in(board) as port:
+        assert flash(port, "uno", hex_file(tmp_path, b"\x01" * 1000)) == how
     if how in ("flash_nobody", "flash_other_chip", "port_gone"):
         assert set(board.flash) == {255}  # nothing was written
 
@@ -219,16 +220,16 @@ def test_it_can_be_cancelled(tmp_path: Path) -> None:
     for part, how in (("-1", "flash_not_begun"), ("0.25", "flash_cancelled"),
                       ("0.75", "flash_cancelled"), ("1", "done")):  # fmt: skip
         board = FakeBoard()
-        with plugged(board) as port:
-            assert flashed(port, "uno", file, part) == how
+        with plug_in(board) as port:
+            assert flash(port, "uno", file, part) == how
         written = board.commands.count(0x64)
         assert written == {"-1": 0, "0.25": 4}.get(part, 8)
 
 
 def test_a_firmware_does_not_reach_into_the_bootloader(tmp_path: Path) -> None:
     board = FakeBoard()
-    with plugged(board) as port:
-        assert flashed(port, "uno", hex_file(tmp_path, b"\x01" * 0x7E01)) == "flash_large"
+    with plug_in(board) as port:
+        assert flash(port, "uno", hex_file(tmp_path, b"\x01" * 0x7E01)) == "flash_large"
         assert 0x64 not in board.commands
 
 
@@ -242,4 +243,4 @@ def test_a_firmware_does_not_reach_into_the_bootloader(tmp_path: Path) -> None:
 def test_what_is_no_firmware_is_refused(text: str, tmp_path: Path) -> None:
     file = tmp_path / "x.hex"
     file.write_text(text, encoding="ascii")
-    assert flashed("/dev/null", "uno", file) == "bad_file"
+    assert flash("/dev/null", "uno", file) == "bad_file"

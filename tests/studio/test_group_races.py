@@ -1,5 +1,5 @@
-"""One robot of a group, where one pupil runs and another one stops: whatever arrives first, no
-robot drives on.
+"""A robot of a group that one pupil runs and another one stops: in any order of arrival, no robot
+drives on.
 
 `python -m tests.studio.test_group_races 100` lets so many meet.
 """
@@ -26,8 +26,8 @@ from tiniscript.studio.hosting import Hosting
 
 Json = dict[str, Any]
 BEAT_S = 0.1
-LATE_S = 1.5  # that a request may be on its way
-STANDS_S = 0.6  # for as long the robot is looked at
+LATE_S = 1.5  # most delay of a request
+STANDS_S = 0.6  # time for which the robot is watched
 PROGRAM = compile(FOREVER).image.hex()
 PUPILS = ("Ana", "Luz", "Teo")
 
@@ -60,8 +60,8 @@ class Mate:
             self.saw_stops = self.ask("here").get("stops", 0)
             if not self.is_there:
                 continue
-            asked, self.asked = self.asked, []
-            for news in self.drive("beat", asked=asked)["news"]:
+            requests, self.asked = self.asked, []
+            for news in self.drive("beat", asked=requests)["news"]:
                 self.newest_number = max(self.newest_number, news["number"])
                 if news.get("over"):
                     self.is_there = False
@@ -113,7 +113,7 @@ class Group:
         self.late[-1].start()
 
     def drives(self, mate: Mate) -> None:
-        """Let a pupil drive, whoever has driven."""
+        """Let a pupil drive, whoever drove before."""
         end_s = time.monotonic() + HANGS_S
         while not self.robot.moves:
             assert time.monotonic() < end_s, "it never drives"
@@ -124,7 +124,7 @@ class Group:
             time.sleep(0.7)
 
     def races(self) -> None:
-        """One drives; then some press Run, and one presses STOP after them."""
+        """Let one pupil drive; then some press Run, and one presses STOP after them."""
         driver, *others = self.chance.sample(self.mates, 3)
         self.drives(driver)
         for mate in self.chance.sample(others, self.chance.randrange(3)):
@@ -146,7 +146,7 @@ class Group:
         time.sleep(LATCH_S)
 
     def _takes(self, mate: Mate, stops: int, saw_stops: int) -> None:
-        """Who has pressed Run takes the robot over, and then sends the program."""
+        """Take the robot over, as a press of Run does, and then send the program."""
         mate.connects(saw_stops)
         number = mate.newest_number
         time.sleep(self.chance.random() * 0.3)

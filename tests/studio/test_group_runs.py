@@ -1,4 +1,4 @@
-"""What pages of a group hear of its robot, which another page of the group drives."""
+"""Events of a group's robot on pages that do not drive it."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class Robot:
         self.place: int | None = None
         self.values = self.runs = 0
         self.meant: list[str] = []  # the values of all runs of programs
-        self.nth: dict[str, int] = {}  # which value of its run each of them is
-        self.count = 0  # of values of a run
+        self.nth: dict[str, int] = {}  # index of each value in its run
+        self.count = 0  # number of values in a run
 
     def tells(self) -> Json:
         does = self.chance.choice(("value", "value", "value", "place", "place", "text", "next"))
@@ -98,8 +98,9 @@ class Page:
 
 @pytest.mark.parametrize("seed", range(50))
 def test_each_hears_each_run_in_its_order(seed: int) -> None:
-    """Whatever a robot tells, and however seldom a page looks: news come once, begin and end by
-    turns, the newest place is the robot's, and what is missing can be counted."""
+    """Whatever a robot reports, and however rarely a page polls: events come once, begins and ends
+    alternate, the newest place is the robot's, and missing values can be counted.
+    """
     chance = Random(seed)
     runs, robot = GroupRuns(lambda: 0.0), Robot(chance)
     page, drivers = Page(runs, "teo"), [Page(runs, name) for name in DRIVERS]
@@ -108,9 +109,9 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
     values_by_driver: dict[str, list[str]] = {name: [] for name in DRIVERS}
     for _ in range(200):
         for _ in range(chance.randint(1, most)):
-            before = len(robot.meant)
+            count_before = len(robot.meant)
             news = robot.tells()
-            values_by_driver[robot.driver] += robot.meant[before:]
+            values_by_driver[robot.driver] += robot.meant[count_before:]
             runs.add_news(robot.driver, [news])
             assert len(runs._rows) == 1 or waiting(runs) <= group_runs.MOST_BYTES
         items = page.looks()
@@ -124,7 +125,7 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
     assert numbers == sorted(set(numbers))
     assert begin_and_end_by_turns(page)
     assert is_part(page.values, robot.meant)
-    assert missed(page) + len(page.values) == counted(page)
+    assert count_missed_values(page) + len(page.values) == count_values(page)
     for driver in drivers:
         assert not set(driver.values) & set(values_by_driver[driver.name])
     for row in page.heard:
@@ -157,13 +158,13 @@ def begin_and_end_by_turns(page: Page) -> bool:
 
 
 def is_part(some: list[str], all_of_them: list[str]) -> bool:
-    """Whether they are these, in this order, some left out."""
+    """Return whether they are a subsequence."""
     rest = iter(all_of_them)
     return all(text in rest for text in some)
 
 
-def missed(page: Page) -> int:
-    """Return what a page says of values that it has not got, as `panel.js` counts them."""
+def count_missed_values(page: Page) -> int:
+    """Return the page's count of missed values, as in `panel.js`."""
     count = number = 0
     for item in page.heard:
         if item["event"] == "STARTED":
@@ -174,8 +175,8 @@ def missed(page: Page) -> int:
     return count
 
 
-def counted(page: Page) -> int:
-    """Return how many values its runs had until the newest of them that it has heard."""
+def count_values(page: Page) -> int:
+    """Return the number of values in its runs up to the newest one heard."""
     numbers: list[int] = []
     for item in page.heard:
         if item["event"] == "STARTED":

@@ -1,4 +1,4 @@
-"""Groups of a class: who edits with whom, what is limited, and one robot for all of a group."""
+"""Groups of a class: shared editing, limits, and one robot for the group."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ TEXT = "F(1, 80)\nLOOP(3)\nB(1, 40)\nEND_LOOP\nS\n"
 
 
 class School(Room):
-    """A class with room for all, and what is kept of its groups."""
+    """A class with room for all, and the stored data of its groups."""
 
     def __init__(self, folder: Path, robots: int = 1) -> None:
         super().__init__(robots)
@@ -42,9 +42,9 @@ class School(Room):
         return Classroom(self.hosting, ports, 60, lambda: self.now_s, self.folder)  # type: ignore[arg-type]
 
     def crashes(self) -> None:
-        kept = json.loads(json.dumps(self.made.state_to_keep()))
+        kept_state = json.loads(json.dumps(self.made.state_to_keep()))
         self.made = self.anew()
-        self.made.resume(kept)
+        self.made.resume(kept_state)
         self.made.tidy()
 
 
@@ -71,7 +71,7 @@ class Member:
         return {"page": page.name, "since": since, "epoch": page.epoch, "saw": self.saw, **more}
 
     def sends(self, **more: Any) -> Json:
-        """Send what is pending, and hear what is new."""
+        """Send pending changes, and receive news."""
         changes = [
             data_of_change(change) for change in self.page.pending_changes[: groups.MOST_CHANGES]
         ]
@@ -97,9 +97,9 @@ class Member:
 class Teacher(Member):
     """The teacher's page in a group."""
 
-    def __init__(self, school: School, key: str, before: str = "") -> None:
+    def __init__(self, school: School, key: str, text_before: str = "") -> None:
         self.school, self.name, self.saw = school, "Teacher", 0
-        answer = self.asks("group_visit", group=key, name=self.name, before=before)
+        answer = self.asks("group_visit", group=key, name=self.name, before=text_before)
         assert "failure" not in answer, answer
         self.page = Page.of(answer["page"], answer)
 
@@ -113,7 +113,8 @@ def school(tmp_path: Path) -> School:
 
 
 def test_pupils_of_a_group_have_one_program(school: School) -> None:
-    ana, luz = Member(school, "Ana"), Member(school, "Luz", "RED", "S\n")  # it looks the same
+    # Names that look the same.
+    ana, luz = Member(school, "Ana"), Member(school, "Luz", "RED", "S\n")
     assert luz.text == ana.text == "F(1, 80); LOOP(3); B(1, 40); END_LOOP; S;"
     ana.types("80", "95")
     ana.sends()
@@ -180,7 +181,7 @@ def test_a_group_that_nobody_has_changed_goes_with_its_last_pupil(school: School
     luz.sends()
     luz.asks("group_leave")
     assert len(school.teaches("class")["groups"]) == 1
-    assert "F(1, 95)" in Member(school, "Teo", text="S\n").text  # who comes has it
+    assert "F(1, 95)" in Member(school, "Teo", text="S\n").text  # a new member gets the program
 
 
 def test_a_page_that_waits_hears_at_once_and_holds_nobody_up(
@@ -242,7 +243,7 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
         group.condition,
         school.made._lock,
         school.made._groups._lock,
-    ):  # whoever is busy with these
+    ):  # one of them is busy with these
         telling = in_thread(lambda: robot.witness([begins]))  # type: ignore[misc]
         telling.join(HANGS_S)
         assert not telling.is_alive()
@@ -271,14 +272,14 @@ def test_only_the_group_of_who_drives_sees_what_the_robot_tells(school: School) 
     ana.joins("Blue")
     tells("two")
     assert hears(eva, "two") and not hears(luz, "two")
-    assert not hears(luz, "STARTED")  # it is over for them
+    assert not hears(luz, "STARTED")  # the run is over for them
     ana.asks("group_leave")
     tells("three")
     assert not hears(eva, "three") and not hears(luz, "three")
     ana.joins("Red")
     tells("four")
     other = school.connects(luz.token)
-    tells("five")  # the stop at the end of what she has started
+    tells("five")  # the stop at the end of her run
     assert hears(luz, "five")
     assert other.witness is not None
 
@@ -308,7 +309,7 @@ def test_a_pupil_sends_so_much_and_no_more(school: School) -> None:
     assert answers[-1].get("slow") is True
     assert len(ana.page.pending_changes) >= 20
     luz.types("S;", "BEEP(1, 440);")
-    assert "slow" not in luz.sends()  # another pupil's are counted apart
+    assert "slow" not in luz.sends()  # rates are counted for each pupil
     school.now_s += 60 / per_s
     ana.sends()
     ana.sends()
@@ -385,7 +386,7 @@ def test_after_a_crash_groups_go_on_and_nothing_is_lost(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     ana.types("80", "95")
     ana.sends()
-    luz.types("B(1", "B(7")  # not sent yet
+    luz.types("B(1", "B(7")  # text not sent yet
     [seen] = school.teaches("class")["groups"]
     before = school.teaches("class_text", group=seen["key"])
     for _ in range(2):
@@ -405,9 +406,9 @@ def test_after_another_lesson_a_group_is_there_without_its_pupils(school: School
     ana = Member(school, "Ana")
     ana.types("80", "95")
     ana.sends()
-    kept = json.loads(json.dumps(school.made.state_to_keep()))
+    kept_state = json.loads(json.dumps(school.made.state_to_keep()))
     school.made = school.anew()
-    school.made.resume(kept, is_same_lesson=False)
+    school.made.resume(kept_state, is_same_lesson=False)
     assert [group["pupils"] for group in school.teaches("class")["groups"]] == [[]]
     assert "F(1, 95)" in Member(school, "Luz", text="S\n").text
 
@@ -526,11 +527,14 @@ def test_a_teacher_whose_page_is_silent_is_not_there(school: School) -> None:
 def test_who_looks_is_not_seen_and_no_pupil_visits_as_the_teacher(school: School) -> None:
     ana = Member(school, "Ana")
     [group] = school.teaches("class")["groups"]
-    before = ana.sends()
+    sends_before = ana.sends()
     for _ in range(3):
         school.teaches("class_text", group=group["key"])
-    after = ana.sends()
-    assert (before["others"], before["saw"]) == (after["others"], after["saw"])
+    sends_after = ana.sends()
+    assert (sends_before["others"], sends_before["saw"]) == (
+        sends_after["others"],
+        sends_after["saw"],
+    )
     with pytest.raises(BadRequest):
         ana.asks("group_visit", group=group["key"], name="Teacher")
     for wrong in (None, 5, "", "x" * 32):
@@ -658,12 +662,12 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
                 early = {
                     **request,
                     "saw_stops": turn.stop_number - 1,
-                }  # it was pressed before a STOP
+                }  # the button was pressed before a STOP
                 refused = {"failure": "stopped_elsewhere"}
                 assert school.made.answer(member.token, HERE, early) == refused
                 assert turn.pupil.token != member.token
                 school.connects(member.token)
-                assert robot.leave_reason == "group_other"  # that stops what it does
+                assert robot.leave_reason == "group_other"  # leaving stops its run
         elif deed == "beat":
             member.asks("beat", page="x", asked=[{"do": "start", "id": 1}])
         elif deed == "reload":
@@ -683,20 +687,20 @@ def page_of(school: School, member: Member) -> str:
 
 
 def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
-    """As with HTTP: each page has a request that is held, and one that sends."""
+    """As with HTTP, each page has a held request, and one for sending."""
     members = [Member(school, f"P{k}", f"G{k % 2}") for k in range(6)]
     is_over, chance = Event(), Random(4)
-    failed: list[BaseException] = []
+    failed_base_exceptions: list[BaseException] = []
 
     def listens(member: Member) -> None:
         try:
-            since = saw = 0
+            since = saw_count = 0
             while not is_over.is_set():
-                request = {**member.request(waits=True), "since": since, "saw": saw}
+                request = {**member.request(waits=True), "since": since, "saw": saw_count}
                 answer = member.asks("group", **request)
-                since, saw = answer.get("n", since), answer.get("saw", saw)
+                since, saw_count = answer.get("n", since), answer.get("saw", saw_count)
         except BaseException as why:
-            failed.append(why)
+            failed_base_exceptions.append(why)
 
     threads = [in_thread(partial(listens, member)) for member in members]
     for k in range(300):
@@ -718,7 +722,7 @@ def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
         member.asks("group_leave")
     for thread in threads:
         thread.join(HANGS_S)
-    assert not failed
+    assert not failed_base_exceptions
     for k in (0, 1):
         assert len({member.page.base.checksum() for member in members[k::2]}) == 1
     assert members[0].text != members[1].text

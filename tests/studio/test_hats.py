@@ -1,4 +1,4 @@
-"""Where a WHEN, a TASK or a DEF of the blocks is written in the text.
+"""The place of a WHEN, a TASK or a DEF of the blocks in the text.
 
 Who looks at a text's blocks changes nothing; whatever is moved, nothing is lost, and a DEF stands
 before its calls.

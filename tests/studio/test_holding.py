@@ -32,7 +32,7 @@ HISTORIES = 10
 
 
 def part(text: str, simulation: Simulation) -> str:
-    """Return the first line of the part of the text in front of which a program is held."""
+    """Return the first line of the part of the text before which a program is paused."""
     at = simulation.held_at
     assert at is not None
     place = next(
@@ -58,8 +58,8 @@ def test_steps_go_through_every_part_and_into_words_of_ones_own() -> None:
     assert list(steps(COUNT, simulation)) == STEPS
     assert not simulation.robot.is_running
     text = "DEF HOP;\n  F(0.1, 80);\nEND_DEF;\nHOP;\nSHOW(1)"
-    wanted = ["DEF HOP;", "HOP", "F(0.1, 80)", "SHOW(1)"]
-    assert list(steps(text, started_simulation(text, is_held=True))) == wanted
+    wanted_texts = ["DEF HOP;", "HOP", "F(0.1, 80)", "SHOW(1)"]
+    assert list(steps(text, started_simulation(text, is_held=True))) == wanted_texts
 
 
 def test_variables_are_told_where_it_is_held() -> None:
@@ -70,35 +70,35 @@ def test_variables_are_told_where_it_is_held() -> None:
         simulation.step(5000)
     assert values[:4] == [[0, 0], [3, 0], [3, 0], [4, 0]] and values[-1] == [5, 0.001]
     simulation.go(500)
-    assert simulation.state()["variables"] == [5, 0.001]  # that it has left
+    assert simulation.state()["variables"] == [5, 0.001]  # values left by the program
 
 
 @pytest.mark.parametrize("how", ["steps", "breakpoints"])
 @pytest.mark.parametrize(("name", "robot", "world"), EXAMPLES)
 def test_a_program_that_was_held_does_the_same(name: str, robot: str, world: str, how: str) -> None:
-    """The same at the same times, to the last event: with steps, and at 1,000 breakpoints."""
+    """The events and times are the same, with steps and at 1,000 breakpoints."""
     result = check((ROOT / "examples" / f"{name}.ts").read_bytes(), robot, "en")
     plain = Simulation(robot, worlds.load(world), result.image)
     plain.go(2500)
-    wanted = plain.robot.take_events()
+    wanted_events = plain.robot.take_events()
     parts = tuple(place.offset for place in result.places)
     marks = Marks(parts, (*parts, *range(1000)) if how == "breakpoints" else (), 0, how == "steps")
-    held = Simulation(robot, worlds.load(world), result.image, marks)
+    held_simulation = Simulation(robot, worlds.load(world), result.image, marks)
     pauses = 0
-    while held.robot.now_ms < plain.robot.now_ms:
+    while held_simulation.robot.now_ms < plain.robot.now_ms:
         if how == "steps":
-            held.step(plain.robot.now_ms - held.robot.now_ms)
+            held_simulation.step(plain.robot.now_ms - held_simulation.robot.now_ms)
         else:
-            held.go_on()
-            held.go(plain.robot.now_ms - held.robot.now_ms)
-        pauses += held.held_at is not None
+            held_simulation.go_on()
+            held_simulation.go(plain.robot.now_ms - held_simulation.robot.now_ms)
+        pauses += held_simulation.held_at is not None
     assert pauses > 5
-    assert held.robot.take_events() == wanted
-    assert held.robot.pose == plain.robot.pose
+    assert held_simulation.robot.take_events() == wanted_events
+    assert held_simulation.robot.pose == plain.robot.pose
 
 
 def test_a_program_that_was_held_takes_as_long_as_it_calculates() -> None:
-    """It goes on in the tick in which it was held, with the instructions that were left of it."""
+    """It resumes in the tick in which it paused, with the remaining instructions."""
     text = "X = 0;\nLOOP(300);\n  X = X + 1;\nEND_LOOP;\nBEEP(0.1, 440)"
     runs = []
     for at in ((), (2,)):
@@ -127,7 +127,7 @@ def test_breakpoints_hold_alike_whenever_they_are_set(text: str) -> None:
 
 
 def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], chance: Random) -> int:
-    """Return how often a run is held, each time at the arrival at which it has to be."""
+    """Return the number of pauses of a run, each at the right arrival."""
     offsets = sorted({offset for _, offset in arrivals})
     simulation = started_simulation(text, is_held=chance.random() < 0.5)
     breakpoints: list[int] = []
@@ -181,7 +181,7 @@ def test_nothing_passes_while_it_is_held() -> None:
 
 
 def test_a_stop_ends_a_held_program() -> None:
-    """And nothing of it is done any more."""
+    """Nothing of it is executed any more."""
     simulation = started_simulation("F(1, 80);\nR(1, 60)", at=(1,))
     simulation.go(5000)
     simulation.state()

@@ -66,8 +66,8 @@ class Hand(AskingPage):
 
 
 def power_of(robot: PtyRobot) -> int:
-    driven = [line for line in robot.did if line.startswith("MOTORS")]
-    return int(driven[-1].split()[1]) if driven else 0
+    motor_lines = [line for line in robot.actions if line.startswith("MOTORS")]
+    return int(motor_lines[-1].split()[1]) if motor_lines else 0
 
 
 @pytest.fixture
@@ -85,7 +85,9 @@ class Class:
         join = {"do": "join", "code": self.room.code, "name": name}
         token = self.room.answer("", HERE, join)["token"]
         self.room.answer(token, HERE, {"do": "here", "wants": True})
-        return Hand(lambda asked: self.room.answer(token, HERE, {**asked, "page": name}), "turn")
+        return Hand(
+            lambda request: self.room.answer(token, HERE, {**request, "page": name}), "turn"
+        )
 
 
 @pytest.fixture
@@ -111,7 +113,7 @@ def test_a_pupil_drives_the_own_robot_and_no_other(lesson: Class, two: list[PtyR
 
 
 def test_who_has_no_turn_drives_nothing(lesson: Class, two: list[PtyRobot]) -> None:
-    """Neither one who waits, nor one whose turn is over: both are told."""
+    """Waiting pupils and those whose turn is over get a message."""
     ana, beto, carla = (lesson.pupil(name) for name in ("Ana", "Beto", "Carla"))
     assert ana.asks("connect") == {}
     ana.beats_until(lambda item: "connected" in item, "it is met")
@@ -124,11 +126,11 @@ def test_who_has_no_turn_drives_nothing(lesson: Class, two: list[PtyRobot]) -> N
     number = next(pupil["number"] for pupil in pupils if pupil["name"] == "Ana")
     lesson.room.teach({"do": "class_next", "pupil": number})
     until(lambda: power_of(two[0]) == 0, "it is stopped")
-    moves = len(two[0].did)
+    moves = len(two[0].actions)
     for _ in range(5):
         ana.holds(60)
     ana.beats_until(lambda item: item.get("over") == "turn_over", "it is told")
-    assert power_of(two[0]) == 0 and len(two[0].did) == moves
+    assert power_of(two[0]) == 0 and len(two[0].actions) == moves
     assert beto.asks("connect") == {}
     beto.beats_until(lambda item: "connected" in item, "it is met")
     assert beto.uploads(STICK)["ok"]
@@ -137,7 +139,7 @@ def test_who_has_no_turn_drives_nothing(lesson: Class, two: list[PtyRobot]) -> N
 
 
 def test_a_teachers_stop_is_no_key_of_a_pupils(lesson: Class, two: list[PtyRobot]) -> None:
-    """What was said before is void, and what is held on starts nothing."""
+    """Earlier keys are void, and held keys start nothing."""
     ana = lesson.pupil("Ana")
     assert ana.asks("connect") == {}
     ana.beats_until(lambda item: "connected" in item, "it is met")

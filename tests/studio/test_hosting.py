@@ -1,4 +1,4 @@
-"""What a page reaches through `tsc studio`: the ports and robots of this computer."""
+"""The ports and robots of this computer that a page reaches through `tsc studio`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tiniscript.studio.robot_link import BadRequest
 
 KIT = robots.load("tinibot").kit
 BEAT_S = 0.1
-SILENT_MS = 2000  # after HEARD_S and the robot's dead-man timer, and before LEFT_S ends it anyway
+SILENT_MS = 2000  # after HEARD_S and the dead-man timer, and before LEFT_S ends the run
 
 
 class Page:
@@ -39,8 +39,8 @@ class Page:
                    "language": "es", **fields}  # fmt: skip
         return self.hosting.answer(request)
 
-    def beat(self, *asked: dict[str, Any], do: str = "beat") -> None:
-        request = {"do": do, "page": self.name, "seen": self._seen, "asked": list(asked)}
+    def beat(self, *requests: dict[str, Any], do: str = "beat") -> None:
+        request = {"do": do, "page": self.name, "seen": self._seen, "asked": list(requests)}
         for item in self.hosting.answer(request)["news"]:
             self._seen = max(self._seen, item["number"])
             self.news.append(item)
@@ -105,7 +105,7 @@ def test_a_program_runs_and_what_it_shows_arrives(page: Page, robot: PtyRobot) -
     shown = [page.until(lambda item: item.get("event") == "SHOW")["value"] for _ in range(2)]
     assert shown == ["2.5", "TRUE"]
     page.until(lambda item: item.get("event") == "DONE")
-    assert "MOTORS 80 80" in robot.did
+    assert "MOTORS 80 80" in robot.actions
 
 
 def test_an_answer_comes_before_what_follows_from_it(page: Page) -> None:
@@ -146,7 +146,7 @@ def always_attended(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def check_stopped(robot: PtyRobot) -> None:
     robot.until(lambda: bytes(STOP_BYTES) in robot.heard and not robot.moves, "it is stopped")
-    assert "MOTORS 80 80" in robot.did
+    assert "MOTORS 80 80" in robot.actions
 
 
 @pytest.mark.usefixtures("always_attended")
@@ -166,7 +166,7 @@ def test_a_silent_page_is_noticed_after_a_reset(page: Page, robot: PtyRobot) -> 
     robot.switch_off()
     robot.switch_on()
     ran = page.upload(FOREVER)
-    while "failure" in ran:  # until the session has noticed
+    while "failure" in ran:  # until the session notices
         ran = page.upload(FOREVER)
     check_stopped(robot)
 
@@ -186,7 +186,7 @@ def test_nobody_pings_for_a_page_that_is_silent(
     drives(page, robot)
     monkeypatch.setattr(attending.Attending, "attend", lambda *_: time.sleep(0.1))
     page.beat()
-    assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS  # by its dead-man timer
+    assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS  # stopped by its dead-man timer
 
 
 def test_stop_stops_and_says_so(hosting: Hosting, page: Page, robot: PtyRobot) -> None:
@@ -230,8 +230,9 @@ def test_the_end_of_a_page_and_of_the_server_stops_robots(
 def test_what_a_command_has_started_through_it_goes_on_when_its_page_leaves(
     hosting: Hosting, page: Page, robot: PtyRobot
 ) -> None:
-    """Whoever comes next reaches the robot through what holds the port, and only the end of the
-    studio stops it."""
+    """The next client reaches the robot through the holder of the port, and only the end of the
+    studio stops it.
+    """
     drives(page, robot)
     other = Command("upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", robot.port)
     other.until("running")
@@ -249,7 +250,7 @@ def test_what_a_command_has_started_through_it_goes_on_when_its_page_leaves(
     assert robot.moves and other.process.poll() is None
     assert hosting.close() == []
     robot.until(lambda: not robot.moves, "it stands")
-    assert other.ended().code == 3
+    assert other.wait_for_result().code == 3
 
 
 def test_a_port_has_one_page(
@@ -261,7 +262,7 @@ def test_a_port_has_one_page(
     assert all(set(port) == {"port", "name", "description", "virtual"} for port in ports)
     other = Page(hosting, "other")
     assert other.connect(robot.port) == {"failure": "other_tab"}
-    assert page.connect(robot.port) == {}  # which it has
+    assert page.connect(robot.port) == {}  # the page already has this robot
     drives(page, robot)
     # STOP of a page without a robot
     stop_report = {"name": robot.port, "stop": "asked"}
@@ -270,7 +271,8 @@ def test_a_port_has_one_page(
     stop_report["stop"] = "confirmed"
     assert hosting.answer({"do": "stops"}) == {"robots": [stop_report]}
     image = compile(FOREVER).image.hex()
-    refused = page.ask("upload", image=image, robot="tinibot", runs=True)  # it was on its way
+    # The upload was under way.
+    refused = page.ask("upload", image=image, robot="tinibot", runs=True)
     assert refused["failure"] == "stopped_elsewhere" and not robot.moves
     result = process("upload", "--port", robot.port, "-e", FOREVER)  # by another command
     assert result.code != 0 and not robot.moves, result.out
@@ -283,9 +285,9 @@ def test_a_page_hears_why_it_is_over_when_another_one_has_its_robot(
     hosting: Hosting, page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(attending, "LEFT_S", 3600.0)
-    hosted = hosting.robot_of(page.name)
-    assert hosted
-    hosted.leave("turn_over")
+    hosted_robot = hosting.robot_of(page.name)
+    assert hosted_robot
+    hosted_robot.leave("turn_over")
     other = Page(hosting, "other")
     until(lambda: other.connect(robot.port) == {}, "the port is free")
     assert page.until(lambda item: "over" in item)["over"] == "turn_over"
@@ -295,16 +297,16 @@ def test_a_page_hears_why_it_is_over_when_another_one_has_its_robot(
 def test_a_stop_at_the_end_of_a_turn_is_confirmed_or_not_before_it_is_over(
     hosting: Hosting, page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, is_silent: bool
 ) -> None:
-    """And whoever ends the server hears of a robot that is silent."""
+    """Whoever ends the server is told about a silent robot."""
     drives(page, robot)
     page.beat()
     if is_silent:
         robot.switch_off()
         monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.3)
-    hosted = hosting.robot_of(page.name)
-    assert hosted
+    hosted_robot = hosting.robot_of(page.name)
+    assert hosted_robot
     page.news.clear()
-    hosted.leave("turn_over")
+    hosted_robot.leave("turn_over")
     page.until(lambda item: item.get("over") == "turn_over")
     events = [item["event"] for item in page.news if item.get("event") in ("STOPPING", "STOPPED")]
     assert events == (["STOPPING"] if is_silent else ["STOPPING", "STOPPED"])
@@ -367,7 +369,7 @@ def test_what_is_no_request_is_refused(hosting: Hosting) -> None:
 
 
 @each_row(
-    "asked",
+    "request",
     [
         {"do": "upload"},
         {"do": "upload", "image": "zz", "robot": "tinibot"},
@@ -381,11 +383,11 @@ def test_what_is_no_request_is_refused(hosting: Hosting) -> None:
         {"do": ["identify"]},
     ],
 )
-def test_a_wrong_request_harms_nothing(page: Page, asked: dict[str, Any]) -> None:
+def test_a_wrong_request_harms_nothing(page: Page, request: dict[str, Any]) -> None:
     """Nor the one after it in the same beat."""
     wrong = page.count + 1
     page.count += 2
-    page.beat({"id": wrong, **asked}, {"id": page.count, "do": "identify"})
+    page.beat({"id": wrong, **request}, {"id": page.count, "do": "identify"})
     assert page.until(lambda item: item.get("id") == wrong)["failure"] == "bad_request"
     assert page.until(lambda item: item.get("id") == page.count)["ok"]
 

@@ -1,4 +1,4 @@
-"""What the page of a lesson shows without a browser: its steps, and the run that was judged."""
+"""The page of a lesson without a browser: its steps, and the judged run."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ NUMBERS = range(1, len(catalogue.folders()) + 1)
 OF_A_TERMINAL = re.compile(r"\btsc\b|\w\.ts\b|____|--virtual|Ctrl|\[(print|page|hint)\]")
 
 
-def judged(number: int, program: str) -> tuple[dict[str, object], page_lessons.JudgedRun]:
-    """Return what a check says, and its run once more, as the page lets it go on."""
+def judge(number: int, program: str) -> tuple[dict[str, object], page_lessons.JudgedRun]:
+    """Return the result of a check, and its run again, as the page plays it."""
     marking = page_lessons.LessonCheck(number, program.encode(), "en")
     while not (answer := marking.go(700))["verdict"]:
         pass
@@ -44,10 +44,10 @@ def test_the_steps_are_written_for_the_page(number: int, language: str) -> None:
     assert len(steps) >= 4 and all(step["blocks"] for step in steps)
     assert steps[-1]["hint"]
     assert not OF_A_TERMINAL.search(json.dumps(steps, ensure_ascii=False))
-    printed = catalogue.page(catalogue.folder_of(str(number)), catalogue.PUPIL, language)
-    assert steps[-1]["hint"] not in printed
-    assert re.search(r"`tsc lesson check \d+ \w+\.ts`", printed)
-    assert not re.search(r"\[(print|page|hint)\]", printed)
+    printed_text = catalogue.page(catalogue.folder_of(str(number)), catalogue.PUPIL, language)
+    assert steps[-1]["hint"] not in printed_text
+    assert re.search(r"`tsc lesson check \d+ \w+\.ts`", printed_text)
+    assert not re.search(r"\[(print|page|hint)\]", printed_text)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -58,14 +58,14 @@ def test_what_is_packed_of_a_page_has_the_same_steps(
     whole = page_lessons.steps(number, language)
     pages: list[tuple[str, str]] = []
 
-    def packed(path: Path) -> str:
+    def pack_page(path: Path) -> str:
         text = path.read_text(encoding="utf-8")
         if path.suffix != ".md":
             return text
         pages.append((text, text_on_page(text)))
         return pages[-1][1]
 
-    monkeypatch.setattr(catalogue, "_text", packed)
+    monkeypatch.setattr(catalogue, "_text", pack_page)
     assert page_lessons.steps(number, language) == whole
     assert all("[print]" in text and "[print]" not in less for text, less in pages) and pages
 
@@ -79,7 +79,7 @@ def test_the_run_that_was_judged_is_the_one_that_is_seen(
     number: int, program: str, seconds: float | None, touches: bool
 ) -> None:
     """Also where chance moves sensors, motors and walls: it ends where the judge saw it."""
-    answer, judged_run = judged(number, program)
+    answer, judged_run = judge(number, program)
     state = judged_run.state()
     assert (state["touches"] is not None) is touches
     assert not state["is_running"]
@@ -92,9 +92,9 @@ def test_the_run_that_was_judged_is_the_one_that_is_seen(
 
 
 def test_a_run_whose_keys_the_judge_presses_is_seen_with_them() -> None:
-    """Nobody else presses any."""
+    """Nobody else presses keys."""
     drives = "LOOP(FOREVER); IF(KEY_UP); M(60, 60); ELSE; M(0, 0); END_IF; W(0.02); END_LOOP"
-    answer, judged_run = judged(18, drives)
+    answer, judged_run = judge(18, drives)
     assert "KEY_RIGHT was held" in answer["said"][0]  # type: ignore[index]
     state = judged_run.state()
     assert state["pose"][0] > 170, "it went forward"
@@ -126,6 +126,6 @@ def test_a_judged_run_can_be_stopped_before_its_end() -> None:
     judged_run = page_lessons.JudgedRun("tinibot", 1, 1, 2500, image, Marks(()))
     judged_run.go(1000)
     judged_run.stop()
-    before = judged_run.state()["pose"]
+    state_before = judged_run.state()["pose"]
     judged_run.go(1000)
-    assert judged_run.state()["pose"] == before and not judged_run.state()["is_running"]
+    assert judged_run.state()["pose"] == state_before and not judged_run.state()["is_running"]

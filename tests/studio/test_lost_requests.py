@@ -1,4 +1,4 @@
-"""What a page asks through `tsc studio` is lost, late or comes again, on a clock of the test.
+"""Requests of a page to `tsc studio` that are lost, late or repeated, on a test clock.
 
 A press of STOP stops the robot once, by the first request that arrives after it; a run that the
 page asks for later is not undone. Robots are counted stops, their threads the test's own steps.
@@ -32,7 +32,7 @@ RUN = {"do": "upload", "runs": True}
 
 
 class CountedLink:
-    """A robot that does what it is told at once."""
+    """A robot that obeys at once."""
 
     has_run = False
 
@@ -59,9 +59,14 @@ class SteppedRobot:
 
     def __init__(
         self, port: str, robot: str, language: str, tab: str, connection: int, stops: int,
-        before: list[SteppedRobot],
+        stepped_robots_before: list[SteppedRobot],
     ) -> None:  # fmt: skip
-        self.port, self.tab, self.connection, self.before = port, tab, connection, before
+        self.port, self.tab, self.connection, self.before = (
+            port,
+            tab,
+            connection,
+            stepped_robots_before,
+        )
         self.attending = Attending(lambda: World.now_ms / 1000, stops)
         self.link = CountedLink(self._note)
         self.has_ended = self.is_parting = False
@@ -82,14 +87,14 @@ class SteppedRobot:
 
 
 class World:
-    """What all share: the clock, and what robots have done."""
+    """The shared state: the clock, and the robots' actions."""
 
     now_ms = 0
     actions: ClassVar[list[tuple[str, int, int]]] = []
 
 
 @pytest.fixture
-def stepped(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hosting]:
+def stepped_hosting(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hosting]:
     monkeypatch.setattr(World, "now_ms", 0)
     monkeypatch.setattr(World, "actions", [])
     monkeypatch.setattr(hosting_of, "HostedRobot", SteppedRobot)
@@ -101,8 +106,8 @@ class TornPage:
 
     def __init__(self, hosting: Hosting, chance: Random, ask: Callable[[Json], Json]) -> None:
         self.hosting, self.chance, self.ask = hosting, chance, ask
-        self.presses: list[int] = []  # when
-        self.heard: list[int] = []  # presses that a beat has told, and the robot has heard of
+        self.presses: list[int] = []  # times of the presses
+        self.heard: list[int] = []  # presses sent with a beat that the robot has heard
         self._connection = self._seen = self._stops = self._number = 0
         self._asked: list[Json] = []
         self._under_way: list[tuple[int, Json]] = []
@@ -163,31 +168,33 @@ class TornPage:
 def check_stops_kept(page: TornPage) -> None:
     """Whatever has arrived until now."""
     newest = 0
-    accepted = 0
+    accepted_count = 0
     for what, stops, _ in World.actions:
         if what == "stop":
             assert stops > newest, "once for each press"
-            assert stops > accepted, "what was started later goes on"
+            assert stops > accepted_count, "what was started later goes on"
             newest = stops
         else:
             assert stops >= newest, "it was asked for before"
-            accepted = max(accepted, stops)
+            accepted_count = max(accepted_count, stops)
     for number in page.heard:
         after = [at_ms for what, _, at_ms in World.actions
                  if what == "stop" and at_ms >= page.presses[number - 1]]  # fmt: skip
-        assert after or accepted >= number, f"press {number} was told, and stopped nothing"
+        assert after or accepted_count >= number, f"press {number} was told, and stopped nothing"
 
 
 @pytest.mark.sampled("seed", keep=20)
 @pytest.mark.parametrize("seed", range(60))
-def test_each_press_of_stop_stops_once_whatever_is_lost(stepped: Hosting, seed: int) -> None:
+def test_each_press_of_stop_stops_once_whatever_is_lost(
+    stepped_hosting: Hosting, seed: int
+) -> None:
     chance = Random(seed)
-    page = TornPage(stepped, chance, stepped.answer)
+    page = TornPage(stepped_hosting, chance, stepped_hosting.answer)
     page.connect()
     for _ in range(1500):
         World.now_ms += LOOK_MS
         page.arrive()
-        robot = cast(SteppedRobot | None, stepped.robot_of("me"))
+        robot = cast(SteppedRobot | None, stepped_hosting.robot_of("me"))
         if robot is not None:
             robot.step()
             if robot.has_ended:
@@ -203,18 +210,18 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(stepped: Hosting, seed: 
         elif does < 0.032 or (not page.is_there and does < 0.05):
             page.connect()
     kinds = {what for what, _, _ in World.actions}
-    assert kinds == {"stop", "run"}  # so that it was about something
+    assert kinds == {"stop", "run"}  # both kinds of requests were lost
 
 
 @pytest.mark.parametrize("runs", [True, False])
 def test_a_stop_of_the_connection_before_stops_unless_a_run_came_after_it(
-    stepped: Hosting, runs: bool
+    stepped_hosting: Hosting, runs: bool
 ) -> None:
     def asks(do: str, connection: int, *asked: Json, **more: object) -> None:
-        stepped.answer({"do": do, "page": "me", "connection": connection, "port": "p", "seen": 0,
-                        "robot": "tinibot", "language": "en", "asked": [*asked],
+        stepped_hosting.answer({"do": do, "page": "me", "connection": connection, "port": "p",
+                                "seen": 0, "robot": "tinibot", "language": "en", "asked": [*asked],
                         **more})  # fmt: skip
-        cast(SteppedRobot, stepped.robot_of("me")).step()
+        cast(SteppedRobot, stepped_hosting.robot_of("me")).step()
 
     asks("connect", 1)
     asks("beat", 1)
@@ -231,13 +238,13 @@ PAGE_SCRIPT = Path(__file__).with_name("lost_requests_in_node.mjs")
 
 
 def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
-    """Nothing comes after its end. Where a few in a row are lost, all is done, and once; and the
-    page's next connection is as the first one of a fresh page.
+    """Nothing follows its end. If a few in a row are lost, each is still done once, and the page's
+    next connection is like that of a fresh page.
     """
     rows = [json.loads(line) for line in in_node(PAGE_SCRIPT, "400")]
     assert len(rows) == 400
     wild = [row["first"]["isThere"] for row in rows if row["isWild"]]
-    assert sum(wild) < 0.8 * len(wild)  # so some are lost
+    assert sum(wild) < 0.8 * len(wild)  # some requests are lost
     assert sum(len(row["held"]) for row in rows) > len(rows) / 2
     for row in rows:
         for part in (row["first"], row["second"]):
@@ -269,7 +276,7 @@ def robot() -> Iterator[PtyRobot]:
 def asker(
     request: pytest.FixtureRequest, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[AskingPage]:
-    """One that has met its robot, and may ask as often as a test looks."""
+    """Return a client that has met its robot, and may ask at every look of a test."""
     monkeypatch.setattr(classroom, "REQUEST_RATE", (1e9, 1e9))
     hosting = Hosting()
     if request.param == "page":
@@ -279,7 +286,7 @@ def asker(
         join = {"do": "join", "code": room.code, "name": "Ana"}
         token = room.answer("", "192.0.2.9", join)["token"]
         room.answer(token, "192.0.2.9", {"do": "here", "wants": True})
-        page = AskingPage(lambda asked: room.answer(token, "192.0.2.9", asked), "turn")
+        page = AskingPage(lambda request: room.answer(token, "192.0.2.9", request), "turn")
     assert page.asks("connect") == {}
     page.beats_until(lambda item: "connected" in item, "it is met")
     yield page
@@ -301,11 +308,11 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
     until(lambda: has_news(1) and not robot.moves, "it stands")
     drives(1)
     began = len(robot.heard)
-    asker.asks("stop", stops=1)  # late, and a beat that comes again
+    asker.asks("stop", stops=1)  # late, or a repeated beat
     for _ in range(10):
         asker.asks("beat", stops=1)
     assert robot.moves and b"\0" * 4 not in robot.heard[began:]
-    # Another tab, and whoever counts nothing, always stop.
+    # Another tab, and a page that counts nothing, always stop.
     other_tab = {"page": "other"} if asker.port == "turn" else {"tab": "other"}
     others: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]
     for other in others:
@@ -317,8 +324,9 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
 def test_a_connect_whose_answer_is_lost_is_offered_again(
     asker: AskingPage, robot: PtyRobot
 ) -> None:
-    """It is the same one, or the page's next one takes its port over; one that is late does
-    nothing."""
+    """The same one is offered, or the page's next one takes its port over; a late one does
+    nothing.
+    """
 
     def meets(connection: int) -> None:
         asker.news.clear()
@@ -326,7 +334,7 @@ def test_a_connect_whose_answer_is_lost_is_offered_again(
         assert asker.asks("connect", connection=connection) == {}
         asker.beats_until(lambda item: "connected" in item, "it is met", connection=connection)
         [met] = [item for item in asker.news if "connected" in item]
-        assert met["held_by"] == ""  # and not by the one before
+        assert met["held_by"] == ""  # not held by the previous page
 
     meets(2)
     meets(3)

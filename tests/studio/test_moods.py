@@ -1,4 +1,4 @@
-"""How the virtual robot looks says what happens in its run: the page's own code, in node."""
+"""The virtual robot's face shows the events of its run: the page's own code, in node."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Face = dict[str, Any]
 
 
 def faces(*runs: list[State]) -> list[tuple[list[Face], list[Face]]]:
-    """Return how a robot looks in each state of its runs, and when one looks back at it."""
+    """Return the robot's faces in each state of its runs, and when looking back."""
     rows = json.loads(in_node(SCRIPT, given=json.dumps(runs))[0])
     return [(face["seen"], face["again"]) for face in rows]
 
@@ -35,7 +35,7 @@ def run(text: str, world: str, ms: int) -> list[State]:
     return states
 
 
-def made(rng: random.Random) -> list[State]:
+def make_states(rng: random.Random) -> list[State]:
     """Return states of a run that no robot has driven."""
     state: State = {"now_ms": 0, "bumps": 0, "score": {"taken": 0}, "motors": [0, 0], "fault": None,
                     "touches": None, "is_running": True, "is_waiting": False}  # fmt: skip
@@ -60,7 +60,7 @@ def sign(number: float) -> int:
 
 
 def test_it_looks_where_it_drives_and_the_same_when_somebody_looks_back() -> None:
-    runs = [made(random.Random(seed)) for seed in range(20)]
+    runs = [make_states(random.Random(seed)) for seed in range(20)]
     moods = set()
     for states, (frames, looked_back) in zip(runs, faces(*runs), strict=True):
         assert looked_back == frames
@@ -103,13 +103,13 @@ def test_each_mood_is_drawn_in_its_own_way_and_in_the_chosen_colour() -> None:
     calm = {"mood": "calm", "ahead": 0, "aside": 0, "isBlinking": False}
     looks = [*({**calm, "mood": mood} for mood in MOODS), {**calm, "isBlinking": True}]
     for name in ("tinibot", "liner", "grabber"):
-        drawn = drawings_of(*((name, None, {**STANDING_STILL, "face": face}) for face in looks))
-        assert len({json.dumps(calls) for calls in drawn}) == len(looks), name
+        drawing = drawings_of(*((name, None, {**STANDING_STILL, "face": face}) for face in looks))
+        assert len({json.dumps(calls) for calls in drawing}) == len(looks), name
         ahead, left = drawings_of(
             (name, None, {**STANDING_STILL, "face": {**calm, "ahead": 1}}),
             (name, None, {**STANDING_STILL, "face": {**calm, "aside": 1}}),
         )
-        pupils = [shapes(calls, "fill", "#20242a") for calls in (drawn[0], ahead, left)]
+        pupils = [shapes(calls, "fill", "#20242a") for calls in (drawing[0], ahead, left)]
         still, to_front, to_left = (
             [row for row in drawn_shapes if len(row) == 5] for drawn_shapes in pupils
         )

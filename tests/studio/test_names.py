@@ -1,4 +1,4 @@
-"""Names of pupils: what hides nothing, and what a teacher takes for the same."""
+"""Names of pupils: nothing is hidden, and names that a teacher cannot distinguish are equal."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ def test_others_are_others(one: str, other: str) -> None:
 def test_what_shows_nothing_is_no_name_and_hides_in_none(blank: str) -> None:
     assert plain_name(blank * 3) == plain_name(f" {blank} {blank}") == ""
     assert plain_name(f"Ana{blank}") != ""
-    shown = plain_name(f"Ana{blank}").rstrip("?")  # what a control becomes
-    assert are_alike(unicodedata.normalize("NFD", shown).rstrip("\u0301"), "Ana")
+    shown_text = plain_name(f"Ana{blank}").rstrip("?")  # a control character is replaced
+    assert are_alike(unicodedata.normalize("NFD", shown_text).rstrip("\u0301"), "Ana")
 
 
 def test_a_name_that_is_taken_gets_a_number() -> None:

@@ -1,4 +1,4 @@
-"""The page as a remote control: what its robot is told, on a clock of the script.
+"""The page as a remote control: the messages to its robot, on a clock of the script.
 
 What is held is said at each change and every 200 ms, and nothing is said while nothing is held.
 """
@@ -25,15 +25,15 @@ UP, A = 1, 16
 NOTHING = [0, 0, 0]
 
 
-def played(path: Path, *story: Any) -> dict[str, Any]:
+def play_story(path: Path, *story: Any) -> dict[str, Any]:
     (line,) = in_node(SCRIPT, str(path), json.dumps(story))
     outcome: dict[str, Any] = json.loads(line)
     return outcome
 
 
 def sent_to_robot(path: Path, *story: Any) -> list[Any]:
-    """Return what the robot is told, without its side."""
-    return [[ms, *held] for ms, _, *held in played(path, *story)["told"]]
+    """Return the messages to the robot, without its side."""
+    return [[ms, *held] for ms, _, *held in play_story(path, *story)["told"]]
 
 
 def test_it_is_said_at_each_change_and_again_while_it_is_held(page_data: Path) -> None:
@@ -78,7 +78,7 @@ def test_keys_of_a_keyboard_are_keys_and_its_arrows_move_a_stick_alone(page_data
 
 @pytest.mark.parametrize("more", [{"on": "field"}, {"ctrlKey": True}, {"repeat": True}], ids=str)
 def test_keys_that_are_somebody_elses(page_data: Path, more: dict[str, Any]) -> None:
-    """Of a field, of the browser, or of one that was held before."""
+    """Keys of a text field, of the browser, or held before."""
     assert sent_to_robot(page_data, WHOLE, ["keydown", "ArrowUp", more], ["passes", 500]) == []
 
 
@@ -111,7 +111,7 @@ def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(page_data: Path, end: 
 
 
 def test_a_key_whose_end_nobody_sees_is_not_held_with_the_next_one(page_data: Path) -> None:
-    """It was let go in another window."""
+    """The key was released in another window."""
     story = [["keydown", "b"], ["event", "blur"], ["keydown", "ArrowUp"]]
     helds = [held for _, *held in sent_to_robot(page_data, WHOLE, *story)]
     assert helds == [[32, 0, 0], NOTHING, [UP, 0, 0]]
@@ -132,15 +132,15 @@ def test_what_the_program_reads_is_there_and_nothing_else(page_data: Path) -> No
         driven = ["offer", "driving", {"reads": reads}]
         parts = [reading for reading in reads if reading.startswith("KEY")]
         stick = ["stick"] if any(reading.startswith("PAD") for reading in reads) else []
-        assert played(page_data, driven)["shown"] == parts + stick
-    assert played(page_data, WHOLE, ["offer", "driving", None])["shown"] == []
-    another = ["offer", "link", {"reads": ALL}]  # than the one that is seen
-    assert played(page_data, another)["shown"] == []
+        assert play_story(page_data, driven)["shown"] == parts + stick
+    assert play_story(page_data, WHOLE, ["offer", "driving", None])["shown"] == []
+    another = ["offer", "link", {"reads": ALL}]  # differs from the visible offer
+    assert play_story(page_data, another)["shown"] == []
 
 
 def test_a_robot_without_a_remote_control_is_told_nothing(page_data: Path) -> None:
     deaf = ["offer", "link", {"reads": ALL, "isDeaf": True}]
-    outcome = played(
+    outcome = play_story(
         page_data, ["side", "side_real"], deaf, ["keydown", "ArrowUp"], ["passes", 500], ["stop"],
         ["gamepads", [[0, -1], [0]]], ["event", "gamepadconnected"], ["passes", 500],
     )  # fmt: skip
@@ -153,7 +153,7 @@ def test_a_robot_that_comes_to_be_seen_is_told_what_is_pressed_from_then_on(
 ) -> None:
     """The one before hears that all is let go."""
     real = ["offer", "link", {"reads": ALL}]
-    outcome = played(
+    outcome = play_story(
         page_data, WHOLE, real, ["down", "KEY_UP", 1], ["passes", 10], ["side", "side_real"],
         ["passes", 500], ["up", "KEY_UP", 1], ["down", "KEY_A", 1], ["side", "side_virtual"],
         ["passes", 500],

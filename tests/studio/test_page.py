@@ -1,4 +1,4 @@
-"""The page as somebody uses it: programs, messages, files, and what is kept."""
+"""Use of the page: programs, messages, files, and stored data."""
 
 from __future__ import annotations
 
@@ -13,7 +13,15 @@ from tests.pupils import corpus
 from tests.studio.programs import LACKING, messages_of, programs
 from tests.studio.programs import image as image_of
 from tests.support.sampling import some_of
-from tests.support.studio import Pages, asked, checked, image, noted, speak, write
+from tests.support.studio import (
+    Pages,
+    ask_worker,
+    image,
+    speak,
+    wait_for_note,
+    wait_until_checked,
+    write,
+)
 from tiniscript import check, compile, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.diagnostics.rendering import Message
@@ -23,7 +31,7 @@ from tiniscript.studio.checking import open_text
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-# The compiler gets what it is asked, or only once it is let go.
+# The compiler gets its requests at once, or only when released.
 HOLD = """() => {
   const { postMessage } = Worker.prototype, held = [];
   Worker.prototype.postMessage = function (...said) { held.push([this, said]); };
@@ -35,14 +43,14 @@ HOLD = """() => {
 
 
 def checks(page: Page, requests: list[dict[str, str]]) -> list[dict[str, Any]]:
-    """Return what the page's compiler says of programs."""
-    return asked(page, [{"do": "check", **request} for request in requests])
+    """Return the messages of the page's compiler for programs."""
+    return ask_worker(page, [{"do": "check", **request} for request in requests])
 
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(6))
 def test_every_program_gets_the_image_of_the_command(page: Page, part: int) -> None:
-    """Those of the paper, of all documents and cases, and the examples."""
+    """Programs of the paper, of all documents and cases, and the examples."""
     sample = programs()[part::6]
     assert len(sample) > 50
     requests = [
@@ -50,10 +58,10 @@ def test_every_program_gets_the_image_of_the_command(page: Page, part: int) -> N
     ]
     answers = checks(page, requests)
     for program, answer in zip(sample, answers, strict=True):
-        compiled = image_of(program)
-        needs = unpack(bytes.fromhex(compiled)).needs if compiled else 0
-        refused = lacks(needs, robots.load(program.robot))  # which the page says
-        assert answer["image"] == ("" if refused else compiled), program.name
+        compiled_text = image_of(program)
+        needs = unpack(bytes.fromhex(compiled_text)).needs if compiled_text else 0
+        refused = lacks(needs, robots.load(program.robot))  # the page reports this
+        assert answer["image"] == ("" if refused else compiled_text), program.name
 
 
 @pytest.mark.sampled("first", "part")
@@ -62,7 +70,7 @@ def test_every_program_gets_the_image_of_the_command(page: Page, part: int) -> N
 def test_every_wrong_program_gets_the_words_of_the_command(
     page: Page, first: int, part: int
 ) -> None:
-    """In one language and the next in the other. This finds what was not packed, too."""
+    """Languages alternate. This also detects missing parts of the package."""
     requests = [
         {"text": entry.program, "robot": "tinibot", "language": ("en", "es")[(first + k) % 2]}
         for k, entry in enumerate(corpus.entries()[part::24])
@@ -78,7 +86,7 @@ def test_every_wrong_program_gets_the_words_of_the_command(
 def test_a_mistake_of_ours_is_told_with_its_name(page: Page) -> None:
     """The packed Python knows no lines of its sources; its tracebacks are made all the same."""
     with pytest.raises(Exception, match=r"in _request_handler\nKeyError: 'nonsense'"):
-        asked(page, [{"do": "nonsense", "text": ""}])
+        ask_worker(page, [{"do": "nonsense", "text": ""}])
 
 
 def test_what_is_typed_is_compiled_and_not_called_right_before(page: Page) -> None:
@@ -95,7 +103,7 @@ def test_what_is_typed_is_compiled_and_not_called_right_before(page: Page) -> No
     status.filter(has_text=re.compile("^…$")).wait_for()
     assert status.get_attribute("class") == ""
     page.evaluate("letGo()")
-    checked(page)
+    wait_until_checked(page)
     assert (status.inner_text(), status.get_attribute("class")) == ("1 mistake", "wrong")
 
 
@@ -108,16 +116,16 @@ def test_a_mistake_is_marked_where_it_is_and_its_button_repairs_it(page: Page) -
     assert row.inner_text().startswith("Línea 3")
     assert check("F(-2, 80)", language="es")[0].message in row.inner_text()
     row.get_by_role("button", name="Hacerlo").click()
-    checked(page)
+    wait_until_checked(page)
     assert page.inner_text("#status").startswith("El programa está bien")
     assert page.locator(".cm-content").inner_text().endswith("B(2, 80)")
     page.keyboard.press("Control+z")
-    checked(page)
+    wait_until_checked(page)
     assert page.inner_text("#status") == "1 error"
 
 
 @pytest.mark.parametrize(
-    ("program", "wanted"),
+    ("program", "wanted_text"),
     [
         ("R(90, 60)", "R(90 DEG, 60)"),
         ("F(1, 800)", "F(1, 100)"),
@@ -125,13 +133,13 @@ def test_a_mistake_is_marked_where_it_is_and_its_button_repairs_it(page: Page) -
          "CONTADOR = 0\ncontador = contador + 1\nF(contador, 50)"),
     ],
 )  # fmt: skip
-def test_a_button_does_what_its_message_names(page: Page, program: str, wanted: str) -> None:
-    """And undo takes it back."""
+def test_a_button_does_what_its_message_names(page: Page, program: str, wanted_text: str) -> None:
+    """Undo reverts it."""
     write(page, program)
     page.locator("#messages .repair").click()
     page.locator("#messages .repair").wait_for(state="detached")
-    checked(page)
-    assert image(page) == compile(wanted).image
+    wait_until_checked(page)
+    assert image(page) == compile(wanted_text).image
     page.click("#undo")
     page.locator("#messages .repair").wait_for()
 
@@ -141,7 +149,7 @@ def test_a_repair_can_be_chosen_in_the_text(page: Page) -> None:
     page.locator("#messages .repair").wait_for()
     page.hover(".cm-lintRange-error")
     page.click(".cm-tooltip .cm-diagnosticAction")
-    checked(page)
+    wait_until_checked(page)
     assert image(page) == compile("B(2, 80)").image
 
 
@@ -149,13 +157,13 @@ def test_the_words_are_those_of_the_robot(page: Page) -> None:
     write(page, "LINE_L")
     assert page.inner_text("#status").startswith("1 mistake")
     page.select_option("#robot", "liner")
-    checked(page)
+    wait_until_checked(page)
     assert image(page) == compile("LINE_L", "liner").image
     write(page, "")
     page.keyboard.type("li")
     page.wait_for_selector(".cm-tooltip-autocomplete")
-    offered = page.locator(".cm-tooltip-autocomplete .cm-completionLabel").all_inner_texts()
-    assert {"LINE_L", "LINE_R"} <= set(offered) and "LIGHT_L" not in offered
+    offers = page.locator(".cm-tooltip-autocomplete .cm-completionLabel").all_inner_texts()
+    assert {"LINE_L", "LINE_R"} <= set(offers) and "LIGHT_L" not in offers
 
 
 def test_words_of_the_language_have_colors(page: Page) -> None:
@@ -184,7 +192,7 @@ def test_work_is_kept(page: Page, only_page: tuple[Pages, Page]) -> None:
     page.click("#words")
     write(page, "GRIPPER(90)")
     page.reload()
-    checked(page)
+    wait_until_checked(page)
     assert page.locator("#words[aria-pressed=true]").count() == 1
     assert "DISTANCE sensor de distancia" in page.inner_text("#values")
     assert page.locator(".cm-content").inner_text() == "GRIPPER(90)"
@@ -194,12 +202,12 @@ def test_work_is_kept(page: Page, only_page: tuple[Pages, Page]) -> None:
     assert other.locator(".cm-content").inner_text() == "GRIPPER(90)"
     write(other, "S")
     other.close()
-    page.reload()  # and each tab keeps its own
-    checked(page)
+    page.reload()  # each tab keeps its own program
+    wait_until_checked(page)
     assert page.locator(".cm-content").inner_text() == "GRIPPER(90)"
 
 
-# What the tab has kept is of no use; what the last tab has kept is, or is damaged, too.
+# The tab's stored data is useless; that of the last tab is not, or is damaged, too.
 DAMAGED = (
     ("no JSON", '{"text": 5}'),
     ("null", '{"text": "S", "robot": "../x", "language": "<b>"}'),
@@ -216,44 +224,44 @@ def test_damaged_work_does_no_harm(page: Page, pytestconfig: pytest.Config) -> N
             kept,
         )
         page.reload()
-        checked(page)
+        wait_until_checked(page)
         assert page.input_value("#robot") == "tinibot"
         assert (image(page) == compile("S").image) == ('"S"' in kept[1])
     page.click("#view_text")
 
 
 def test_files_are_opened_and_saved(page: Page, tmp_path: Path) -> None:
-    before = page.locator(".cm-content").inner_text()
+    text_before = page.locator(".cm-content").inner_text()
     path = tmp_path / "baile <b>.ts"
     path.write_bytes("\ufeffSI|BEEP(1, 440); // á\r\nS\r\n".encode())
     page.set_input_files("#file", path)
-    noted(page, "Opened")
-    checked(page)
+    wait_for_note(page, "Opened")
+    wait_until_checked(page)
     assert page.inner_text("#note") == "Opened: baile <b>.ts"
     assert image(page) == compile("SI|BEEP(1, 440);S").image
-    with page.expect_download() as loaded:
+    with page.expect_download() as download_info:
         page.click("#save")
-    saved = tmp_path / "saved.ts"
-    loaded.value.save_as(saved)
-    assert saved.read_bytes() == "SI|BEEP(1, 440); // á\nS\n".encode()
+    saved_path = tmp_path / "saved.ts"
+    download_info.value.save_as(saved_path)
+    assert saved_path.read_bytes() == "SI|BEEP(1, 440); // á\nS\n".encode()
     page.locator(".cm-content").focus()
-    page.keyboard.press("Control+z")  # what was there before is not lost
-    checked(page)
-    assert page.locator(".cm-content").inner_text() == before
+    page.keyboard.press("Control+z")  # the previous program can be restored
+    wait_until_checked(page)
+    assert page.locator(".cm-content").inner_text() == text_before
 
 
 def test_a_file_that_is_no_program_leaves_the_program(page: Page, tmp_path: Path) -> None:
     write(page, "SI|F(4, 80)")
-    before = image(page)
+    image_before = image(page)
     for name, data in (("nul", b"\x7fELF\0\0\0"), ("bytes", b"\xff\xfe\xfa"),
                        ("large", b"F(1, 80);" * 150_000)):  # fmt: skip
         path = tmp_path / f"{name}.ts"
         path.write_bytes(data)
         page.set_input_files("#file", path)
-        noted(page, path.name)
+        wait_for_note(page, path.name)
         wanted = open_text(data, "tinibot", "en")
         assert isinstance(wanted, Message) and wanted.message in page.inner_text("#note"), name
-        assert image(page) == before, name
+        assert image(page) == image_before, name
 
 
 HOSTILE = """<img src=x onerror="document.title='taken'"><script>document.title='taken'</script>
@@ -264,19 +272,19 @@ def test_a_hostile_program_is_only_text(page: Page, tmp_path: Path) -> None:
     path = tmp_path / "<img src=x onerror=alert(1)>.ts"
     path.write_text(HOSTILE, encoding="utf-8")
     page.set_input_files("#file", path)
-    noted(page, "Opened")
-    checked(page)
+    wait_for_note(page, "Opened")
+    wait_until_checked(page)
     assert page.title() == "TiniScript Studio"
     assert page.locator("img, main script").count() == 0
-    wanted = check(HOSTILE)
-    assert len(wanted) >= 1
-    assert wanted[0].message in page.inner_text("#messages")
+    wanted_messages = check(HOSTILE)
+    assert len(wanted_messages) >= 1
+    assert wanted_messages[0].message in page.inner_text("#messages")
 
 
 def test_the_address_brings_nothing_into_the_page(page: Page, address: str) -> None:
     write(page, "SI|F(1, 80)")
     page.goto(address + "?code=SI|F(9,9)#<img src=x onerror=alert(1)>")
-    checked(page)
+    wait_until_checked(page)
     assert page.locator(".cm-content").text_content() == "SI|F(1, 80)"
     page.click("#start_write")
     page.click("#view_text")
@@ -288,7 +296,7 @@ def test_a_long_program_is_compiled_while_it_is_typed(page: Page) -> None:
     assert image(page) == compile(text).image
     for _ in range(2):
         page.keyboard.type("S;")
-    checked(page)
+    wait_until_checked(page)
     assert image(page) == compile(text + "S;" * 2).image
 
 
@@ -299,18 +307,18 @@ def test_numbers_of_json_stay_whole(page: Page) -> None:
 
 
 def test_a_program_that_names_its_robot_chooses_it(page: Page) -> None:
-    """And who chooses another one changes the name."""
+    """Choosing another robot changes the name."""
     page.select_option("#robot", "tinibot")
     write(page, "// robot: liner\nSI|SHOW(LINE_L)\n")
-    checked(page)
+    wait_until_checked(page)
     assert page.input_value("#robot") == "liner"
     assert image(page) == compile("// robot: liner\nSI|SHOW(LINE_L)\n").image
     page.select_option("#robot", "grabber")
     page.wait_for_selector("#editor :text('robot: grabber')")
-    checked(page)
+    wait_until_checked(page)
     assert page.input_value("#robot") == "grabber"
     page.select_option("#robot", "tinibot")
     page.wait_for_selector("#editor :text('robot: tinibot')")
     write(page, "SI|S")
-    checked(page)
+    wait_until_checked(page)
     assert page.input_value("#robot") == "tinibot"

@@ -1,5 +1,5 @@
-"""What a person presses on the page, while what is between the page, `tsc studio` and the robot
-has a fault: it ends, each thing is said once, and the next try works.
+"""Actions of a person on the page during a fault between the page, `tsc studio` and the robot: each
+ends, is reported once, and the next try works.
 
 `python -m tests.studio.test_page_between 1 --seed 1` tries each action with each fault, and prints
 how long the page was silent, and how long it took; `--taught` does so in a class.
@@ -24,7 +24,7 @@ import pytest
 from tests.between.lines import FAULTS, BadLine, Fault
 from tests.between.telling import CLOCK, own_folders
 from tests.support import sampling, studio
-from tests.support.campaign import wanted
+from tests.support.campaign import make_options
 from tests.support.command import FOREVER, Command
 from tests.support.network import Network
 from tests.support.studio import Pages, write
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 SILENT_S, ROOM_S = 3.0, 0.5
 ENDS_S = 40.0  # the longest request, and a stop
-AGAIN_S = 40.0  # until the next try works
+AGAIN_S = 40.0  # time until the next try succeeds
 LISTEN = """(place) => {
   const line = document.querySelector(place);
   window.told = [];
@@ -46,15 +46,16 @@ LISTEN = """(place) => {
   window.listens.observe(line, { childList: true, characterData: true, subtree: true });
   return performance.now();
 }"""
-STANDING = re.compile(r"…|^Stopping|STOP: 0 of 1")  # what it says goes on
+STANDING = re.compile(r"…|^Stopping|STOP: 0 of 1")  # texts of something still going on
 CONNECTED = "Connected: "
 CONFIRMED = "has (?:now )?confirmed the stop"
 UNCONFIRMED = "has not confirmed the stop"
 
 
 class Between(NamedTuple):
-    """What happens between the page and `tsc studio`: pieces are late, or are lost with their
-    connection; for a while none come through, or `tsc studio` is suspended."""
+    """Faults between the page and `tsc studio`: pieces are late, or lost with their connection; for
+    a while none get through, or `tsc studio` is suspended.
+    """
 
     name: str
     late_s: float = 0.0
@@ -88,7 +89,7 @@ BUTTONS = {"connect": "#link_connect", "run": "#link_upload", "stop": "#stop",
 
 
 class BadNetwork(Network):
-    """To the browser it is the server: the port in what the browser asks is the server's."""
+    """A bad network that looks like the server to the browser: it replaces the port in requests."""
 
     def __init__(self, target: int, chance: Random) -> None:
         self.fault = Between("nothing")
@@ -111,7 +112,7 @@ class BadNetwork(Network):
         fault = self.fault
         return not fault.suspends and CLOCK.now_s < self.begun_s + fault.held_s
 
-    def passed(self, data: bytes, is_back: bool, number: int) -> bytes | None:
+    def pass_on(self, data: bytes, is_back: bool, number: int) -> bytes | None:
         if self.fault.is_cut and self.is_held:
             return None
         while self.is_held:
@@ -132,9 +133,9 @@ class TriedAction(NamedTuple):
 
 
 class Scene:
-    """A page, a `tsc studio` that is a process, a robot, and what is between them."""
+    """A page, a process of `tsc studio`, a robot, and the connections between them."""
 
-    def __init__(self, opened: Browser, chance: Random, stack: ExitStack) -> None:
+    def __init__(self, browser: Browser, chance: Random, stack: ExitStack) -> None:
         self._folders = own_folders(stack.enter_context(tempfile.TemporaryDirectory()))
         self._chance = chance
         self._stack = stack
@@ -148,14 +149,14 @@ class Scene:
         self.network = BadNetwork(target, chance)
         stack.callback(self.network.close)
         address = f"http://127.0.0.1:{self.network.port}/"
-        self.pages = Pages(opened, address, entrance=lambda: entrance.replace(
+        self.pages = Pages(browser, address, entrance=lambda: entrance.replace(
             f":{target}/", f":{self.network.port}/"))  # fmt: skip
         stack.callback(self.pages.close)
         self.page: Page = self.pages.open(is_alone=True)
         write(self.page, FOREVER)
         self.page.click("#side_real")
 
-    def tried(self, action: str, fault: Fault | Between) -> TriedAction:
+    def try_action(self, action: str, fault: Fault | Between) -> TriedAction:
         """Do something while there is a fault, then all of it without."""
         self._prepare(action, fault)
         page, place = self._place(action)
@@ -187,9 +188,9 @@ class Scene:
             self._leave()
             self._choose()
         else:
-            assert self._connect() == "", self._said()
+            assert self._connect() == "", self._link_text()
         if action == "stop":
-            assert self._run() == "", self._said()
+            assert self._run() == "", self._link_text()
 
     def _begin(self, fault: Fault | Between) -> None:
         if isinstance(fault, Fault):
@@ -214,11 +215,11 @@ class Scene:
         why = self._connect() or self._run() or self._stop()
         return [f"the next try: {why}"] if why else []
 
-    def _said(self) -> str:
+    def _link_text(self) -> str:
         return self.page.locator("#link_said").inner_text()
 
     def _place(self, action: str) -> tuple[Page, str]:
-        """Return the page on which it is pressed, and where that tells what comes of it."""
+        """Return the page with the button, and the element with its result."""
         return self.page, SAID
 
     def _until(self, pattern: str, limit_s: float, page: Page | None = None) -> bool:
@@ -231,7 +232,7 @@ class Scene:
         return False
 
     def _choose(self) -> None:
-        """Have the robot's port in the list, and chosen."""
+        """Choose the robot's port in the list."""
         page = self.page
         with pytest.MonkeyPatch.context() as patch:
             for name, value in self._folders.items():
@@ -247,7 +248,7 @@ class Scene:
         end_s = CLOCK.now_s + AGAIN_S
         while not page.locator("html[data-robot=connected]").count():
             if CLOCK.now_s > end_s:
-                return f"no connection: {self._said()}"
+                return f"no connection: {self._link_text()}"
             if (
                 page.locator("#link_connect").is_visible()
                 and page.locator("#link_connect").is_enabled()
@@ -263,11 +264,11 @@ class Scene:
         self.page.evaluate(LISTEN, SAID)
         self.page.click("#link_upload")
         if not self._until("The robot has the program|stopped", AGAIN_S):
-            return f"no run: {self._said()}"
+            return f"no run: {self._link_text()}"
         end_s = CLOCK.now_s + AGAIN_S
         while not self.line.moves:
             if CLOCK.now_s > end_s:
-                return f"it does not drive: {self._said()}"
+                return f"it does not drive: {self._link_text()}"
             self.page.wait_for_timeout(50)
         return ""
 
@@ -275,7 +276,7 @@ class Scene:
         self.page.evaluate(LISTEN, SAID)
         self.page.click("#stop")
         if not self._until(CONFIRMED, AGAIN_S):
-            return f"no stop: {self._said()}"
+            return f"no stop: {self._link_text()}"
         return "it moves" if self.line.moves else ""
 
     def _leave(self) -> None:
@@ -285,23 +286,23 @@ class Scene:
 
 
 class ClassScene(Scene):
-    """The same in a class: a pupil, a teacher, and the class's robot behind the line."""
+    """A scene of a class: a pupil, a teacher, and the class's robot on the bad line."""
 
-    def __init__(self, opened: Browser, chance: Random, stack: ExitStack) -> None:
+    def __init__(self, browser: Browser, chance: Random, stack: ExitStack) -> None:
         patch = stack.enter_context(pytest.MonkeyPatch.context())
         for name, value in own_folders(stack.enter_context(tempfile.TemporaryDirectory())).items():
             patch.setenv(name, value)
         self._chance = chance
         self.line = BadLine(Fault("nothing"), chance, 0)
         stack.callback(self.line.clear_away)
-        taught = stack.enter_context(studio.taught([self.line.port]))
-        self.pages = Pages(opened, taught.server.address)
+        class_ = stack.enter_context(studio.serve_class([self.line.port]))
+        self.pages = Pages(browser, class_.server.address)
         stack.callback(self.pages.close)
-        self.teacher = self.pages.visit(taught.server.entrance(), "wall", is_alone=True)
+        self.teacher = self.pages.visit(class_.server.entrance(), "wall", is_alone=True)
         self.page = self.pages.open(is_alone=True)
         write(self.page, FOREVER)
         self.page.click("#side_real")
-        for which, text in enumerate((taught.room.code, "Ana")):
+        for which, text in enumerate((class_.room.code, "Ana")):
             self.page.locator("#class_pupil input").nth(which).fill(text)
         self.page.click("[data-text=class_join]")
         self.page.locator(ASKS).wait_for()
@@ -314,20 +315,20 @@ class ClassScene(Scene):
             self._leave()
             self.page.locator(ASKS).wait_for()
             return
-        assert self._connect() == "", self._said()
+        assert self._connect() == "", self._link_text()
         if action in ("stop", "stop all"):
-            assert self._run() == "", self._said()
+            assert self._run() == "", self._link_text()
 
     def _mend(self, fault: Fault | Between) -> None:
         super()._mend(fault)
         self.line.begin(Fault("nothing"))
-        self.page.wait_for_timeout(1000 * LATCH_S)  # after a teacher's stop nobody drives
+        self.page.wait_for_timeout(1000 * LATCH_S)  # nobody drives after a teacher's stop
 
     def _connect(self) -> str:
         page, end_s = self.page, CLOCK.now_s + AGAIN_S
         while not page.locator("html[data-robot=connected]").count():
             if CLOCK.now_s > end_s:
-                return f"no connection: {self._said()}"
+                return f"no connection: {self._link_text()}"
             for button in (ASKS, "#class_pupil [data-text=link_connect]"):
                 if page.locator(button).is_visible() and page.locator(button).is_enabled():
                     page.click(button)
@@ -347,18 +348,18 @@ CLASS_LINES = tuple(line for line in LINES if line.name in (
 
 
 @contextmanager
-def class_scene(opened: Browser, chance: Random) -> Iterator[ClassScene]:
+def class_scene(browser: Browser, chance: Random) -> Iterator[ClassScene]:
     with ExitStack() as stack:
-        yield ClassScene(opened, chance, stack)
+        yield ClassScene(browser, chance, stack)
 
 
 @contextmanager
-def scene(opened: Browser, chance: Random) -> Iterator[Scene]:
+def scene(browser: Browser, chance: Random) -> Iterator[Scene]:
     with ExitStack() as stack:
-        yield Scene(opened, chance, stack)
+        yield Scene(browser, chance, stack)
 
 
-def judged(tried_action: TriedAction, room_s: float = ROOM_S) -> list[str]:
+def list_faults(tried_action: TriedAction, room_s: float = ROOM_S) -> list[str]:
     silent = tried_action.silence_s > SILENT_S + room_s
     return [
         *tried_action.wrong,
@@ -366,7 +367,7 @@ def judged(tried_action: TriedAction, room_s: float = ROOM_S) -> list[str]:
     ]
 
 
-def printed(tried_actions: Sequence[TriedAction]) -> None:
+def print_table(tried_actions: Sequence[TriedAction]) -> None:
     rows: dict[str, list[TriedAction]] = defaultdict(list)
     for tried_action in tried_actions:
         rows[tried_action.action].append(tried_action)
@@ -384,8 +385,8 @@ def test_a_sample_of_what_is_pressed_keeps_the_laws(
     chance = Random(sampling.seed(request.config))
     with scene(browser, chance) as opened_scene:
         faults: list[Fault | Between] = [*BETWEEN[:5], *LINES[:6]]
-        tried_action = opened_scene.tried(chance.choice(ACTIONS), chance.choice(faults))
-        assert not judged(tried_action, 3.0), tried_action
+        tried_action = opened_scene.try_action(chance.choice(ACTIONS), chance.choice(faults))
+        assert not list_faults(tried_action, 3.0), tried_action
 
 
 @pytest.mark.long
@@ -394,41 +395,41 @@ def test_a_sample_of_what_is_pressed_in_a_class_keeps_the_laws(
 ) -> None:
     chance = Random(sampling.seed(request.config))
     with class_scene(browser, chance) as scene:
-        tried_action = scene.tried(chance.choice(CLASS_ACTIONS), chance.choice(CLASS_LINES))
-        assert not judged(tried_action, 3.0), tried_action
+        tried_action = scene.try_action(chance.choice(CLASS_ACTIONS), chance.choice(CLASS_LINES))
+        assert not list_faults(tried_action, 3.0), tried_action
 
 
 if __name__ == "__main__":
-    given = wanted(1, 1, "network", "line", "taught")
+    options = make_options(1, 1, "network", "line", "taught")
     all_found = []
-    with studio.driver() as driver, studio.browser(driver) as opened:
-        for seed in range(given.seed, given.seed + given.count * given.taught):
-            with class_scene(opened, Random(seed)) as taught:
+    with studio.driver() as driver, studio.browser(driver) as browser:
+        for seed in range(options.seed, options.seed + options.count * options.taught):
+            with class_scene(browser, Random(seed)) as taught_class_scene:
                 for line in CLASS_LINES:
                     for action in CLASS_ACTIONS:
-                        all_found.append(taught.tried(action, line))
+                        all_found.append(taught_class_scene.try_action(action, line))
                         tried_action = all_found[-1]
                         print(
                             *tried_action[:4],
-                            judged(tried_action),
+                            list_faults(tried_action),
                             tried_action.messages,
                             sep="; ",
                             flush=True,
                         )
-        for seed in range(given.seed, given.seed + given.count * (not given.taught)):
-            with scene(opened, Random(seed)) as opened_scene:
-                faults: list[Fault | Between] = [*BETWEEN * (not given.line),
-                                                 *LINES * (not given.network)]  # fmt: skip
+        for seed in range(options.seed, options.seed + options.count * (not options.taught)):
+            with scene(browser, Random(seed)) as opened_scene:
+                faults: list[Fault | Between] = [*BETWEEN * (not options.line),
+                                                 *LINES * (not options.network)]  # fmt: skip
                 for fault in faults:
                     for action in ACTIONS:
-                        all_found.append(opened_scene.tried(action, fault))
+                        all_found.append(opened_scene.try_action(action, fault))
                         tried_action = all_found[-1]
                         print(
                             *tried_action[:4],
-                            judged(tried_action),
+                            list_faults(tried_action),
                             tried_action.messages,
                             sep="; ",
                             flush=True,
                         )
-    printed(all_found)
-    sys.exit(any(map(judged, all_found)))
+    print_table(all_found)
+    sys.exit(any(map(list_faults, all_found)))

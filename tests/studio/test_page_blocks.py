@@ -26,15 +26,25 @@ from tests.support.page_blocks import (
     block,
     box_of,
     drag,
+    list_offered_blocks,
     meet,
-    offered,
     path_of,
     start,
     text_of,
 )
 from tests.support.page_screens import SCREENS
 from tests.support.sampling import some_of
-from tests.support.studio import SETTLED, Pages, finger, hears, image, in_phase, shown, speak, write
+from tests.support.studio import (
+    SETTLED,
+    Pages,
+    finger,
+    hears,
+    image,
+    in_phase,
+    speak,
+    wait_for_blocks,
+    write,
+)
 from tiniscript import check, compile, robots
 from tiniscript.base.languages import languages
 from tiniscript.base.limits import PARAMETERS
@@ -68,7 +78,7 @@ def page(page: Page) -> Page:
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(10))
 def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None:
-    """Every tenth program of the documents and 30 random ones: what is shown is what is read.
+    """Every tenth program of the documents and 30 random ones: the visible blocks are those read.
 
     In a page of its own: what it makes there takes the keys of undo from the page's blocks. And
     random programs get the image of the command.
@@ -104,10 +114,11 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     page.keyboard.press("Control+a")
     page.keyboard.type("150")
     page.keyboard.press("Enter")
-    becomes(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 100);\nF(1, 80);\n")  # there is no more power
+    # The power cannot be larger.
+    becomes(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 100);\nF(1, 80);\n")
     page.select_option("#speed", "20")
     page.locator(".blocklyWidgetDiv input").wait_for(state="detached")
-    shown(page)
+    wait_for_blocks(page)
     page.click("#run")
     in_phase(page, "ended")
     assert image(page) == compile(text_of(page)).image
@@ -127,30 +138,30 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
 
 def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
     drag(page, "Move", "back", block(page, "forward"))
-    after = text_of(page)
-    assert after == "SI|F(2, 80);\nB(2, 80);\nS;\n"
+    text_after = text_of(page)
+    assert text_after == "SI|F(2, 80);\nB(2, 80);\nS;\n"
     page.mouse.move(600, 300)
     page.mouse.wheel(40, 30)
-    before = box_of(block(page, "forward"))
+    box_before = box_of(block(page, "forward"))
     page.click("#undo")
     becomes(page, "SI|F(2, 80);\nS;\n")
     assert block(page, "back").count() == 0
     page.click("#redo")
-    becomes(page, after)
+    becomes(page, text_after)
     assert block(page, "back").count() == 1
-    assert box_of(block(page, "forward")) == pytest.approx(before, abs=1)
+    assert box_of(block(page, "forward")) == pytest.approx(box_before, abs=1)
     page.locator("#speed").focus()  # wherever the focus is
     page.keyboard.press("Control+z")
     becomes(page, "SI|F(2, 80);\nS;\n")
     page.keyboard.press("Control+Shift+z")
-    becomes(page, after)
-    assert page.locator("#link_line").evaluate(KEPT_KEY)  # but in a field of text
+    becomes(page, text_after)
+    assert page.locator("#link_line").evaluate(KEPT_KEY)  # keys in a text field do not count
     block(page, "stop").click(position={"x": 6, "y": 6})
     page.keyboard.press("Delete")
     becomes(page, "SI|F(2, 80);\nB(2, 80);\n")
     page.keyboard.press("Control+z")
     block(page, "stop").wait_for()
-    becomes(page, after)
+    becomes(page, text_after)
     page.click("#view_text")
     page.locator(".cm-content").focus()
     page.keyboard.press("Control+z")
@@ -177,24 +188,24 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
     after[15] = "F(77, 80);"
     becomes(page, "\n".join(after) + "\n")
     for _ in range(2):
-        before = box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15))
+        box_before = box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15))
         page.keyboard.press("Control+z")
         becomes(page, long)
         page.locator(f"{PROGRAM} .blocklyActiveFocus").wait_for(state="attached")
-        page.evaluate(SETTLED)  # Blockly scrolls to what has the focus, and the page back
+        page.evaluate(SETTLED)  # Blockly scrolls to the focused block, and the page scrolls back
         assert box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15)) == pytest.approx(
-            before, abs=2
+            box_before, abs=2
         )
         assert page.locator("#editor .cm-activeLine").inner_text() == long.splitlines()[15]
         page.keyboard.press("Control+y")
         becomes(page, "\n".join(after) + "\n")
     high = box_of(block(page, "forward"))["height"]
     page.click("#words")
-    shown(page)
+    wait_for_blocks(page)
     assert box_of(block(page, "forward"))["height"] == pytest.approx(high, abs=1)
     page.click("#words")
     page.locator(".zoom button").nth(0).click()
-    shown(page)
+    wait_for_blocks(page)
 
 
 def test_looking_at_blocks_changes_no_text(page: Page) -> None:
@@ -317,14 +328,14 @@ def test_blocks_wait_while_a_text_is_being_typed(page: Page) -> None:
     assert block(page, "50").count() == 1
     page.keyboard.type("\nF(")
     page.locator("#blocks_note", has_text="wait").wait_for()
-    page.mouse.click(600, 330)  # what was typed is not taken back
+    page.mouse.click(600, 330)  # typed text is not undone
     page.locator("#blocks[data-state=shown]").wait_for()
     assert block(page, "F(").count() == 1
     assert text_of(page).endswith("F(1, 50)\nF(")
 
 
 def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
-    """And names code as blocks do, where blocks are seen."""
+    """When blocks are shown, it names code as blocks do."""
     start(page, "SI|S;\nLOOP(2);\n  F(-2, 80);\nEND_LOOP;\n")
     icons = page.locator("#blocks .blocklyWarningIcon, #blocks .blockly-icon-warning")
     assert icons.count() == 1
@@ -341,28 +352,28 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
         assert message.message in row_text and message.fix in row_text
     page.locator("#messages .repair").wait_for()
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
     assert bubble.count() == 0
     icons.first.click()
     bubble.wait_for()
-    named, mended = "here “forward” takes 0", "Try: “back 2 s at 80 %”"
+    named_text, mended_text = "here “forward” takes 0", "Try: “back 2 s at 80 %”"
     whole = "".join((bubble.text_content() or "").split())
-    assert "".join(named.split()) in whole and "".join(mended.split()) in whole
-    assert named in (first.text_content() or "")
+    assert "".join(named_text.split()) in whole and "".join(mended_text.split()) in whole
+    assert named_text in (first.text_content() or "")
     assert row.locator(".on_block").all_inner_texts() == ["forward", "back 2 s at 80 %"]
     assert page.locator("#messages .repair").count() == 1
     page.locator("#messages .place").click()
     focused = page.evaluate("document.activeElement.closest('.blocklyDraggable')?.textContent")
     assert "back" in focused or "forward" in focused.replace("\xa0", " ")
     page.locator("#messages .repair").click()
-    shown(page)
+    wait_for_blocks(page)
     becomes(page, "SI|S;\nLOOP(2);\n  B(2, 80);\nEND_LOOP;\n")
     assert icons.count() == 0
 
 
 @drawn
 def test_a_message_stands_on_no_block(page: Page) -> None:
-    """And one for which no room is left is put away."""
+    """A message without room is hidden."""
     bubble = page.locator("#blocks .blocklyBubble")
     for width, height in ((1366, 768), (1024, 600), (390, 844)):
         page.set_viewport_size({"width": width, "height": height})
@@ -403,8 +414,8 @@ def test_the_block_of_each_task_that_runs_is_marked(page: Page) -> None:
 def flyout(page: Page, group: str) -> str:
     page.locator(".blocklyToolboxCategory", has_text=group).click()
     page.locator(".blocklyFlyout:visible .blocklyDraggable").first.wait_for()
-    after = page.locator(".blocklyFlyout:visible .blocklyFlyoutBackground")
-    assert after.evaluate("e => getComputedStyle(e).fillOpacity") == "1"
+    locator_after = page.locator(".blocklyFlyout:visible .blocklyFlyoutBackground")
+    assert locator_after.evaluate("e => getComputedStyle(e).fillOpacity") == "1"
     return (page.locator(".blocklyFlyout:visible").text_content() or "").replace("\xa0", " ")
 
 
@@ -412,7 +423,7 @@ def flyout(page: Page, group: str) -> str:
 def test_the_words_of_the_robot_are_blocks(page: Page, pytestconfig: pytest.Config) -> None:
     for name in some_of(pytestconfig, "words of robots", robots.names(), 3):
         page.select_option("#robot", name)
-        shown(page)
+        wait_for_blocks(page)
         text = flyout(page, "Robot")
         profile = robots.load(name)
         for device in (*profile.kit.sensors, *profile.kit.actuators):
@@ -421,7 +432,7 @@ def test_the_words_of_the_robot_are_blocks(page: Page, pytestconfig: pytest.Conf
 
 
 def said_by(page: Page) -> set[str]:
-    """Return what stands on blocks, but for numbers."""
+    """Return the texts on blocks, except for numbers."""
     texts = page.locator(f"{PROGRAM} .blocklyText").all_text_contents()
     return {" ".join(text.split()) for text in texts if not text.isdigit()}
 
@@ -434,17 +445,17 @@ def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) 
         "forward", "s", "at", "%",
     }  # fmt: skip
     speak(page, "es")
-    shown(page)
+    wait_for_blocks(page)
     assert {"al empezar", "repite", "veces", "si", "si no"} <= said_by(page)
     page.click("#words")
-    shown(page)
+    wait_for_blocks(page)
     assert {"SI al empezar", "LOOP repite", "IF si", "ELSE si no", "F avanza"} <= said_by(page)
     speak(page, "en")
-    shown(page)
+    wait_for_blocks(page)
     worded = said_by(page)
     assert {"SI when it starts", "IF", "DISTANCE sensor", "S stop", "ELSE"} <= worded
     page.click("#words")
-    shown(page)
+    wait_for_blocks(page)
     assert "stop" in said_by(page)
 
 
@@ -503,7 +514,7 @@ def test_no_group_of_the_toolbox_scrolls(page: Page) -> None:
             page.select_option("#robot", name)
             for level in ("few", "usual", "all"):
                 page.select_option("#level", level)
-                shown(page)
+                wait_for_blocks(page)
                 rows = page.locator(".blocklyToolbox")
                 assert rows.evaluate("e => e.scrollHeight <= e.clientHeight"), (screen, level)
                 groups = page.evaluate(LOWEST)
@@ -522,7 +533,7 @@ def test_no_block_of_the_toolbox_is_cut(pages: Pages, screen: tuple[int, int]) -
         speak(page, language)
         for name in robots.names():
             page.select_option("#robot", name)
-            shown(page)
+            wait_for_blocks(page)
             for words, _, below, beside, _ in page.evaluate(LOWEST):
                 assert below <= 1 and beside <= 1, (language, name, words)
 
@@ -530,67 +541,68 @@ def test_no_block_of_the_toolbox_is_cut(pages: Pages, screen: tuple[int, int]) -
 def test_every_word_that_has_a_block_can_be_dragged_out(
     page: Page, pytestconfig: pytest.Config
 ) -> None:
-    """And to begin with, those of several things at once. A grey block is what nobody can read."""
+    """This includes starting blocks with several parts. A grey block is unreadable text."""
     kinds = set(KINDS) - {"grey"} - ({"plain"} if not PLAIN else set())
     with_names = "SI|SPEED = 5;\nDEF HOP;\n  F(1, SPEED);\nEND_DEF;\nHOP;\n"
     page.select_option("#robot", "grabber")
     start(page, with_names, "all")
-    assert offered(page) == kinds
+    assert list_offered_blocks(page) == kinds
     for word in (name for name, its in WORDS.items() if its.role.name != "later"):
         assert kinds_in(read_blocks(of_word(word), robots.load("grabber").kit)) <= kinds, word
     for name in some_of(pytestconfig, "toolboxes", robots.names(), 2):
         page.select_option("#robot", name)
         start(page, with_names, "all")
         has_actuators = bool(robots.load(name).kit.actuators)
-        assert offered(page) == kinds - (set() if has_actuators else {"set"}), name
+        assert list_offered_blocks(page) == kinds - (set() if has_actuators else {"set"}), name
         page.select_option("#level", "few")
-        assert {"when", "task"} <= offered(page), name
+        assert {"when", "task"} <= list_offered_blocks(page), name
 
 
 def test_a_lesson_offers_its_words_while_it_is_open(
     pages: Pages, pytestconfig: pytest.Config
 ) -> None:
-    """To somebody who has chosen few blocks, so many that one of its answers is made of them alone.
-    What another lesson has offered stays."""
+    """A beginner gets enough blocks for one of the lesson's answers. Blocks of other lessons
+    stay.
+    """
     page = pages.open(view="blocks")
     page.locator("#level").wait_for()
-    few = offered(page)
+    few = list_offered_blocks(page)
     assert page.input_value("#level") == "few" and "show" not in few
     page.click("#side_lessons")
     page.locator("#lesson:enabled").wait_for()
     folders = catalogue.folders()
-    before = few
+    few_before = few
     for folder in some_of(pytestconfig, "offers", folders, 4):
         number, lesson = folders.index(folder) + 1, catalogue.load(folder)
         kit = robots.load(lesson.robot).kit
         page.select_option("#lesson", str(number))
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
         page.locator("#lesson:enabled").wait_for()
-        words = offered(page)
-        assert before - {"set"} <= words, number  # its robot may switch nothing
-        before = set(words)
-        words |= {"call"} if "def" in words else set()  # of a word that somebody has made
+        words = list_offered_blocks(page)
+        assert few_before - {"set"} <= words, number  # the robot may have nothing to switch
+        few_before = set(words)
+        words |= {"call"} if "def" in words else set()  # a word defined by the pupil
         answers = [
             kinds_in(read_blocks(answer.program, kit)) for answer in catalogue.answers(folder)[0]
         ]
         assert any(kinds <= words for kinds in answers), (number, answers, words)
     page.select_option("#lesson", "1")
     page.locator("#lesson_page[data-lesson='1']").wait_for()
-    assert offered(page) - {"set"} == before - {"set"}
+    assert list_offered_blocks(page) - {"set"} == few_before - {"set"}
     page.click("#view_text")
     page.select_option("#lesson", "6")
     page.locator("#lesson_page[data-lesson='6']").wait_for()
     page.click("#view_blocks")
-    assert "show" in offered(page)
+    assert "show" in list_offered_blocks(page)
     speak(page, "es")
-    shown(page)
+    wait_for_blocks(page)
     page.locator("#lesson_page[data-lesson='6']").wait_for()
-    assert "show" in offered(page)
+    assert "show" in list_offered_blocks(page)
 
 
 @pytest.mark.long
 def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> None:
-    """Where the robot can tell: in the first world it stops before the wall."""
+    """If the robot can measure it: in the first world it stops before the wall."""
     for robot in robots.names():
         page.select_option("#robot", robot)
         asks = "DISTANCE" in robots.load(robot).kit.names
@@ -628,7 +640,7 @@ def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
         page.locator(f"{PROGRAM} .blocklyDropdownText", has_text=re.compile("lamp|gripper")).click()
         page.locator(".blocklyMenuItem", has_text=device).click()
         becomes(page, f"SI|S;\n{text};\n")
-    start(page, "SI|LED(0);\n")  # what a text says stays, and the compiler says what is wrong
+    start(page, "SI|LED(0);\n")  # text stays unchanged, and the compiler reports its mistakes
     assert text_of(page) == "SI|LED(0);\n"
     assert page.locator(f"{PROGRAM} .wrong").count() == 1
 
@@ -660,7 +672,7 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     assert text_of(page) == text
     drag(page, "Move", "back", block(page, "stop"))
     moved_text = text.replace("W(2);\n", "B(2, 80);\nW(2);\n")
-    becomes(page, moved_text)  # a hat that nobody moves stays after the block that it stood after
+    becomes(page, moved_text)  # a hat that was not moved stays after its block
     upper, last = (
         page.locator(f"{PROGRAM} > .blocklyDraggable", has_text=text) for text in ("10", "20")
     )
@@ -682,7 +694,7 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
 
 @drawn
 def test_a_hat_that_comes_back_is_put_where_it_is_seen(page: Page) -> None:
-    """One that is there stays out of sight, where somebody put it."""
+    """An existing hat stays if somebody put it, even out of sight."""
     word = "SI|DEF HOP;\n  F(1, 50);\nEND_DEF;\nHOP;\n"
 
     def end() -> float:
@@ -720,7 +732,7 @@ def numbers_of(page: Page) -> list[int]:
     return values
 
 
-# What is dragged where, and which numbers are typed then: the first one is number 0.
+# The dragged blocks with their targets, and the numbers typed: the first one is number 0.
 IN_BLOCKS = {
     13: ([("Repeat", "forever", "when it starts", "below"), ("Move", "forward", "forever", "in"),
           ("Events", "each time", "forever", "below"), ("Move", "turn right", "each time", "below"),
@@ -739,7 +751,7 @@ IN_BLOCKS = {
 @pytest.mark.sampled("number")
 @pytest.mark.parametrize("number", IN_BLOCKS)
 def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, number: int) -> None:
-    """By somebody who drags, and has chosen few blocks."""
+    """A beginner can do it by dragging."""
     page = pages.open(view="blocks", viewport={"width": 1366, "height": 900})
     page.locator("#level").wait_for()
     page.click("#side_lessons")
@@ -750,20 +762,20 @@ def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, n
     start(page, "SI|")
     dragged, numbers = IN_BLOCKS[number]
     for group, words, target, place in dragged:
-        before, to = text_of(page), block(page, target)
+        text_before, to = text_of(page), block(page, target)
         inside = 40 - round(box_of(to)["height"])
         drag(page, group, words, to, off=(12, inside) if place == "in" else (0, 0))
-        becomes_other(page, before)
-    if number == 14:  # every other time the lamp goes out
+        becomes_other(page, text_before)
+    if number == 14:  # every second time the lamp goes out
         page.locator(f"{PROGRAM} .blocklyDropdownText", has_text="yes").last.click()
         page.locator(".blocklyMenuItem", has_text="no").click()
-    for k, typed in numbers.items():
+    for k, typed_text in numbers.items():
         page.locator(f"{PROGRAM} .blocklyNumberField").nth(numbers_of(page)[k]).click()
         page.keyboard.press("Control+a")
-        page.keyboard.type(typed)
+        page.keyboard.type(typed_text)
         page.keyboard.press("Enter")
         page.locator(".blocklyWidgetDiv input").wait_for(state="detached")
-        shown(page)
+        wait_for_blocks(page)
     page.select_option("#speed", "20")
     page.click("#lesson_check")
     page.locator("#lesson_said[data-verdict]").wait_for(timeout=240_000)
@@ -773,7 +785,7 @@ def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, n
 @drawn
 def test_more_cases_of_an_if(page: Page) -> None:
     start(page, "SI|IF(DISTANCE < 10);\n  S;\nENDIF;\n")
-    for name, wanted in (
+    for name, wanted_text in (
         ("Add a case", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
         ("Add a case", "IF(DISTANCE < 10);\n  S;\nELSEIF(TRUE);\nELSE;\nENDIF;\n"),
         ("Remove the last case", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
@@ -781,7 +793,7 @@ def test_more_cases_of_an_if(page: Page) -> None:
         href = "more.svg" if name.startswith("Add") else "less.svg"
         page.locator(f"#blocks .blocklyBlockCanvas image[*|href$='{href}']").first.click()
         page.locator("#blocks[data-state=shown]").wait_for()
-        becomes(page, f"SI|{wanted}")
+        becomes(page, f"SI|{wanted_text}")
 
 
 @drawn
@@ -823,7 +835,7 @@ def test_keys_alone_add_a_block(page: Page) -> None:
     page.keyboard.press("t")
     for key in ("ArrowRight", "Enter", "ArrowDown", "Enter"):
         page.keyboard.press(key)
-        page.wait_for_timeout(100)  # as quick as fingers
+        page.wait_for_timeout(100)  # the delay of fast fingers
     hears(page, lambda: text_of(page).count("F(2, 80)") == 2, "another block")
 
 
@@ -842,10 +854,10 @@ def test_the_catalogue_has_what_blockly_says() -> None:
     """All that Blockly's core names, but for LACKS: the page uses none of its ready blocks."""
     need("" if BLOCKLY.is_dir() else why_stale() or f"there is no {BLOCKLY}")
     core = (BLOCKLY / "blockly_compressed.js").read_text(encoding="utf-8")
-    named = set(re.findall(r"[A-Z][A-Z0-9_]+", core))
+    names = set(re.findall(r"[A-Z][A-Z0-9_]+", core))
     messages = (BLOCKLY / "msg" / "en.js").read_text(encoding="utf-8")
     rows = re.findall(r'^Blockly\.Msg\["(\w+)"\] = ("(?:[^"\\]|\\.)*");$', messages, re.MULTILINE)
-    wanted = {f"blockly/{name}": json.loads(text) for name, text in rows if name in named}
+    wanted = {f"blockly/{name}": json.loads(text) for name, text in rows if name in names}
     texts = page_texts("en")
     own = {key: texts[key] for key in texts if key.startswith("blockly/")}
     assert own == {key: wanted[key] for key in wanted if key in own or not LACKS.search(key)}
@@ -867,12 +879,12 @@ def test_a_fault_is_said_at_its_block(page: Page) -> None:
     assert fault.locator(".blocklyIconGroup").count() == 1
     speak(page, "es")
     page.locator("#doing", has_text="“muestra 1 ÷ X”: algo se divide entre 0.").wait_for()
-    shown(page)
+    wait_for_blocks(page)
     fault.wait_for()  # the blocks are others now
     page.click("#view_text")
     write(page, "X = 1;\nSHOW(1 / X);\n")
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
     assert fault.count() == 0 and page.locator(f"{PROGRAM} .blocklyIconGroup").count() == 0
 
 

@@ -22,7 +22,17 @@ from tests.support.page_blocks import (
     text_of,
 )
 from tests.support.page_runs import run_names
-from tests.support.studio import SETTLED, Pages, axe, hears, in_phase, noted, shown, speak, write
+from tests.support.studio import (
+    SETTLED,
+    Pages,
+    axe,
+    hears,
+    in_phase,
+    speak,
+    wait_for_blocks,
+    wait_for_note,
+    write,
+)
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
@@ -40,20 +50,20 @@ def page(page: Page) -> Page:
 
 
 def touch(page: Page, words: str) -> None:
-    """Click a block where no field is."""
+    """Click a block if no field is."""
     box = box_of(block(page, words))
     page.mouse.click(box["x"] + 4, box["y"] + 26)
 
 
 def rest(page: Page) -> None:
-    """Have the virtual robot switched off."""
+    """Switch the virtual robot off."""
     world = page.input_value("#world")
     page.select_option("#world", "light" if world == "obstacles" else "obstacles")
     in_phase(page, "off")
 
 
-def did(page: Page) -> list[str]:
-    """Return what the virtual robot has done, once it has ended."""
+def list_actions(page: Page) -> list[str]:
+    """Return the virtual robot's actions, once it has ended."""
     in_phase(page, "ended")
     lines = (page.locator("#trace").text_content() or "").splitlines()
     return [line.partition(" ")[2] for line in lines]
@@ -78,7 +88,7 @@ END_DEF;
 
 
 def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -> None:
-    """With the words that it uses, too; a value is shown, and a hat runs what is below it."""
+    """Its defined words work too; a value is shown, and a hat runs the blocks below it."""
     runs = run_names(page)
     page.click("#runs_close")
     start(page, WHOLE)
@@ -89,15 +99,15 @@ def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -
     ):  # fmt: skip
         rest(page)
         touch(page, words)
-        events = did(page)
+        events = list_actions(page)
         assert sum(line.startswith("BEEP") for line in events) == sounds, (words, events)
         assert sum(line.startswith("SHOW") for line in events) == shows, (words, events)
     rest(page)
     box = box_of(page.locator(f"{PROGRAM} .blocklyBlock.sensor").first)
     page.mouse.click(box["x"] + 6, box["y"] + 4)
-    assert any(line.startswith("SHOW") for line in did(page))
+    assert any(line.startswith("SHOW") for line in list_actions(page))
     assert text_of(page) == text
-    assert run_names(page) == runs  # what was tried is no run to keep
+    assert run_names(page) == runs  # a tried block does not create a run
     page.click("#runs_close")
 
 
@@ -109,7 +119,7 @@ def test_a_block_that_does_not_run_alone_says_why(page: Page) -> None:
     page.locator(f"{PROGRAM} .alone").wait_for()
     page.locator(f"{PROGRAM} .alone").wait_for(state="detached")
     touch(page, "back")
-    noted(page, "does not run alone: ")
+    wait_for_note(page, "does not run alone: ")
     assert "X" in page.inner_text("#note")
     assert page.locator(f"{PROGRAM} .alone").count() == 0
 
@@ -135,7 +145,7 @@ def test_a_click_ends_no_run_and_moves_no_robot_that_is_not_seen(page: Page) -> 
 def test_keys_and_the_menu_try_a_block_on_a_phone_too(pages: Pages, way: str) -> None:
     page = pages.open(viewport={"width": 390, "height": 844})
     start(page, "SI|BEEP(0.2, 440);\nS;\n")
-    touch(page, "beep")  # which stays at the program
+    touch(page, "beep")  # the block stays in the program
     page.locator("html[data-peek]").wait_for(state="attached")
     assert page.locator("html[data-half=program]").count() == 1
     if way == "keys":
@@ -144,21 +154,21 @@ def test_keys_and_the_menu_try_a_block_on_a_phone_too(pages: Pages, way: str) ->
         path_of(block(page, "beep")).click(button="right", position={"x": 6, "y": 6})
         page.locator(".blocklyMenuItem", has_text="Try this block alone").click()
     page.locator("html[data-half=robot]").wait_for(state="attached")
-    assert [line.split()[0] for line in did(page) if "BEEP" in line] == ["BEEP"]
+    assert [line.split()[0] for line in list_actions(page) if "BEEP" in line] == ["BEEP"]
 
 
 def test_a_phone_shows_the_robot_in_a_corner_while_a_block_is_tried(pages: Pages) -> None:
-    """The robot goes on where it is; no block moves, and what is below is touched through it."""
+    """The robot continues where it is; no block moves, and touches pass through it."""
     page = pages.open(viewport={"width": 390, "height": 844})
     start(page, "SI|F(1, 60);\n")
-    before = box_of(block(page, "forward"))
+    box_before = box_of(block(page, "forward"))
     poses = []
     for _ in range(3):
         touch(page, "forward")
         page.locator("html[data-peek]").wait_for(state="attached")
         assert page.locator("#arena").is_visible()
         assert page.locator("#side button:visible, #side select:visible").count() == 0
-        assert box_of(block(page, "forward")) == before
+        assert box_of(block(page, "forward")) == box_before
         box = page.locator("#side").bounding_box()
         assert box is not None
         assert page.evaluate(
@@ -186,27 +196,27 @@ def test_a_block_that_is_tried_goes_on_where_the_robot_is(page: Page) -> None:
     page.select_option("#speed", "0.5")
     in_phase(page, "off")
 
-    def measured() -> float:
+    def measure_distance() -> float:
         in_phase(page, "ended")
         row = page.locator("#values div", has_text="distance").inner_text()
         return float(row.replace("distance sensor", "").split()[0])
 
-    def tried() -> None:
+    def try_block() -> None:
         touch(page, "forward")
         page.locator(f"{PROGRAM} .alone").wait_for(state="attached")
         page.locator(f"{PROGRAM} .alone").wait_for(state="detached")
 
     places = []
     for _ in range(3):
-        tried()
-        places.append(measured())
+        try_block()
+        places.append(measure_distance())
     assert places[0] > places[1] + 4 > places[2] + 8
     page.click("#run")
-    hears(page, lambda: measured() == places[0], "the program begins at the start")
+    hears(page, lambda: measure_distance() == places[0], "the program begins at the start")
     start(page, "SI|F(5, 60);\n")
     page.hover("#blocks")
-    for bumps in ("1", "1"):  # it is not pushed through what it touches
-        tried()
+    for bumps in ("1", "1"):  # the robot does not pass through obstacles
+        try_block()
         assert page.locator("#values div", has_text="Collisions").inner_text().split()[-1] == bumps
 
 
@@ -225,14 +235,18 @@ ARROWS = """all => all.map((arrow) => {
 def test_each_move_has_its_arrow(page: Page) -> None:
     start(page, "SI|F(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
     arrows = page.locator(f"{PROGRAM} path.arrow")
-    before = dict(arrows.evaluate_all(ARROWS))
-    assert len(before) == len(set(before.values())) == 4 and all(before.values())
+    evaluate_all_before = dict(arrows.evaluate_all(ARROWS))
+    assert len(evaluate_all_before) == len(set(evaluate_all_before.values())) == 4 and all(
+        evaluate_all_before.values()
+    )
     page.locator(f"{PROGRAM} .blocklyDropdownText", has_text="forward").click()
     page.locator(".blocklyMenuItem", has_text="turn left").click()
     becomes(page, "SI|L(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
-    after = arrows.evaluate_all(ARROWS)
-    assert [before[text] for text, _ in after] == [drawn for _, drawn in after]
-    assert [text for text, _ in after].count("turn left") == 2
+    evaluate_all_after = arrows.evaluate_all(ARROWS)
+    assert [evaluate_all_before[text] for text, _ in evaluate_all_after] == [
+        drawn for _, drawn in evaluate_all_after
+    ]
+    assert [text for text, _ in evaluate_all_after].count("turn left") == 2
     gap = arrows.first.evaluate(
         "e => e.getBoundingClientRect().x - e.closest('.blocklyBlock').getBoundingClientRect().x"
     )
@@ -257,7 +271,7 @@ def test_an_editor_stands_over_its_own_field(page: Page) -> None:
 
 @drawn
 def test_a_message_is_at_its_block(page: Page) -> None:
-    """As near as it stands on no other one, with a line that begins at the block."""
+    """It is as near as possible without covering another block, with a line from the block."""
     wide = "IF(DISTANCE < 10 AND DISTANCE > 20 AND DISTANCE < 10);\n  S;\nENDIF;\n"
     for text, isolated in (
         (f"SI|{wide}S;\nS;\nF(-2);\n", True), (f"SI|F(-2);\nS;\nS;\n{wide}", True),
@@ -291,7 +305,7 @@ def test_warnings_wait_at_their_blocks_until_somebody_asks(pages: Pages) -> None
         page.click("#view_text")
         write(page, "SI|LOOP(FOREVER);\nEND_LOOP;\n")
         page.click("#view_blocks")
-        shown(page)
+        wait_for_blocks(page)
         list_of_all = page.locator("#messages li")
         assert list_of_all.count() and not list_of_all.first.is_visible()
         assert page.evaluate("blocks.clientHeight") >= high - 24  # a phone's status has two lines
@@ -301,7 +315,7 @@ def test_warnings_wait_at_their_blocks_until_somebody_asks(pages: Pages) -> None
         page.click("#sheet")
         assert not list_of_all.first.is_visible()
         start(page, "SI|S;\n")
-        start(page, "SI|F(-2);\n")  # a mistake is told at once
+        start(page, "SI|F(-2);\n")  # a mistake is reported immediately
         assert list_of_all.first.is_visible()
         assert axe(page) == []
 
@@ -356,7 +370,7 @@ def test_a_tone_is_chosen_by_its_name_and_written_in_hertz(page: Page) -> None:
         assert axe(page, within=".blocklyDropDownDiv") == []
         piano.get_by_text(name, exact=True).click()
         becomes(page, "SI|BEEP(0.5, 330);\nF(5, 80);\n")
-        assert pitch(page, "330").text_content() == "330"  # as it is typed
+        assert pitch(page, "330").text_content() == "330"  # the number as typed
         page.keyboard.press("Enter")
         pitch(page, f"{name} 330").first.click()
         piano.wait_for()
@@ -371,11 +385,11 @@ def test_escape_takes_back_in_the_text_what_it_takes_back_in_the_block(page: Pag
     """Else another change would bring it back, later."""
     text = "// one\nSI|BEEP(0.5, 440);\nF(5, 80);\n"
     start(page, text)
-    for new_text, typed in (("80", "12"), ("one", "two"), ("440", "330")):
+    for new_text, typed_text in (("80", "12"), ("one", "two"), ("440", "330")):
         page.locator(f"{PROGRAM} .blocklyField", has_text=new_text).last.click()
         page.locator(".blocklyWidgetDiv input").wait_for()
-        page.keyboard.type(typed)
-        becomes(page, text.replace(new_text, typed))
+        page.keyboard.type(typed_text)
+        becomes(page, text.replace(new_text, typed_text))
         page.keyboard.press("Escape")
         becomes(page, text)
     pitch(page).first.click()
@@ -396,7 +410,7 @@ def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
     becomes(page, "SI|BEEP(0.5, 466);\nS;\n")
     page.locator(f"{PROGRAM} .blocklyNumberField", has_text="466").click()
     page.keyboard.press("Control+a")
-    page.keyboard.type("1234")  # what is no tone of a piano stays
+    page.keyboard.type("1234")  # a frequency between piano notes stays
     page.keyboard.press("Enter")
     becomes(page, "SI|BEEP(0.5, 1234);\nS;\n")
     assert pitch(page, "1234").text_content() == "1234"
@@ -422,12 +436,13 @@ def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
     ],
 )  # fmt: skip
 def test_a_block_is_found_by_its_words(page: Page, language: str, words: dict[str, str]) -> None:
-    """At every level; with and without accents, by a word of the text, by what it does, by what
-    people call it, and by its group."""
+    """At every level; with and without accents, by a word of the text, its effect, a common name,
+    or its group.
+    """
     speak(page, language)
     start(page, "SI|S;\n", "few")
-    for typed, text in words.items():
-        page.fill(".search input", typed)
+    for typed_text, text in words.items():
+        page.fill(".search input", typed_text)
         page.locator(FLYOUT).filter(has_text=text).first.wait_for()
     page.fill(".search input", "xyzzy")
     page.locator(".blocklyFlyout:visible .blocklyFlyoutLabel").wait_for()
@@ -481,7 +496,7 @@ def test_a_pile_that_is_tried_hides_no_smaller_one(page: Page) -> None:
     page.mouse.move(b["x"] + 25, b["y"] + b["height"] / 2 + 8, steps=8)
     page.mouse.up()
     page.locator("#blocks[data-state=shown]").wait_for()
-    assert abs(box_of(value)["x"] - b["x"]) < 40  # it lies on the hat, and hangs on nothing
+    assert abs(box_of(value)["x"] - b["x"]) < 40  # the value lies on the hat, unattached
     page.mouse.click(b["x"] + 6, b["y"] + b["height"] - 8)
     page.locator("#blocks .alone").first.wait_for(state="attached")
     in_phase(page, "ended")
@@ -515,7 +530,7 @@ COVERED = """() => {
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (820, 1180), (390, 844)], ids=str)
 def test_no_control_lies_over_a_block_of_a_program(page: Page, size: tuple[int, int]) -> None:
-    """Also where blocks are as wide and as high as what is seen of them."""
+    """This also holds if the blocks fill the visible area."""
     page.set_viewport_size({"width": size[0], "height": size[1]})
     page.evaluate(SETTLED)
     if page.locator("html[data-phone][data-half=robot]").count():
@@ -555,12 +570,12 @@ def test_a_block_that_keys_take_goes_where_the_focus_was(page: Page) -> None:
     take(page, "wait")
     becomes(page, "SI|F(1, 80);\nW(1);\nB(1, 80);\n")
     assert "wait" in page.evaluate("document.activeElement.closest('.blocklyBlock').textContent")
-    take(page, "repeat forever")  # and now below that one
+    take(page, "repeat forever")  # dropped below that block
     becomes(page, "SI|F(1, 80);\nW(1);\nLOOP(FOREVER);\nEND_LOOP;\nB(1, 80);\n")
-    take(page, "beep")  # into what is empty
+    take(page, "beep")  # into an empty place
     becomes(page, "SI|F(1, 80);\nW(1);\nLOOP(FOREVER);\n  BEEP(0.5, 440);\nEND_LOOP;\nB(1, 80);\n")
     take(page, "distance")  # a value into its first place
     becomes(
         page, "SI|F(1, 80);\nW(1);\nLOOP(FOREVER);\n  BEEP(DISTANCE, 440);\nEND_LOOP;\nB(1, 80);\n"
     )
-    shown(page)
+    wait_for_blocks(page)

@@ -29,7 +29,7 @@ WITH_BLUETOOTH = "--enable-features=WebBluetooth"  # Chromium for Linux has it o
 ADDRESS = "09:09:09:09:09:09"
 NORDIC = "6e400001-b5a3-f393-e0a9-e50e24dcca9e"
 HM10 = "0000ffe0-0000-1000-8000-00805f9b34fb"
-MOST = 20  # bytes, what every module takes
+MOST = 20  # bytes that every module accepts
 READ_MS = 30
 SILENT_MS = 300  # a robot stops when it hears nothing for 500
 READ_INSTEAD = f"""
@@ -54,7 +54,7 @@ class Radio:
         self.robot = HostFirmware(robots.load("tinibot").kit)
         self._service = service
         self._made = self._chosen = False
-        self._there, self._back = b"", b""  # on their way
+        self._there, self._back = b"", b""  # bytes under way in each direction
         self._silent_ms = 0
         self._emulated = page
         self._whole = browser.new_browser_cdp_session()
@@ -72,12 +72,12 @@ class Radio:
         self.robot.close()
 
     @property
-    def did(self) -> list[str]:
-        """What the robot has done, without the times."""
+    def actions(self) -> list[str]:
+        """The robot's actions without the times."""
         return [line.split(" ", 1)[1] for line in self.robot.did]
 
     def go_away(self) -> None:
-        # The emulation never says that a device has gone which has still to answer a read.
+        # The emulation never reports the loss of a device that has an unanswered read.
         self._emulated.evaluate("async () => { isDeaf = true; await reading; }")
         self._ask("simulateGATTDisconnection", address=ADDRESS)
 
@@ -85,7 +85,7 @@ class Radio:
         return self._whole.send(f"BluetoothEmulation.{what}", fields)
 
     def _choose(self, prompt: Any) -> None:
-        # The prompt comes twice; to answer it twice ends the browser.
+        # The prompt comes twice; a second answer ends the browser.
         if prompt["devices"] and not self._chosen:
             self._chosen = True
             chosen = {"id": prompt["id"], "deviceId": prompt["devices"][0]["id"]}
@@ -120,26 +120,26 @@ class Radio:
             if asked.get("writeType") == "write-without-response":
                 return
         elif asked["type"] == "read":
-            data = self._heard()
+            data = self._read_robot()
             answer = {"data": base64.b64encode(data).decode()}
         self._ask("simulateCharacteristicOperationResponse",
                   characteristicId=asked["characteristicId"], type=asked["type"], code=0,
                   **answer)  # fmt: skip
 
-    def _heard(self) -> bytes:
-        """Let the robot's time go on, and return what comes of it in one read."""
+    def _read_robot(self) -> bytes:
+        """Advance the robot's time, and return its output in one read."""
         passes_ms = READ_MS if self._there else min(READ_MS, SILENT_MS - self._silent_ms)
         self._silent_ms = 0 if self._there else self._silent_ms + passes_ms
         if passes_ms:
             self._back += self.robot.wait(passes_ms, self._there)
         self._there = b""
-        heard, self._back = self._back[:MOST], self._back[MOST:]
-        return heard
+        heard_bytes, self._back = self._back[:MOST], self._back[MOST:]
+        return heard_bytes
 
 
 @pytest.fixture(scope="module")
 def radio_page(playwright: Playwright) -> Iterator[tuple[Browser, Page]]:
-    with studio.served() as server, studio.browser(playwright, WITH_BLUETOOTH) as browser:
+    with studio.serve_page() as server, studio.browser(playwright, WITH_BLUETOOTH) as browser:
         context = browser.new_context(locale="en-US", service_workers="block")
         context.add_init_script(READ_INSTEAD)
         page = context.new_page()
@@ -160,15 +160,15 @@ def test_a_robot_is_driven_by_bluetooth(radio_page: tuple[Browser, Page], servic
         page.click("#link_upload")
         wait_for_message(page, "Done.")
         assert page.locator("#link_shown").inner_text() == "2.5"
-        assert radio.did.count("MOTORS 80 80") >= 1
+        assert radio.actions.count("MOTORS 80 80") >= 1
         assert max(radio.writes) == MOST
         write(page, FOREVER)
         page.click("#link_upload")
         wait_for_message(page, "The robot has the program")
-        while not drives_now(radio.did):  # the radio is heard while the page is waited for
+        while not drives_now(radio.actions):  # the radio is heard while the page is waited for
             page.wait_for_timeout(20)
         page.keyboard.press("Escape")
         wait_for_message(page, "Stopped: the robot has confirmed the stop.")
-        assert not drives_now(radio.did)
+        assert not drives_now(radio.actions)
         radio.go_away()
         wait_for_message(page, "The Bluetooth connection was lost. The")

@@ -1,4 +1,4 @@
-"""A class in browsers: pupils at an address of the network, a teacher, and robots behind ptys."""
+"""A class in browsers: pupils at an address of the network, a teacher, and robots on ptys."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support import studio
-from tests.support.class_pages import joined, teaches, wait_for_status
+from tests.support.class_pages import join_class, teaches, wait_for_status
 from tests.support.command import FOREVER
 from tests.support.page_screens import LOOK, SCREENS
 from tests.support.pty_robot import PtyRobot
@@ -22,12 +22,12 @@ from tests.support.studio import (
     Class,
     Pages,
     axe,
-    checked,
     drives,
     hears,
     image,
-    noted,
     speak,
+    wait_for_note,
+    wait_until_checked,
     write,
 )
 from tests.support.torn_requests import lose_answer, refuse, tear_requests
@@ -38,13 +38,13 @@ from tiniscript.studio.attending import LATCH_S
 if TYPE_CHECKING:
     from playwright.sync_api import APIResponse, Browser, Locator, Page, Route
 
-pytestmark = pytest.mark.usefixtures("unhurried")
+pytestmark = pytest.mark.usefixtures("no_page_timeouts")
 drawn = pytest.mark.sampled(of="details of a class", keep=2)
 
 KIT = robots.load("tinibot").kit
 WHOLE = "() => wall.scrollHeight === wall.clientHeight && wall.scrollWidth === wall.clientWidth"
 HOSTILE = "<img src=x onerror=1>"
-# The page waits for an answer however long this computer takes.
+# The page waits for an answer however slow this computer is.
 PATIENT = """() => { window.limit = AbortSignal.timeout;
   AbortSignal.timeout = () => new AbortController().signal; }"""
 # Notes every text that the wall has from now on.
@@ -71,7 +71,7 @@ ARE_IN_ONE_ROW = """() => ['#sides', '#bar'].map((row) => {
   return new Set(boxes.map(({ top }) => top)).size < 2 && boxes.every(({ right }) => right <= innerWidth);
 })"""  # noqa: E501
 
-# A hand goes up in a page that looks no more by itself.
+# A hand goes up on a page that no longer polls by itself.
 UP_AT_ONCE = """() => { for (let k = setTimeout(() => {}); k > 0; k--) clearTimeout(k);
   class_hand.click(); }"""
 
@@ -90,9 +90,9 @@ def robot() -> Iterator[PtyRobot]:
 
 
 @pytest.fixture(scope="module")
-def taught(robot: PtyRobot, browser: Browser) -> Iterator[Class]:
+def shared_class(robot: PtyRobot, browser: Browser) -> Iterator[Class]:
     """A class that many tests share: Python takes a while to start in each page of it."""
-    with studio.taught([robot.port]) as taught_class:
+    with studio.serve_class([robot.port]) as taught_class:
         taught_class.room.teach(
             {"do": "class_places", "places": 9}
         )  # left ones keep theirs for 5 s
@@ -100,41 +100,41 @@ def taught(robot: PtyRobot, browser: Browser) -> Iterator[Class]:
 
 
 @pytest.fixture(scope="module")
-def shared(browser: Browser, taught: Class) -> Iterator[Pages]:
-    opened_pages = Pages(browser, taught.server.address)
+def shared_pages(browser: Browser, shared_class: Class) -> Iterator[Pages]:
+    opened_pages = Pages(browser, shared_class.server.address)
     yield opened_pages
     opened_pages.close()
 
 
 @pytest.fixture
-def pages(shared: Pages) -> Iterator[Pages]:
-    yield shared
-    wrong, shared.wrong[:] = shared.wrong[:], []
+def pages(shared_pages: Pages) -> Iterator[Pages]:
+    yield shared_pages
+    wrong, shared_pages.wrong[:] = shared_pages.wrong[:], []
     assert not wrong
 
 
 @pytest.fixture(scope="module")
-def first(shared: Pages, taught: Class) -> Page:
-    return joined(shared, taught, "Ana")
+def first(shared_pages: Pages, shared_class: Class) -> Page:
+    return join_class(shared_pages, shared_class, "Ana")
 
 
 @pytest.fixture(scope="module")
-def teacher(shared: Pages, taught: Class) -> Page:
-    return teaches(shared, taught)
+def teacher(shared_pages: Pages, shared_class: Class) -> Page:
+    return teaches(shared_pages, shared_class)
 
 
 @pytest.fixture
-def ana(first: Page, pages: Pages, taught: Class, robot: PtyRobot) -> Iterator[Page]:
+def ana(first: Page, pages: Pages, shared_class: Class, robot: PtyRobot) -> Iterator[Page]:
     """The page of a pupil, who has no robot before and after each test."""
     yield first
     robot.switch_on()
-    for pupil in taught.room.teach({"do": "class"})["pupils"]:
-        taught.room.teach({"do": "class_next", "pupil": pupil["number"]})
+    for pupil in shared_class.room.teach({"do": "class"})["pupils"]:
+        shared_class.room.teach({"do": "class_next", "pupil": pupil["number"]})
     first.locator("[data-text=class_ask]").wait_for()
     first.locator("html:not([data-robot=connected])").wait_for(state="attached")
 
 
-def linked(page: Page, text: str) -> None:
+def wait_for_link(page: Page, text: str) -> None:
     page.locator("#link_said").filter(has_text=text).wait_for()
 
 
@@ -156,13 +156,13 @@ def asks(page: Page) -> None:
 
 
 def test_three_pupils_share_a_robot(
-    ana: Page, teacher: Page, pages: Pages, taught: Class, robot: PtyRobot
+    ana: Page, teacher: Page, pages: Pages, shared_class: Class, robot: PtyRobot
 ) -> None:
-    luz, teo = (joined(pages, taught, name) for name in ("Luz", "Teo"))
+    luz, teo = (join_class(pages, shared_class, name) for name in ("Luz", "Teo"))
     big = teacher.locator("#big_pupil")
     asks(ana)
     wait_for_status(ana, "It is your turn. Nobody is waiting.")
-    linked(ana, "Connected: ")
+    wait_for_link(ana, "Connected: ")
     asks(luz)
     wait_for_status(luz, "Your place in the queue: 1 of 1.")
     asks(teo)
@@ -176,7 +176,7 @@ def test_three_pupils_share_a_robot(
     assert robot.moves
     tile(teacher, "Ana").locator(".badge.drives").wait_for()
     tile(teacher, "Teo").filter(has_text="place 2").wait_for()
-    for name, is_driving in (("Teo", False), ("Ana", True)):  # no turn of who has none is ended
+    for name, is_driving in (("Teo", False), ("Ana", True)):  # a pupil without a turn loses none
         tile(teacher, name).locator(".see").click()
         assert big.locator("h2").inner_text() == name
         for action in ("stop", "class_next"):
@@ -187,7 +187,7 @@ def test_three_pupils_share_a_robot(
     big.locator("img[src^=blob]").wait_for()
     big.locator("[data-text=class_stop_all]").click()
     robot.until(lambda: not robot.moves, "the teacher stops it")
-    linked(ana, "Stopped: the robot has confirmed the stop.")
+    wait_for_link(ana, "Stopped: the robot has confirmed the stop.")
     teacher.locator("#stops").filter(has_text="STOP: 1 of 1 robots have confirmed it.").wait_for()
     assert not teacher.locator("#stops .wrong").count()
     time.sleep(LATCH_S)
@@ -199,10 +199,10 @@ def test_three_pupils_share_a_robot(
     big.locator("[data-text=class_next]").click()
     robot.until(lambda: not robot.moves, "the turn is over")
     big.locator("[data-text=close]").click()
-    linked(ana, "Your turn is over.")
-    linked(luz, "Connected: ")
+    wait_for_link(ana, "Your turn is over.")
+    wait_for_link(luz, "Connected: ")
     luz.click("#link_leave")
-    linked(teo, "Connected: ")
+    wait_for_link(teo, "Connected: ")
     drives(teo, robot)
     teo.close()
     robot.until(lambda: not robot.moves, "a page that is closed stops it")
@@ -210,23 +210,25 @@ def test_three_pupils_share_a_robot(
 
 
 @drawn
-def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(ana: Page, shared: Pages) -> None:
+def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(
+    ana: Page, shared_pages: Pages
+) -> None:
     for tear, times in ((lose_answer, 2), (refuse, 3)):
         tear_requests(ana, "connect", tear, times)
         asks(ana)
-        if times == 3:  # as often as the page tries it by itself
+        if times == 3:  # most tries of the page itself
             ana.click("#class_pupil [data-text=link_connect]")
-        linked(ana, "Connected: ")
+        wait_for_link(ana, "Connected: ")
         ana.locator("#class_pupil [data-text=link_connect]").wait_for(state="hidden")
         ana.unroute_all(behavior="wait")
         ana.click("#link_leave")
         ana.locator("[data-text=class_ask]").wait_for()
-    wrong, shared.wrong[:] = shared.wrong[:], []
+    wrong, shared_pages.wrong[:] = shared_pages.wrong[:], []
     assert all("ERR_FAILED" in error or "500" in error for error in wrong)
 
 
 def test_what_plain_http_has_not_is_not_offered(ana: Page) -> None:
-    if not ana.evaluate("isSecureContext"):  # it is where there is no network
+    if not ana.evaluate("isSecureContext"):  # true on a computer without a network
         for name in ("serial", "bluetooth", "serviceWorker", "clipboard"):
             assert not ana.evaluate(f"'{name}' in navigator && !!navigator.{name}")
         ana.click("#my_programs")
@@ -237,12 +239,12 @@ def test_what_plain_http_has_not_is_not_offered(ana: Page) -> None:
         ana.click("#programs_close")
     for name in ("#link_serial", "#link_bluetooth", "#keys_import", "#link_port", "#keys_claim"):
         assert not ana.locator(name).is_visible()
-    assert ana.inner_text("#side_class") == "Your group"  # there is no wall
+    assert ana.inner_text("#side_class") == "Your group"  # there is no wall in this state
 
 
 @pytest.mark.parametrize("size", [(1366, 768), (390, 844)], ids=str)
 def test_who_opens_the_address_of_a_class_joins_it_at_once(
-    pages: Pages, taught: Class, size: tuple[int, int]
+    pages: Pages, shared_class: Class, size: tuple[int, int]
 ) -> None:
     """Code and name are before all else; the code is where one types."""
     page = pages.open("blocks", viewport={"width": size[0], "height": size[1]}, locale="es-AR")
@@ -255,7 +257,7 @@ def test_who_opens_the_address_of_a_class_joins_it_at_once(
             box and box["y"] + box["height"] <= size[1] / 2 and box["x"] + box["width"] <= size[0]
         )
     assert axe(page) == []
-    page.keyboard.type(taught.room.code)
+    page.keyboard.type(shared_class.room.code)
     page.keyboard.press("Tab")
     page.keyboard.type("Eva")
     page.keyboard.press("Enter")
@@ -265,15 +267,15 @@ def test_who_opens_the_address_of_a_class_joins_it_at_once(
     wait_for_status(page, "Estás en la clase, Eva")
     if size[0] < size[1]:
         for _ in range(2):
-            assert page.evaluate(IN_ONE_LINE) == 1  # with the hand, too
+            assert page.evaluate(IN_ONE_LINE) == 1  # including the raised hand
             assert page.evaluate(ARE_IN_ONE_ROW) == [True, True]
             page.click("#other")
     page.close()
-    only_ana(taught)
+    only_ana(shared_class)
 
 
 def test_a_wrong_code_is_said_and_a_pupil_is_removed(
-    pages: Pages, taught: Class, teacher: Page
+    pages: Pages, shared_class: Class, teacher: Page
 ) -> None:
     page = pages.open(locale="es-AR")
     page.click("#side_real")
@@ -281,11 +283,11 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     page.locator("#class_pupil input").nth(1).fill(HOSTILE)
     page.click("[data-text=class_join]")
     wait_for_status(page, "Ese no es el código de esta clase.")
-    page.locator("#class_pupil input").nth(0).fill(taught.room.code)
+    page.locator("#class_pupil input").nth(0).fill(shared_class.room.code)
     page.click("[data-text=class_join]")
     wait_for_status(page, "Estás en la clase, ")
     page.reload()  # a tab keeps its place
-    checked(page)
+    wait_until_checked(page)
     page.click("#side_real")
     wait_for_status(page, f"Estás en la clase, {HOSTILE}"[:40])
     row = tile(teacher, HOSTILE)
@@ -307,9 +309,9 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
 
 
 @drawn
-def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, taught: Class) -> None:
+def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, shared_class: Class) -> None:
     """A wall that looks while a pupil is removed does not show the pupil again."""
-    room = taught.room
+    room = shared_class.room
     for name in ("Eva", "Noa"):
         room.answer("", "192.0.2.7", {"do": "join", "code": room.code, "name": name})
     late: list[tuple[Route, APIResponse]] = []
@@ -340,15 +342,15 @@ def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, taught: Cla
 
 
 @drawn
-def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -> None:
+def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, shared_class: Class) -> None:
     """Their pictures are made of the pupils' texts. A stop that failed takes the place of a row."""
-    room = taught.room
+    room = shared_class.room
     room.teach({"do": "class_places", "places": 60})
     tokens = []
     state = room.teach({"do": "class"})
     for k in range(30 - len(state["pupils"]) - len(state["kept"])):
-        asked = {"do": "join", "code": room.code, "name": f"Pupil {k + 1}"}
-        tokens.append(room.answer("", "192.0.2.7", asked)["token"])
+        request = {"do": "join", "code": room.code, "name": f"Pupil {k + 1}"}
+        tokens.append(room.answer("", "192.0.2.7", request)["token"])
         text = "SI|F(1, 50);" * (k % 3 + 1)
         beat = {"do": "here", "text": text, "robot": "tinibot", "lessons": ["01_first_line"]}
         room.answer(tokens[k], "192.0.2.7", beat)
@@ -356,20 +358,20 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -
         teacher.set_viewport_size({"width": width, "height": height})
         speak(teacher, language)
         teacher.locator("#wall li").nth(29).wait_for()
-        assert not teacher.locator("#wall .empty:visible").count()  # its picture comes
+        assert not teacher.locator("#wall .empty:visible").count()  # the picture arrives later
         teacher.wait_for_function(WHOLE)  # a wall fits its tiles once it knows its size
         assert teacher.evaluate(LOOK) == []
     tile(teacher, "Pupil 7").locator("img[src^=blob]").wait_for()
     assert tile(teacher, "Pupil 7").locator("i.done").count() == 1
     speak(teacher, "en")
-    only_ana(taught)
+    only_ana(shared_class)
 
 
 @drawn
 def test_a_picture_is_seen_large_while_the_next_one_is_made(
-    ana: Page, teacher: Page, taught: Class
+    ana: Page, teacher: Page, shared_class: Class
 ) -> None:
-    only_ana(taught)
+    only_ana(shared_class)
     teacher.locator("#wall li:only-child img[src^=blob]").wait_for()
     teacher.evaluate(HOLDS)
     for language in ("es", "en"):  # each makes it anew
@@ -390,7 +392,7 @@ def test_a_picture_is_seen_large_while_the_next_one_is_made(
 
 
 LONG = "SI|" + ";".join(["F(1, 50)", "IF(DISTANCE < 9)", "S", "END_IF"] * 120)
-# Time goes on only where a test says so; what has nothing to wait for is counted.
+# Time advances only by the test; pages without a wait are counted.
 STANDS = """() => { window.now = performance.now(); window.each = 0; window.slices = 0;
   performance.now = () => (window.now += window.each);
   const own = setTimeout; window.setTimeout = (does, ms, ...words) => {
@@ -400,20 +402,20 @@ SIZE = "async (each) => { await each.decode(); return [each.naturalWidth, each.n
 
 @pytest.mark.long
 def test_a_long_program_is_drawn_in_slices_and_not_to_its_end(
-    first: Page, pages: Pages, taught: Class
+    first: Page, pages: Pages, shared_class: Class
 ) -> None:
-    """So that STOP ALL waits for none of it: `tools.bench.studio` measures how long it waits."""
-    teacher = teaches(pages, taught)
-    only_ana(taught)
+    """Therefore STOP ALL need not wait for it: `tools.bench.studio` measures the wait."""
+    teacher = teaches(pages, shared_class)
+    only_ana(shared_class)
     picture = tile(teacher, "Ana").locator("img[src^=blob]")
     picture.wait_for()
     teacher.evaluate(STANDS)
     teacher.evaluate("() => { window.each = 20; }")  # each step is as long as a slice
     sizes = []
     for text in (LONG, LONG + ";" + LONG[3:]):
-        before, slices = picture.get_attribute("src"), teacher.evaluate("slices")
+        text_before, slices = picture.get_attribute("src"), teacher.evaluate("slices")
         write(first, text)
-        teacher.locator(f"#wall img[src^=blob]:not([src='{before}'])").wait_for()
+        teacher.locator(f"#wall img[src^=blob]:not([src='{text_before}'])").wait_for()
         assert teacher.evaluate("slices") - slices > 300  # each block is made, and drawn
         sizes.append(picture.evaluate(SIZE))
     assert sizes[0] == sizes[1]
@@ -421,7 +423,7 @@ def test_a_long_program_is_drawn_in_slices_and_not_to_its_end(
     teacher.close()
 
 
-# Which programs the page has heard of, and which of them have a picture.
+# Programs that the page has received, and those with a picture.
 DRAWINGS = """() => { window.told = []; window.drawn = [];
   const ask = fetch, post = Worker.prototype.postMessage, make = URL.createObjectURL;
   let newest = '';
@@ -437,10 +439,10 @@ DRAWINGS = """() => { window.told = []; window.drawn = [];
 
 
 @drawn
-def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, taught: Class) -> None:
+def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, shared_class: Class) -> None:
     """Whatever the page writes meanwhile; and the newest is drawn then. Others wait for nothing."""
-    teacher = teaches(pages, taught)
-    only_ana(taught)
+    teacher = teaches(pages, shared_class)
+    only_ana(shared_class)
     tile(teacher, "Ana").locator("img[src^=blob]").wait_for()
     teacher.evaluate(DRAWINGS)
     teacher.evaluate(STANDS)
@@ -465,45 +467,45 @@ def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, taught: Cla
     teacher.evaluate("() => { window.now += 1000; }")
     newest = adds()
     hears(teacher, lambda: has("drawn", newest), "after a second it is drawn at once")
-    before = len(teacher.evaluate("drawn"))
+    count_before = len(teacher.evaluate("drawn"))
     for _ in range(2):
         newest = adds()
         hears(teacher, partial(has, "told", newest), "it is told")
-    asked = {"do": "join", "code": taught.room.code, "name": "Teo"}
-    teo = taught.room.answer("", "192.0.2.7", asked)["token"]
-    taught.room.answer(teo, "192.0.2.7", {"do": "here", "text": "S", "robot": "tinibot"})
+    request = {"do": "join", "code": shared_class.room.code, "name": "Teo"}
+    teo = shared_class.room.answer("", "192.0.2.7", request)["token"]
+    shared_class.room.answer(teo, "192.0.2.7", {"do": "here", "text": "S", "robot": "tinibot"})
     tile(teacher, "Teo").locator("img[src^=blob]").wait_for()
-    assert teacher.evaluate("drawn")[before:] == ["S"]
+    assert teacher.evaluate("drawn")[count_before:] == ["S"]
     teacher.evaluate("() => { window.now += 1000; }")
     hears(teacher, lambda: has("drawn", newest), "the newest is drawn")
-    assert teacher.evaluate("drawn")[before:] == ["S", newest]
+    assert teacher.evaluate("drawn")[count_before:] == ["S", newest]
     teacher.close()
-    only_ana(taught)
+    only_ana(shared_class)
 
 
 def test_a_robot_that_does_not_confirm_a_stop_is_red_until_the_next_stop(
     ana: Page, teacher: Page, robot: PtyRobot
 ) -> None:
     asks(ana)
-    linked(ana, "Connected: ")
+    wait_for_link(ana, "Connected: ")
     drives(ana, robot)
-    robot.switch_off()  # it hears nothing, and its port is there
+    robot.switch_off()  # the robot hears nothing, but its port exists
     teacher.keyboard.press("Escape")
     red = teacher.locator("#stops .wrong")
     red.filter(has_text=f"Not confirmed: {robot.port}. If one moves, lift it").wait_for()
     assert "STOP: 0 of 1 robots" in teacher.locator("#stops").inner_text()
     robot.switch_on()
-    teacher.keyboard.press("Escape")  # the next stop takes the place of this one
+    teacher.keyboard.press("Escape")  # the next stop replaces this one
     red.wait_for(state="detached")
 
 
 @drawn
 def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -> None:
     asks(ana)
-    linked(ana, "Connected: ")
+    wait_for_link(ana, "Connected: ")
     teacher.click("#class_settings")
     teacher.click("[data-text=class_take]")
-    linked(ana, "Your turn is over.")
+    wait_for_link(ana, "Your turn is over.")
     wait_for_status(ana, "Robots: 0.")
     teacher.click("#class_window [data-text=link_look]")
     teacher.locator(f"#class_window select option[value='{robot.port}']").wait_for(state="attached")
@@ -517,16 +519,16 @@ def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -
 def test_a_robot_that_is_off_is_said(ana: Page, robot: PtyRobot) -> None:
     robot.switch_off()
     asks(ana)
-    linked(ana, "Nothing responds.")
+    wait_for_link(ana, "Nothing responds.")
     wait_for_status(ana, "You are in the class, ")
 
 
 def test_everything_is_seen_and_axe_finds_nothing(
-    ana: Page, teacher: Page, pages: Pages, taught: Class, pytestconfig: pytest.Config
+    ana: Page, teacher: Page, pages: Pages, shared_class: Class, pytestconfig: pytest.Config
 ) -> None:
-    longest = joined(pages, taught, "A" * 24)
+    longest = join_class(pages, shared_class, "A" * 24)
     asks(longest)
-    linked(longest, "Connected: ")
+    wait_for_link(longest, "Connected: ")
     longest.click("#class_hand")
     tile(teacher, "A" * 24).locator(".hand").wait_for()
     for page in (longest, teacher):
@@ -534,7 +536,7 @@ def test_everything_is_seen_and_axe_finds_nothing(
             page.set_viewport_size({"width": width, "height": height})
             for language in ("en", "es"):
                 speak(page, language)
-                checked(page)
+                wait_until_checked(page)
                 assert page.evaluate(LOOK) == []
             if page is teacher:  # the code is whole, and the tiles have two fifths of a low screen
                 assert page.locator("#class_come strong").last.bounding_box()["height"] < 40  # type: ignore[index]
@@ -560,15 +562,15 @@ def test_everything_is_seen_and_axe_finds_nothing(
     longest.evaluate(UP_AT_ONCE)
     tile(teacher, "A" * 24).locator(".hand").wait_for()
     longest.close()
-    only_ana(taught)
+    only_ana(shared_class)
 
 
 def test_the_work_of_a_class_is_saved_opened_and_given_back(
-    ana: Page, teacher: Page, taught: Class, tmp_path: Path
+    ana: Page, teacher: Page, shared_class: Class, tmp_path: Path
 ) -> None:
-    """By a teacher's press alone, and to one: whoever takes a name gets nothing by it."""
+    """Only a teacher's press returns work, to one pupil: taking a name gives no access."""
     write(ana, "F(1, 77)")
-    until(lambda: "F(1, 77)" in str(taught.room.works()), "the class has it")
+    until(lambda: "F(1, 77)" in str(shared_class.room.works()), "the class has it")
     teacher.click("#class_settings")
     with teacher.expect_download() as saving:
         teacher.click("[data-text=class_save]")
@@ -586,54 +588,55 @@ def test_the_work_of_a_class_is_saved_opened_and_given_back(
     row = opened_row(teacher, "Ana")
     choice = row.locator("select")
     assert choice.evaluate("(each) => each.selectedOptions[0].textContent") == "Ana"
-    eve = taught.room.answer(
-        "", "192.0.2.66", {"do": "join", "code": taught.room.code, "name": "\u0410na"}
+    eve = shared_class.room.answer(
+        "", "192.0.2.66", {"do": "join", "code": shared_class.room.code, "name": "\u0410na"}
     )["token"]
-    row.locator("button:disabled").wait_for()  # two may be it: nobody is chosen for the teacher
+    # There are two candidates, so none is chosen for the teacher.
+    row.locator("button:disabled").wait_for()
     assert axe(teacher, within="#class_giving") == []
     choice.select_option(label="Ana")
     row.locator("button").click()
     ana.locator(".cm-content", has_text="F(1, 77)").wait_for()
-    noted(ana, "Your teacher gave you back your work.")
-    checked(ana)
+    wait_for_note(ana, "Your teacher gave you back your work.")
+    wait_until_checked(ana)
     assert image(ana) == compile("F(1, 77)").image
-    row.wait_for(state="detached")  # once her page has said so
-    assert "given" not in taught.room.answer(eve, "192.0.2.66", {"do": "here"})
-    write(ana, "F(1, 78)")  # and what she writes then stays
-    until(lambda: "F(1, 78)" in str(taught.room.works()), "the class has it")
+    row.wait_for(state="detached")  # once her page has reported it
+    assert "given" not in shared_class.room.answer(eve, "192.0.2.66", {"do": "here"})
+    write(ana, "F(1, 78)")  # her later text stays
+    until(lambda: "F(1, 78)" in str(shared_class.room.works()), "the class has it")
     assert image(ana) == compile("F(1, 78)").image
     if teacher.locator("#class_giving[open]").count():
         teacher.click("#class_giving [data-text=close]")
-    only_ana(taught)
+    only_ana(shared_class)
 
 
-# The page hears what it is given, and its next words are lost.
+# The page receives the work, but its next requests are lost.
 LOSES = """() => { window.own = fetch; window.fetch = (where, what) =>
   what?.body?.includes('"took"') ? Promise.reject(new TypeError('lost')) : own(where, what); }"""
 
 
 def test_work_is_kept_until_the_page_has_said_that_it_has_it(
-    ana: Page, teacher: Page, taught: Class
+    ana: Page, teacher: Page, shared_class: Class
 ) -> None:
     """Its word is lost, and the page is loaded again: it gets the same once more."""
     write(ana, "F(1, 33)")
-    until(lambda: "F(1, 33)" in str(taught.room.works()), "the class has it")
-    asked = {"do": "class_bring", "name": "Ana", "text": "F(1, 77)", "robot": "", "lessons": []}
-    taught.room.teach(asked)
+    until(lambda: "F(1, 33)" in str(shared_class.room.works()), "the class has it")
+    request = {"do": "class_bring", "name": "Ana", "text": "F(1, 77)", "robot": "", "lessons": []}
+    shared_class.room.teach(request)
     ana.evaluate(LOSES)
     row = opened_row(teacher, "Ana")
     row.locator("button").click()
     row.filter(has_text="Ana is getting the work back.").wait_for()
-    noted(ana, "Your teacher gave you back your work.")
+    wait_for_note(ana, "Your teacher gave you back your work.")
     wait_for_status(ana, "The teacher’s computer is not responding.")
-    assert "F(1, 77)" in str(taught.room.works())
+    assert "F(1, 77)" in str(shared_class.room.works())
     ana.reload()
-    checked(ana)
+    wait_until_checked(ana)
     row.wait_for(state="detached")
-    checked(ana)
+    wait_until_checked(ana)
     assert image(ana) == compile("F(1, 77)").image
     ana.click("#side_real")
-    only_ana(taught)
+    only_ana(shared_class)
 
 
 def opened_row(teacher: Page, name: str) -> Locator:
@@ -646,22 +649,22 @@ def opened_row(teacher: Page, name: str) -> Locator:
 
 @drawn
 def test_who_closes_the_page_and_comes_back_is_the_same_pupil(
-    pages: Pages, taught: Class, teacher: Page
+    pages: Pages, shared_class: Class, teacher: Page
 ) -> None:
-    page = joined(pages, taught, "Noa")
+    page = join_class(pages, shared_class, "Noa")
     write(page, "F(1, 66)")
-    until(lambda: "F(1, 66)" in str(taught.room.works()), "the class has it")
-    page.evaluate("sessionStorage.clear()")  # as if it was closed
+    until(lambda: "F(1, 66)" in str(shared_class.room.works()), "the class has it")
+    page.evaluate("sessionStorage.clear()")  # like a closed page
     tile(teacher, "Noa").hover()
     tile(teacher, "Noa").locator(".out").click()
     page.locator("[data-pupil=class_gone]").wait_for(state="attached")
-    page.locator("#class_pupil input").nth(0).fill(taught.room.code)
+    page.locator("#class_pupil input").nth(0).fill(shared_class.room.code)
     page.locator("#class_pupil input").nth(1).fill("noa")
     page.click("[data-text=class_join]")
     wait_for_status(page, "You are in the class, Noa.")
     assert tile(teacher, "Noa").count() == 1
     page.close()
-    only_ana(taught)
+    only_ana(shared_class)
     wrong = [error for error in pages.wrong if "403" not in error]
     assert wrong == []
     pages.wrong.clear()
@@ -669,12 +672,12 @@ def test_who_closes_the_page_and_comes_back_is_the_same_pupil(
 
 @drawn
 def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
-    ana: Page, teacher: Page, taught: Class
+    ana: Page, teacher: Page, shared_class: Class
 ) -> None:
     """The very run: with what was pressed in it, and its own program and world."""
-    only_ana(taught)
-    ana.reload()  # which forgets the runs of other tests
-    checked(ana)
+    only_ana(shared_class)
+    ana.reload()  # the page forgets the runs of other tests
+    wait_until_checked(ana)
     play = tile(teacher, "Ana").locator(".play")
     play.dispatch_event("click")
     teacher.locator("#class_said", has_text="Ana has not run a program yet.").wait_for()
@@ -682,12 +685,12 @@ def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
     write(ana, "SI|SHOW(RANDOM(1, 1000));\nF(0.3, 80);\nSHOW(7)")
     ana.click("#run")
     ana.locator("html[data-phase=ended]").wait_for(state="attached")
-    shown = ana.locator("#trace").inner_text()
+    shown_text = ana.locator("#trace").inner_text()
     tile(teacher, "Ana").hover()
     play.click()
     teacher.locator("#doing", has_text="exactly the same again").wait_for()
     assert teacher.locator("#wall").is_hidden() and "SHOW(7)" in teacher.inner_text(".cm-content")
-    assert teacher.locator("#trace").inner_text() == shown
+    assert teacher.locator("#trace").inner_text() == shown_text
     teacher.click("#side_class")
     ana.click("#side_real")
 
@@ -695,7 +698,7 @@ def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
 @drawn
 @pytest.mark.parametrize("erases", [True, False])
 def test_the_end(browser: Browser, erases: bool) -> None:
-    with studio.taught([]) as taught:
+    with studio.serve_class([]) as taught:
         pages = Pages(browser, taught.server.address)
         ends(pages, taught, erases)
         pages.close()
@@ -703,7 +706,7 @@ def test_the_end(browser: Browser, erases: bool) -> None:
 
 
 def ends(pages: Pages, taught: Class, erases: bool) -> None:
-    ana = joined(pages, taught, "Ana")
+    ana = join_class(pages, taught, "Ana")
     write(ana, "F(1, 33)")
     ana.click("#my_programs")
     ana.click("#new")
@@ -719,16 +722,16 @@ def ends(pages: Pages, taught: Class, erases: bool) -> None:
     ana.locator(f"[data-pupil={'class_erased' if erases else 'class_kept'}]").wait_for(
         state="attached"
     )
-    checked(ana)
-    kept = "JSON.stringify(localStorage) + JSON.stringify(sessionStorage)"
-    ended = ana.evaluate(kept)
+    wait_until_checked(ana)
+    kept_text = "JSON.stringify(localStorage) + JSON.stringify(sessionStorage)"
+    ended = ana.evaluate(kept_text)
     assert ("F(1, 33)" in ended) is not erases
     if erases:
         assert "tiniscript." not in ended
-        write(ana, "F(1, 44)")  # what is written now is kept in this page alone
+        write(ana, "F(1, 44)")  # from here on, text is kept in this page only
         ana.click("#my_programs")
         ana.click("#new")
         ana.click("#my_programs")
         assert ana.locator("#versions li:not(:has(#new)) strong").all_inner_texts() == ["F(1, 44)"]
-        assert "tiniscript." not in ana.evaluate(kept)
+        assert "tiniscript." not in ana.evaluate(kept_text)
     assert taught.room.has_ended

@@ -9,7 +9,14 @@ import pytest
 
 from tests.support.page_breakpoints import COUNTING_PROGRAM, press_margin
 from tests.support.page_robot import running, value, wait_for_running
-from tests.support.studio import checked, colors_of, in_phase, noted, shown, write
+from tests.support.studio import (
+    colors_of,
+    in_phase,
+    wait_for_blocks,
+    wait_for_note,
+    wait_until_checked,
+    write,
+)
 from tiniscript import run
 
 if TYPE_CHECKING:
@@ -29,7 +36,7 @@ def points(page: Page) -> int:
     return page.locator(".cm-breakpoints").get_by_text("●").count()
 
 
-def held(page: Page, line: int) -> None:
+def wait_until_stopped(page: Page, line: int) -> None:
     page.locator("#doing").filter(has_text=f"Stopped before line {line}.").wait_for()
 
 
@@ -40,18 +47,18 @@ def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> 
     for x in (1, 2, 3):
         row = page.locator("#values div").filter(has=page.get_by_text("X", exact=True))
         row.get_by_text(str(x), exact=True).wait_for()
-        held(page, 5)
+        wait_until_stopped(page, 5)
         assert running(page) == "SHOW(X * X)"
         page.click("#pause")
     in_phase(page, "ended")
     assert value(page, "X") == "3"
-    wanted = [f"{event.ms} {event.text}" for event in run(COUNTING_PROGRAM).events]
-    assert (page.locator("#trace").text_content() or "").split("\n") == wanted
+    wanted_texts = [f"{event.ms} {event.text}" for event in run(COUNTING_PROGRAM).events]
+    assert (page.locator("#trace").text_content() or "").split("\n") == wanted_texts
 
 
 @drawn
 def test_a_breakpoint_of_a_line_with_nothing_on_it_is_that_of_the_next_part(page: Page) -> None:
-    """And only the left button sets one."""
+    """Only the left button sets one."""
     write(page, COUNTING_PROGRAM)
     numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
     numbers.filter(has_text="5").last.click(button="right")
@@ -59,11 +66,11 @@ def test_a_breakpoint_of_a_line_with_nothing_on_it_is_that_of_the_next_part(page
     numbers.filter(has_text="5").last.click(modifiers=["Control"])  # a Mac has its menu by that
     assert points(page) == 0
     press_margin(page, 4)
-    assert page.locator(".cm-breakpoint").all_inner_texts() == ["S"]  # of SHOW
+    assert page.locator(".cm-breakpoint").all_inner_texts() == ["S"]  # the line of SHOW
     press_margin(page, 5)
     assert points(page) == 0
     press_margin(page, 6)
-    noted(page, "There is nothing to stop at on line 6 or after it.")
+    wait_for_note(page, "There is nothing to stop at on line 6 or after it.")
     assert points(page) == 0
 
 
@@ -75,13 +82,13 @@ def test_a_breakpoint_moves_with_its_text_and_goes_with_it(page: Page) -> None:
     page.keyboard.press("F9")
     assert points(page) == 1
     page.keyboard.insert_text("W(0.1);\n")
-    checked(page)
+    wait_until_checked(page)
     page.click("#run")
-    held(page, 3)
+    wait_until_stopped(page, 3)
     page.locator(".cm-content").focus()
     page.keyboard.press("Control+a")
     page.keyboard.press("Delete")
-    checked(page)
+    wait_until_checked(page)
     assert points(page) == 0
 
 
@@ -89,7 +96,7 @@ def test_a_breakpoint_moves_with_its_text_and_goes_with_it(page: Page) -> None:
 def test_one_line_has_several_breakpoints(page: Page) -> None:
     write(page, "SI|SHOW(1);SHOW(2);SHOW(3)")
     for _ in range(2):
-        page.keyboard.press("F9")  # after the last part begins no other: it is that
+        page.keyboard.press("F9")  # no part begins after the last one, so that one gets it
         for _ in range(9):
             page.keyboard.press("ArrowLeft")
     assert page.locator(".cm-breakpoint").count() == 2
@@ -106,7 +113,7 @@ def test_breakpoints_are_seen_and_set_at_blocks(page: Page) -> None:
     write(page, COUNTING_PROGRAM)
     press_margin(page, 3)
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
     page.locator("#blocks .breakpoint").filter(has_text="+").wait_for()
     show = page.locator("#blocks .blocklyDraggable", has_text="SHOW").last
     show.click(button="right", position={"x": 6, "y": 6})
@@ -114,8 +121,8 @@ def test_breakpoints_are_seen_and_set_at_blocks(page: Page) -> None:
     page.locator("#blocks .show.breakpoint").wait_for()
     page.click("#run")
     for words in (r"\+", "show", r"\+"):
-        said = page.locator("#doing", has_text=re.compile(f"Stopped before “.*{words}.*”"))
-        said.wait_for()
+        said_element = page.locator("#doing", has_text=re.compile(f"Stopped before “.*{words}.*”"))
+        said_element.wait_for()
         page.locator("#blocks .running.breakpoint").wait_for()
         page.click("#pause")
     page.locator("#blocks .show .blocklyText", has_text="SHOW").click()
@@ -129,7 +136,7 @@ def test_a_breakpoint_can_be_set_and_taken_away_while_it_runs(page: Page) -> Non
     page.click("#run")
     wait_for_running(page)
     press_margin(page, 3)
-    held(page, 3)
+    wait_until_stopped(page, 3)
     press_margin(page, 3)
     page.click("#pause")
     in_phase(page, "running")
@@ -146,11 +153,11 @@ def test_breakpoints_of_a_program_that_runs_stay_where_they_were_while_its_text_
     press_margin(page, 1)
     press_margin(page, 3)
     page.click("#run")
-    held(page, 1)
+    wait_until_stopped(page, 1)
     page.locator(".cm-content").focus()
     page.keyboard.press("Control+Home")
     page.keyboard.insert_text("SHOW(9);\n")
-    checked(page)
+    wait_until_checked(page)
     page.click("#pause")
     in_phase(page, "paused")
     page.locator("#trace").filter(has_text="SHOW 1").wait_for(state="attached")
@@ -169,11 +176,11 @@ def test_a_breakpoint_is_taken_away_from_a_program_whose_text_has_changed(page: 
     write(page, "LOOP(FOREVER);\n  W(0.1);\n  SHOW(3);\nEND_LOOP")
     press_margin(page, 3)
     page.click("#run")
-    held(page, 3)
+    wait_until_stopped(page, 3)
     page.locator(".cm-content").focus()
     page.keyboard.press("Control+End")
     page.keyboard.insert_text(";\nSHOW(9)")
-    checked(page)
+    wait_until_checked(page)
     press_margin(page, 3)
     assert points(page) == 0
     page.click("#pause")
@@ -185,7 +192,7 @@ def test_a_breakpoint_is_taken_away_from_a_program_whose_text_has_changed(page: 
 
 @drawn
 def test_a_breakpoint_in_every_line_is_no_hurdle(page: Page) -> None:
-    """In a program as long as a robot takes, and after its end; and it stops at the first ones."""
+    """In a program of the largest size, and after its end; the first ones work."""
     write(page, "\n".join(f"W({k + 1})" for k in range(150)) + "\n// a note" * 50)
     pressed = page.locator(".cm-content").evaluate(
         "(content) => { const key = (key, keyCode) => content.dispatchEvent(new KeyboardEvent("
@@ -196,9 +203,9 @@ def test_a_breakpoint_in_every_line_is_no_hurdle(page: Page) -> None:
     )
     assert pressed < 10_000
     page.click("#run")
-    held(page, 1)
+    wait_until_stopped(page, 1)
     page.click("#pause")
-    held(page, 2)
+    wait_until_stopped(page, 2)
 
 
 @drawn

@@ -10,15 +10,15 @@ import pytest
 
 from tests.support import studio
 from tests.support.needs import need
-from tests.support.page_programs import MOVE, colours, content, opened, share
+from tests.support.page_programs import MOVE, colours, content, list_programs, share
 from tests.support.studio import (
     Pages,
-    checked,
     dances_like_the_command,
     enter,
     image,
-    shown,
     speak,
+    wait_for_blocks,
+    wait_until_checked,
     write,
 )
 from tiniscript import compile
@@ -35,25 +35,25 @@ PROGRAM = "SI|LOOP(2);\n  F(0.2, 80);\nEND_LOOP;\nSHOW(5)"
 @pytest.fixture(scope="module")
 def firefox(playwright: Playwright) -> Iterator[Browser]:
     need(studio.missing_firefox())
-    opened = playwright.firefox.launch(channel="moz-firefox", executable_path=studio.firefox())
-    yield opened
-    opened.close()
+    browser = playwright.firefox.launch(channel="moz-firefox", executable_path=studio.firefox())
+    yield browser
+    browser.close()
 
 
-# Playwright does not hear of downloads in this Firefox: what the page gives to the browser is kept.
+# Playwright does not see downloads in this Firefox, so the data passed to the browser is kept.
 KEEP = """() => { const make = URL.createObjectURL.bind(URL);
   URL.createObjectURL = (blob) => { window.made = blob; return make(blob); }; }"""
 READ = """async () => { const bytes = new Uint8Array(await window.made.arrayBuffer());
   return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join('')); }"""
 
 
-def saved(page: Page) -> bytes:
+def read_saved_file(page: Page) -> bytes:
     """Return the newest file that the page has saved."""
     return base64.b64decode(page.evaluate(READ))
 
 
 @pytest.fixture(scope="module")
-def visited(firefox: Browser, address: str) -> Iterator[tuple[Pages, Page]]:
+def firefox_page(firefox: Browser, address: str) -> Iterator[tuple[Pages, Page]]:
     pages = Pages(firefox, address)
     page = pages.open("blocks", is_alone=True)
     page.evaluate(KEEP)
@@ -62,8 +62,8 @@ def visited(firefox: Browser, address: str) -> Iterator[tuple[Pages, Page]]:
 
 
 @pytest.fixture
-def page(visited: tuple[Pages, Page]) -> Iterator[Page]:
-    pages, current_page = visited
+def page(firefox_page: tuple[Pages, Page]) -> Iterator[Page]:
+    pages, current_page = firefox_page
     studio.begin_anew(current_page)
     yield current_page
     wrong, pages.wrong[:] = pages.wrong[:], []
@@ -74,13 +74,13 @@ def test_blocks_and_text_are_the_same_program(page: Page) -> None:
     write(page, PROGRAM)
     assert image(page) == compile(PROGRAM).image
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
     assert page.locator("#blocks .blocklyBlock").count() >= 4
     page.click("#undo")
-    shown(page)
+    wait_for_blocks(page)
     assert image(page) == compile("").image
     page.click("#redo")
-    shown(page)
+    wait_for_blocks(page)
     assert image(page) == compile(PROGRAM).image
 
 
@@ -89,7 +89,7 @@ def test_a_mistake_is_said_in_spanish_and_repaired(page: Page) -> None:
     write(page, "F(-2, 80)")
     assert page.inner_text("#status") == "1 error"
     page.get_by_role("button", name="Hacerlo: línea 1, B(2, 80)").click()
-    checked(page)
+    wait_until_checked(page)
     assert image(page) == compile("B(2, 80)").image
 
 
@@ -105,7 +105,7 @@ def test_a_world_is_changed_and_saved(page: Page) -> None:
     page.keyboard.press("ArrowRight")
     page.click("#world_save")
     page.locator("#doing").filter(has_text="Saved: world.toml").wait_for()
-    world = read(saved(page).decode(), "world")
+    world = read(read_saved_file(page).decode(), "world")
     assert max(x for x, _ in world.boxes[-1]) == 125
     page.click("#world_done")
 
@@ -113,10 +113,10 @@ def test_a_world_is_changed_and_saved(page: Page) -> None:
 def test_programs_are_shared_kept_and_pictured(page: Page) -> None:
     write(page, PROGRAM)
     link = share(page)
-    assert "#program=" in link and PROGRAM.split("\n")[0] in " ".join(opened(page))
+    assert "#program=" in link and PROGRAM.split("\n")[0] in " ".join(list_programs(page))
     page.click("#share_picture")
     page.locator("#shared_told").filter(has_text="Saved: program.png").wait_for()
-    width, height, counts = colours(page, saved(page))
+    width, height, counts = colours(page, read_saved_file(page))
     assert width > 200 and height > 200 and counts[MOVE] > 1000
     page.keyboard.press("Escape")
     page.goto(link)
@@ -127,7 +127,7 @@ def test_programs_are_shared_kept_and_pictured(page: Page) -> None:
 def test_it_works_without_its_server(firefox: Browser) -> None:
     context = firefox.new_context()
     page = context.new_page()
-    with studio.served() as server:
+    with studio.serve_page() as server:
         enter(page, server.address)
         page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
         address = server.address

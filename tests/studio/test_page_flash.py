@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.machines.bootloaders import bootloader
-from tests.machines.uno import needed
+from tests.machines.uno import skip_unless_available
 from tests.support import studio, studio_serial
 from tests.support.flashed_boards import new_board, to_hex
 from tests.support.page_link import wait_for_message
-from tests.support.platformio import firmware, shared
+from tests.support.platformio import firmware, shared_folder
 from tests.support.studio import enter
 from tests.support.waiting import until
 from tiniscript.studio import serving
@@ -28,11 +28,12 @@ def test_a_new_board_becomes_a_robot(
     playwright: Playwright, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     why = studio_serial.missing()
-    if why:  # in CI, too: no package brings root or a serial port; tests/studio/test_flashing.py
+    # Skipped in CI too, without root or a serial port; tests/studio/test_flashing.py covers it.
+    if why:
         pytest.skip(why)
-    needed()
+    skip_unless_available()
     file = tmp_path / "tinibot-uno-digest.hex"
-    to_hex(firmware("uno", tmp_path, shared(tmp_path_factory)), file)
+    to_hex(firmware("uno", tmp_path, shared_folder(tmp_path_factory)), file)
     rows = [{"title": "tinibot", "board": "uno", "file": file.name}]
     page = {
         **serving.files(),
@@ -40,7 +41,7 @@ def test_a_new_board_becomes_a_robot(
         file.name: serving.File(file.read_bytes(), "text/plain"),
     }
     with (
-        studio.served(page) as server,
+        studio.serve_page(page) as server,
         new_board(bootloader("uno")) as uno,
         studio_serial.context(playwright, tmp_path, uno.pty, server.address) as context,
     ):
@@ -50,7 +51,7 @@ def test_a_new_board_becomes_a_robot(
         first_page.click("#side_real")
         first_page.locator("#link_port option").first.wait_for(state="attached")
         first_page.click("#link_teacher summary")
-        # Of another robot there is no firmware here; what is no firmware is not written.
+        # There is no firmware for other robots here, and other files are not written.
         first_page.select_option("#robot", "liner")
         first_page.click("#flash_write")
         wait_for_message(first_page, "There is no firmware here for this robot on this board.")

@@ -14,7 +14,7 @@ from tests.support import studio
 from tests.support.needs import need
 from tests.support.page_screens import LOOK, SCREENS
 from tests.support.sampling import some_of
-from tests.support.studio import Pages, axe, checked, enter, image, speak, write
+from tests.support.studio import Pages, axe, enter, image, speak, wait_until_checked, write
 from tiniscript import check, compile
 from tiniscript.base.languages import SOURCE_LANGUAGE, languages
 from tiniscript.studio import serving
@@ -91,7 +91,7 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
     page.click("#home")
     for screen, size in screens.each_screen(page, lambda name: (*usual[name], *low[name])):
         assert page.locator("#stop").is_visible()
-        if screen not in ("teacher", "programs"):  # one is scrolled, one in front of all
+        if screen not in ("teacher", "programs"):  # one screen scrolls, the other covers everything
             for end in (0,) if size in SCREENS else (0, 10_000):
                 look = LOOK if size in SCREENS else SCROLLED
                 problems = page.evaluate(
@@ -134,7 +134,7 @@ def test_one_row_is_over_the_program_whatever_the_robots_name(page: Page, langua
 
 
 def test_it_is_dark_where_the_system_is_or_somebody_wants_it(page: Page) -> None:
-    """With no less contrast; what somebody has chosen counts more, and is kept."""
+    """The contrast is as good; a person's choice takes precedence, and is kept."""
 
     def become(theme: str) -> None:
         page.locator(f"html{THEMES[theme]}").wait_for(state="attached")
@@ -151,7 +151,7 @@ def test_it_is_dark_where_the_system_is_or_somebody_wants_it(page: Page) -> None
     become("dark")
     assert page.get_attribute("#theme", "aria-pressed") == "true"
     page.evaluate("localStorage.setItem('tiniscript.theme', '<b>')")
-    page.evaluate("dispatchEvent(new Event('storage'))")  # as another tab would
+    page.evaluate("dispatchEvent(new Event('storage'))")  # like an event from another tab
     become("light")
     page.evaluate("localStorage.removeItem('tiniscript.theme')")
     page.emulate_media(color_scheme="null")
@@ -177,7 +177,7 @@ def test_the_keyboard_alone_is_enough(page: Page) -> None:
         "words", "undo", "redo", "editor", "place", "repair",
     ]  # fmt: skip
     page.keyboard.press("Enter")
-    checked(page)
+    wait_until_checked(page)
     assert image(page) == compile("B(2, 80)").image
 
 
@@ -190,7 +190,7 @@ def test_a_screen_reader_hears_what_is_said(page: Page) -> None:
     assert page.get_by_role("textbox", name="Program").count() == 1
     assert page.get_by_role("combobox", name="Robot").count() == 1
     page.get_by_role("button", name="Apply the fix: line 1, B(2, 80)").wait_for()
-    write(page, "SI|IF(DISTANCE < 10)\nS")  # no full stop stands after a word of a program
+    write(page, "SI|IF(DISTANCE < 10)\nS")  # no full stop follows a word of a program
     for place in ("#messages li", "#first_message"):
         assert " has no ENDIF – Try: " in page.inner_text(place)
 
@@ -247,17 +247,17 @@ def test_it_works_without_its_server(playwright: Playwright, tmp_path: Path) -> 
             enter(page, address)
             page.click("#view_text")
             page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
-            before = image(page)
+            image_before = image(page)
             speak(page, "es")
             page.evaluate(KEPT, ["./texts.es.json", "./messages.es.json"])
             write(page, "F(-2, 80)")
             assert check("F(-2, 80)", language="es")[0].message in page.inner_text("#messages li")
             write(page, text)
-            return before
+            return image_before
         finally:
             context.close()
 
-    with studio.served() as server:
+    with studio.serve_page() as server:
         address = server.address
         visit(address, "SI|F(7, 70)")
     assert visit(address, "SI|S") == compile("SI|F(7, 70)").image
@@ -269,7 +269,7 @@ def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
     need(studio.missing())
     page = serving.files()
     context = browser.new_context()
-    with studio.served(page) as server:
+    with studio.serve_page(page) as server:
         tab = context.new_page()
         enter(tab, server.address)
         tab.evaluate("navigator.serviceWorker.ready.then(() => 1)")
@@ -282,9 +282,9 @@ def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
             assert data != page[name].data
             page[name] = page[name]._replace(data=data, etag=f'"{new.hex()}"')
         tab.evaluate(UPDATE)
-        write(tab, "SI|F(3, 30)")  # the old one goes on
+        write(tab, "SI|F(3, 30)")  # the old one continues
         tab.reload()
-        checked(tab)
+        wait_until_checked(tab)
         assert tab.locator("html[data-build]").count() == 0
         assert image(tab) == compile("SI|F(3, 30)").image
         for _ in range(10):  # a busy browser ends a closed tab late
@@ -294,7 +294,7 @@ def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
             if count := tab.locator("html[data-build]").count():
                 break
         assert count == 1
-        assert image(tab) == compile("SI|F(3, 30)").image  # and the work is kept
+        assert image(tab) == compile("SI|F(3, 30)").image  # the work is kept
     context.close()
 
 

@@ -21,7 +21,7 @@ from tests.support.page_link import (
 from tests.support.page_robot import running
 from tests.support.pty_robot import PtyRobot
 from tests.support.silent_serial import SILENT_SERIAL
-from tests.support.studio import UPLOADS, Pages, checked, enter, hears, write
+from tests.support.studio import UPLOADS, Pages, enter, hears, wait_until_checked, write
 from tiniscript import robots
 from tiniscript.flash.ready import title_of
 from tiniscript.studio import robot_link
@@ -32,7 +32,7 @@ from tiniscript.virtual import worlds
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
-pytestmark = pytest.mark.usefixtures("unhurried")
+pytestmark = pytest.mark.usefixtures("no_page_timeouts")
 drawn = pytest.mark.sampled(of="details of halts", keep=2)
 
 __all__ = ["first", "first_robot", "page", "pages", "robot"]  # fixtures
@@ -64,21 +64,22 @@ def put(page: Page, text: str, lines: tuple[int, ...]) -> None:
 
 
 def is_halted(page: Page) -> bool:
-    """Wait for the next halt, and what is said about it; False where the program has ended."""
+    """Wait for the next halt, and its message; return False if the program has ended."""
     halt = page.locator("html[data-halt=read]")
     halt.or_(page.locator("html[data-halt=none]")).wait_for(state="attached")
     return halt.count() == 1
 
 
 def state_of(page: Page, variables: int) -> tuple[str, list[str]]:
-    """Return what is marked, and the values of the variables."""
+    """Return the marked text, and the values of the variables."""
     values = page.locator("#link_values:not(.past) dd").all_inner_texts()
     return running(page), values[:variables]
 
 
 def walk(page: Page, begin: str, button: str, text: str) -> list[tuple[str, list[str]]]:
-    """Go from halt to halt, to the end; return what is seen at each. Again, where a busy computer
-    kept the page silent until its robot was stopped."""
+    """Go from halt to halt, to the end; return the state at each. Repeated if a busy computer kept
+    the page silent until its robot was stopped.
+    """
     variables = len(check(text.encode(), "tinibot", "en").variables)
     for _ in range(UPLOADS):
         halts = []
@@ -94,7 +95,7 @@ def walk(page: Page, begin: str, button: str, text: str) -> list[tuple[str, list
 
 
 def virtual(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple[str, list[str]]]:
-    """Return the same of the virtual robot."""
+    """Return the state of the virtual robot in the same form."""
     program = check(text.encode(), "tinibot", "en")
     rows = text.split("\n")
     first = [next(place for place in program.places if place.line == line) for line in lines]
@@ -138,7 +139,7 @@ def test_it_halts_where_the_virtual_robot_does_and_has_its_values(page: Page, na
 @pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_step_goes_to_the_next_part_of_the_program(page: Page, name: str) -> None:
-    """From the first one on. Two parts that the compiler has joined are one step."""
+    """It begins at the first part. Two parts joined by the compiler are one step."""
     text, _ = PROGRAMS[name]
     put(page, text, ())
     wanted = [row for row in virtual(text, (), steps=True) if row[0] != "DISTANCE"]
@@ -169,7 +170,7 @@ LOOP = "SHOW(1);\nLOOP(FOREVER);\nF(0.05, 80);\nSHOW(2);\nEND_LOOP"
 
 @drawn
 def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: PtyRobot) -> None:
-    """And stays while its text changes; a program that waits, or runs again, has it, too."""
+    """It stays while the text changes; a waiting or restarted program has it too."""
     put(page, LOOP, ())
     page.click("#link_upload")
     robot.until(lambda: robot.moves, "it drives")
@@ -178,9 +179,9 @@ def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: Pty
     page.locator(".cm-content").focus()
     page.keyboard.press("Control+Home")
     page.keyboard.insert_text("W(0);\n")
-    checked(page)
+    wait_until_checked(page)
     page.click("#link_go_on")
-    halts(page, 4)  # of the text that it has
+    halts(page, 4)  # line of its own text
     press_margin(page, 5)
     page.click("#link_go_on")
     robot.until(lambda: robot.moves, "it drives")
@@ -264,31 +265,31 @@ def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
         {"title": title, "board": board, "file": f"{title}-{board}-digest.hex"}
         for title, board in BROUGHT
     ]
-    asked: list[str] = []
+    questions: list[str] = []
     other.route("**/firmware.json", lambda route: route.fulfill(json=rows))
     other.route("**/*.hex", lambda route: route.fulfill(body=":00"))
-    other.on("request", lambda request: asked.append(request.url.rpartition("/")[2]))
+    other.on("request", lambda request: questions.append(request.url.rpartition("/")[2]))
     other.add_init_script(SILENT_SERIAL)
     enter(other, pages.entrance())
     other.click("#view_text")
     connect(other, robot)
     write(other, "SHOW(1);\nSHOW(2)")
-    offered = other.locator("#link_get_halting")
-    assert offered.is_hidden()
+    offered_element = other.locator("#link_get_halting")
+    assert offered_element.is_hidden()
     press_margin(other, 2)
-    offered.wait_for()
+    offered_element.wait_for()
     press_margin(other, 2)
-    offered.wait_for(state="hidden")
+    offered_element.wait_for(state="hidden")
     press_margin(other, 2)
-    offered.click()
+    offered_element.click()
     wait_for_message(other, "but the robot no longer reads typed text")
     assert other.locator("html[data-robot=none]").count() == 1
     assert other.locator("#flash_halts").is_checked()
     assert other.input_value("#flash_board") == "uno"
-    assert not [name for name in asked if name.endswith(".hex")]
+    assert not [name for name in questions if name.endswith(".hex")]
     other.click("#flash_write")
     wait_for_message(other, "That is not a complete HEX file")
-    assert [name for name in asked if name.endswith(".hex")] == [f"{HALTING}-uno-digest.hex"]
+    assert [name for name in questions if name.endswith(".hex")] == [f"{HALTING}-uno-digest.hex"]
     other.select_option("#flash_board", "nano")
     other.locator("#flash_halts").wait_for(state="hidden")
     assert not other.locator("#flash_halts").is_checked()
@@ -335,13 +336,15 @@ def test_a_program_that_is_stopped_on_its_way_never_starts(
 ) -> None:
     """Its places come between the program and its start."""
     put(page, LOOP, (4,))
-    before = len(robot.did)
+    count_before = len(robot.actions)
     pressed: list[bool] = []
 
     def press(route: Route) -> None:
-        asked = [request["do"] for request in (route.request.post_data_json or {}).get("asked", [])]
+        questions = [
+            request["do"] for request in (route.request.post_data_json or {}).get("asked", [])
+        ]
         response = route.fetch()
-        if what in asked and not pressed:
+        if what in questions and not pressed:
             pressed.append(True)
             page.evaluate("document.getElementById('stop').click()")
         route.fulfill(response=response)
@@ -352,7 +355,7 @@ def test_a_program_that_is_stopped_on_its_way_never_starts(
     wait_for_message(page, re.compile("Stopped: |stopped"))
     page.wait_for_timeout(1000)
     page.unroute_all(behavior="wait")
-    assert "MOTORS 80 80" not in robot.did[before:]
+    assert "MOTORS 80 80" not in robot.actions[count_before:]
 
 
 @pytest.mark.long

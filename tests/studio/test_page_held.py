@@ -1,4 +1,4 @@
-"""What the page waits for does not come, and nothing says so: the page tells, and ends it."""
+"""If an expected event never comes, the page reports that, and ends the wait."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.support import studio
 from tests.support.node import in_node
 from tests.support.page_link import wait_for_message
 from tests.support.silent_serial import SILENT_SERIAL
-from tests.support.studio import Pages, checked, enter, hears
+from tests.support.studio import Pages, enter, hears, wait_until_checked
 from tiniscript.studio import serving
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def server(browser: Browser) -> Iterator[serving.Server]:
         serving.FIRMWARE_FILE: serving.File(json.dumps(rows).encode(), "application/json"),
         FILE: serving.File(b":01000000FF00\n:00000001FF\n", "text/plain"),
     }
-    with studio.served(page) as server:
+    with studio.serve_page(page) as server:
         yield server
 
 
@@ -93,10 +93,10 @@ def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
     pages: Pages, server: serving.Server
 ) -> None:
     page = with_serial(pages, server, has_clock=True)
-    held = Held(page, f"**/{FILE}")
+    held_robot = Held(page, f"**/{FILE}")
     for count, ends in enumerate(("cancel", "nothing"), 1):
         page.click("#flash_write")
-        hears(page, partial(held.has, count), "it is fetched")
+        hears(page, partial(held_robot.has, count), "it is fetched")
         wait_for_message(page, "Fetching the firmware. Nothing has been written yet.")
         page.clock.fast_forward(4000)
         wait_for_message(page, "The firmware has not arrived.")
@@ -116,10 +116,10 @@ def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
 ) -> None:
     page = with_serial(pages, server, has_clock=True)
     page.select_option("#flash_board", "esp32dev")
-    held = Held(page, "**/esp32-*.js")
+    held_robot = Held(page, "**/esp32-*.js")
     for _ in range(2):
         page.click("#flash_write")
-        hears(page, lambda: held.routes, "it is fetched")
+        hears(page, lambda: held_robot.routes, "it is fetched")
         wait_for_message(page, "Fetching the firmware. Nothing has been written yet.")
         page.clock.fast_forward(4000)
         wait_for_message(page, "The firmware has not arrived.")
@@ -160,7 +160,7 @@ def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: servi
 
 # -- what a run needs
 
-# What the page says where something is held; the pictures and the style are the browser's to fetch.
+# The page's message when a request hangs; the browser fetches the pictures and the style itself.
 WORDS = ("#coming, #status:has-text('not load'), #status:has-text('not arrive'), "
          "#doing:has-text('not load'), #doing:has-text('not arrive')")  # fmt: skip
 OF_THE_COMPILER = ("worker.js", "pyodide.asm.mjs", "pyodide.asm.wasm", "python.zip",
@@ -171,7 +171,7 @@ NEEDLESS = ("style.css", ".svg", ".webmanifest", ".cur")
 
 @pytest.fixture(scope="module")
 def hasty(browser: Browser) -> Iterator[serving.Server]:
-    """A page that says after a moment what it waits for, and gives up soon."""
+    """A page that soon names its waits, and soon gives up."""
     page = serving.files()
     for name, file in page.items():
         data = file.data
@@ -183,7 +183,7 @@ def hasty(browser: Browser) -> Iterator[serving.Server]:
             data = data.replace(b"comes 0s 3s", b"comes 0s .5s")
         if data != file.data:
             page[name] = serving.File(data, file.content_type)
-    with studio.served(page) as server:
+    with studio.serve_page(page) as server:
         yield server
 
 
@@ -195,7 +195,7 @@ def visits(browser: Browser, hasty: serving.Server) -> Iterator[Pages]:
     opened_pages.close()
 
 
-# Keeps all that is said about the virtual robot, however soon something else is.
+# Records all messages about the virtual robot, however short.
 TOLD = """window.told = [];
 new MutationObserver(() => {
   const said = document.querySelector('#doing')?.textContent;
@@ -207,7 +207,7 @@ WAITED = """window.told
 TRIES = 10
 
 
-def danced(page: Page) -> None:
+def check_dance_goes_on(page: Page) -> None:
     """A run that was asked for goes on."""
     page.locator("html[data-phase=running]").wait_for(state="attached")
 
@@ -217,16 +217,16 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
     visits: Pages,
 ) -> None:
     page = visits.blank(is_alone=True)
-    asked: list[str] = []
-    page.on("request", lambda request: asked.append(request.url.removeprefix(visits.address)))
+    questions: list[str] = []
+    page.on("request", lambda request: questions.append(request.url.removeprefix(visits.address)))
     page.goto(visits.address)
     page.click("[data-begin=dance]")
-    danced(page)
-    names = sorted({name for name in asked if name and not name.endswith(NEEDLESS)})
+    check_dance_goes_on(page)
+    names = sorted({name for name in questions if name and not name.endswith(NEEDLESS)})
     assert {*OF_THE_COMPILER, "main.js", "texts.en.json"} <= {*names}
     for name in names:
         page = visits.blank(is_alone=True)
-        held = Held(page, f"**/{name}")
+        held_robot = Held(page, f"**/{name}")
         page.goto(visits.address, wait_until="commit")
         begin, word = page.locator(f"{BEGINS}:visible"), page.locator(WORDS)
         running = page.locator("html:is([data-phase=running], [data-phase=ended])")
@@ -241,12 +241,12 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
 
         hears(page, is_told, name)
         hears(page, goes_on, name)
-        held.let_go()
+        held_robot.let_go()
         if not page.locator("html[data-screen=program]").count():
             page.click(BEGINS)
         elif page.locator("#doing", has_text="did not load").count():
             page.click("#run")  # this computer was slow: it was given up
-        danced(page)
+        check_dance_goes_on(page)
         page.context.close()
 
 
@@ -255,7 +255,7 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
 def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
     visits: Pages, name: str
 ) -> None:
-    """In vain, and once more."""
+    """The first retry fails, the next succeeds."""
     page = visits.blank(is_alone=True)
     page.add_init_script(TOLD)
     Held(page, f"**/{name}")
@@ -274,25 +274,25 @@ def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
             break
         page.click("#run")  # this computer was slow: it was given up
         page.locator("#doing", has_not_text="did not load").wait_for()
-    danced(page)
+    check_dance_goes_on(page)
     page.click("#stop")
-    checked(page)
+    wait_until_checked(page)
 
 
 def test_who_stops_while_the_compiler_is_held_has_no_run_when_it_comes(visits: Pages) -> None:
     page = visits.blank(is_alone=True)
-    held = Held(page, "**/pyodide.asm.mjs")
+    held_robot = Held(page, "**/pyodide.asm.mjs")
     page.goto(visits.address)
     page.click("[data-begin=dance]")
     page.locator("#doing", has_text="STOP cancels.").wait_for()
     page.click("#stop")
     hears(page, lambda: "compiler" not in page.locator("#doing").inner_text(), "it waits no more")
-    held.let_go()
-    checked(page)
+    held_robot.let_go()
+    wait_until_checked(page)
     page.wait_for_timeout(300)
     assert page.locator("html[data-phase=off]").count()
     page.click("#run")
-    danced(page)
+    check_dance_goes_on(page)
 
 
 @drawn
@@ -303,17 +303,17 @@ def test_a_robots_run_tries_the_compiler_again(visits: Pages) -> None:
     page.locator("html[data-state=failed]").wait_for(state="attached")
     page.context.unroute_all()
     page.evaluate("document.querySelector('#link_upload').click()")
-    checked(page)
+    wait_until_checked(page)
 
 
 def test_a_stop_that_nobody_hears_says_so_at_once_and_is_tried_on(pages: Pages) -> None:
-    with studio.hosted() as server:
+    with studio.serve_robots() as server:
         page = pages.blank(is_alone=True)
         page.clock.install()
         enter(page, server.entrance())
-        held = Held(page, "**/robots")
+        held_robot = Held(page, "**/robots")
         page.keyboard.press("Escape")
-        hears(page, lambda: held.routes, "it is asked")
+        hears(page, lambda: held_robot.routes, "it is asked")
         page.clock.fast_forward(3100)
         locator = page.locator("#stops")
         locator.filter(has_text="STOP did not reach tsc studio.").wait_for(state="attached")

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.page_blocks import drag, offered, start
+from tests.support.page_blocks import drag, list_offered_blocks, start
 from tests.support.sampling import some_of
-from tests.support.studio import SETTLED, Pages, axe, shown, speak
+from tests.support.studio import SETTLED, Pages, axe, speak, wait_for_blocks
 from tests.support.text_only_words import has_line_on_floor, text_only_words
 from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
@@ -73,13 +73,13 @@ def test_the_level_rises_to_what_a_lesson_needs_and_never_falls(
     kinds: dict[str, set[str]] = {}
     for level in LEVELS:
         page.select_option("#level", level)
-        kinds[level] = offered(page)
+        kinds[level] = list_offered_blocks(page)
     page.select_option("#level", "few")
     level = "few"
     for number in some_of(pytestconfig, "levels of lessons", LESSONS, 4):
         open_lesson(page, number)
-        needed = set(page_lessons.needed_kinds(number, "en")) & kinds["all"]
-        least = next(level for level in LEVELS if needed <= kinds[level] | {"set"})
+        needed_names = set(page_lessons.needed_kinds(number, "en")) & kinds["all"]
+        least = next(level for level in LEVELS if needed_names <= kinds[level] | {"set"})
         level = max(level, least, key=LEVELS.index)
         assert page.input_value("#level") == level, number
     page.select_option("#level", "few")
@@ -105,7 +105,7 @@ def test_a_lesson_takes_no_block_away(page: Page) -> None:
     """Lesson 13 is solved best by what lesson 7 has brought."""
     open_lesson(page, 13)
     page.select_option("#level", "few")
-    assert "endless" in offered(page)
+    assert "endless" in list_offered_blocks(page)
 
 
 @drawn
@@ -150,10 +150,10 @@ def test_a_lesson_speaks_as_its_reader_writes(page: Page) -> None:
         ("es", "repite 4 veces", "LOOP repite 4 veces"),
     ):
         speak(page, language)
-        shown(page)
+        wait_for_blocks(page)
         open_lesson(page, 4, 1)
-        named = page.locator("#lesson_step .on_block")
-        named.filter(has_text=re.compile(f"^{label}$")).wait_for()
+        named_element = page.locator("#lesson_step .on_block")
+        named_element.filter(has_text=re.compile(f"^{label}$")).wait_for()
         program = page.locator("#lesson_step .program")
         program.locator("img").wait_for()
         assert program.locator("pre.heard").text_content() == (
@@ -161,10 +161,10 @@ def test_a_lesson_speaks_as_its_reader_writes(page: Page) -> None:
         )
         assert axe(page) == []
         page.click("#words")
-        named.filter(has_text=re.compile(f"^{word}$")).wait_for()
+        named_element.filter(has_text=re.compile(f"^{word}$")).wait_for()
         page.click("#words")
         page.click("#view_text")
-        assert named.count() == program.locator("img").count() == 0
+        assert named_element.count() == program.locator("img").count() == 0
         assert program.locator("pre:not(.heard)").is_visible()
         assert page.locator("#lesson_step code").first.inner_text() == "LOOP(4)"
         page.click("#view_blocks")
@@ -173,7 +173,7 @@ def test_a_lesson_speaks_as_its_reader_writes(page: Page) -> None:
     page.locator("#blocks .blocklyBlock", has_text="repite").first.wait_for()
 
 
-# What somebody reads of a step, and its codes that are not on a block.
+# The text of a step, and its code that is not on a block.
 READ = """() => {
   const page = document.querySelector('#lessons').cloneNode(true);
   for (const each of page.querySelectorAll('.program, #lesson')) each.remove();
@@ -192,9 +192,9 @@ NO_LABEL = re.compile(r"%\d|\{|undefined|\w\(|;|\bEND|^\s*$")
 def test_what_a_lesson_names_of_a_block_is_what_the_block_says(
     page: Page, language: str, pytestconfig: pytest.Config
 ) -> None:
-    """Nothing that is read there is of a text; the only codes are names that a program gives."""
+    """It contains nothing of a text, except for names that a program defines."""
     speak(page, language)
-    shown(page)
+    wait_for_blocks(page)
     count = 0
     lessons = some_of(pytestconfig, "words of lessons", LESSONS, 4)
     for number in lessons:

@@ -15,13 +15,13 @@ from tests.support.studio import (
     SETTLED,
     Pages,
     axe,
-    checked,
     colors_of,
     hears,
     in_phase,
-    noted,
     speak,
     turn,
+    wait_for_note,
+    wait_until_checked,
     write,
 )
 from tiniscript.lessons import catalogue
@@ -48,7 +48,7 @@ def page(page: Page) -> Page:
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(6))
 def test_each_lesson_says_of_a_wrong_answer_what_the_command_says(page: Page, part: int) -> None:
-    """What `tsc lesson check` says of each answer is tested with the lessons."""
+    """The results of `tsc lesson check` are tested with the lessons."""
     for number, folder in list(enumerate(FOLDERS, 1))[part::6]:
         _, wrong = catalogue.answers(folder)
         choose_lesson(page, number)
@@ -65,13 +65,13 @@ def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
     assert check_answer(page, right[0].program) == ("passed", [])
     lesson = catalogue.load(FOLDERS[number - 1])
     worlds = f", in {lesson.world_count} worlds" if lesson.world_count > 1 else ""
-    wanted = f"Done! You solved lesson {number}{worlds}."
-    assert page.inner_text("#lesson_said").startswith(f"{wanted} You have ")
+    wanted_text = f"Done! You solved lesson {number}{worlds}."
+    assert page.inner_text("#lesson_said").startswith(f"{wanted_text} You have ")
     assert page.inner_text("#lesson_stars") == "★" * lesson.world_count
 
 
 def rest(page: Page) -> list[str]:
-    """Return what is said after the first sentence, which may be nothing."""
+    """Return the sentences after the first one, if any."""
     return page.locator("#lesson_findings li").all_inner_texts()[1:]
 
 
@@ -98,7 +98,8 @@ def test_a_check_can_be_ended(page: Page) -> None:
     assert page.evaluate("document.activeElement.id") == "lesson_check"
     choose_lesson(page, 1)
     right, _ = catalogue.answers(FOLDERS[0])
-    assert check_answer(page, right[0].program) == ("passed", [])  # and not the other one's verdict
+    # The verdict is not that of the other check.
+    assert check_answer(page, right[0].program) == ("passed", [])
 
 
 @drawn
@@ -132,7 +133,7 @@ def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
 
 
 def test_nothing_is_lit_once_a_run_is_over(page: Page, pytestconfig: pytest.Config) -> None:
-    """Whether it has come to its end, to what it missed, or was skipped or stopped."""
+    """It may have ended, or was skipped or stopped."""
     choose_lesson(page, 4)
     write(page, "SI|LOOP(FOREVER)\n  F(0.3, 30)\n  L(0.3, 60)\nEND_LOOP\n")
     page.select_option("#speed", "1")
@@ -201,7 +202,7 @@ PAGES = {
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", PAGES, ids=lambda size: "x".join(map(str, size)))
 def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]) -> None:
-    """On a laptop each step is seen whole, elsewhere six lines of it."""
+    """On a laptop each step is fully visible, elsewhere six lines of it."""
     page.set_viewport_size({"width": size[0], "height": size[1]})
     turn(page, "robot")
     for number in range(1, len(FOLDERS) + 1) if size[0] == 1366 else (1,):
@@ -220,7 +221,7 @@ def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]
                 height = page.evaluate("document.querySelector('#lesson_page').clientHeight")
                 assert height >= 100, "what is to be done, beside a hint"
                 page.click("#lesson_hint summary")
-    for number in (1, 7):  # its name is whole, beside its number or over the step
+    for number in (1, 7):  # the name is shown in full, beside its number or above the step
         page.select_option("#lesson", str(number))
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
         is_phone = page.locator("html[data-phone]").count()
@@ -241,7 +242,7 @@ def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
     page.keyboard.type(" ")
     page.locator("#lesson_said:not([data-verdict])").wait_for(state="attached")
     write(page, SLOW)
-    page.dblclick("#lesson_check")  # not the button that comes to its place
+    page.dblclick("#lesson_check")  # the second click must not hit the button that takes its place
     page.locator("#lesson_end").wait_for()
     write(page, "SI|S")
     page.locator("#lesson_check").wait_for()
@@ -261,7 +262,7 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     assert page.inner_text("#lesson_stars").count("★") == int(seed) - 1
     speak(page, "es")
     assert page.locator("#world option:checked").inner_text().startswith("Lección 12, mundo ")
-    checked(page)
+    wait_until_checked(page)
     page.click("#step")
     in_phase(page, "paused")
     page.locator("#values dd").first.filter(has_text=" s").wait_for()
@@ -279,14 +280,14 @@ def test_a_page_of_a_lesson_is_read_in_spanish_and_its_programs_are_used(page: P
     page.locator("#lesson_steps button").nth(1).click()
     speak(page, "es")
     page.locator("#lesson_page", has_text="repite cuatro veces").wait_for()
-    assert page.locator("#controls").evaluate("e => e.clientHeight") < 60  # one row
+    assert page.locator("#controls").evaluate("e => e.clientHeight") < 60  # all in one row
     assert page.locator("#lesson option").nth(3).inner_text().startswith("4. Un cuadrado con LOOP")
     assert page.locator("#lesson_page code", has_text="LOOP(4)").count() == 1
     assert "`" not in page.inner_text("#lesson_page") and "**" not in page.inner_text(
         "#lesson_page"
     )
     page.get_by_role("button", name="Ponerlo en el programa").first.click()
-    noted(page, "Ya está en el programa")
+    wait_for_note(page, "Ya está en el programa")
     assert page.locator(".cm-content").inner_text().startswith("SI|LOOP(4)\n  F(1, 60)")
 
 
@@ -303,9 +304,9 @@ def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(
     page.click("#side_lessons")
     page.locator("#lesson_next:enabled").wait_for()
     right, _ = catalogue.answers(FOLDERS[1])
-    kept = (json.dumps(["01_first_line", 5, "<b>", "x" * 500, None]), '"x"', "no JSON", "[]")
+    kept_state = (json.dumps(["01_first_line", 5, "<b>", "x" * 500, None]), '"x"', "no JSON", "[]")
     locator = page.locator("#lesson option", has_text="✓")
-    for k, lesson in enumerate(kept):
+    for k, lesson in enumerate(kept_state):
         page.evaluate("kept => localStorage.setItem('tiniscript.lessons', kept)", lesson)
         speak(page, "es")
         page.locator("#lesson option", has_text="línea").first.wait_for(state="attached")
@@ -319,11 +320,11 @@ def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(
     counts = (0, 2, len(FOLDERS))
     for count in some_of(
         pytestconfig, "lessons done", counts
-    ):  # goes on with the first that is not done
+    ):  # continues with the first unfinished one
         names = json.dumps([folder.name for folder in FOLDERS[:count]])
         page.evaluate("names => localStorage.setItem('tiniscript.lessons', names)", names)
         page.reload()
-        checked(page)
+        wait_until_checked(page)
         page.click("#side_lessons")
         number = count % len(FOLDERS) + 1
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
@@ -346,7 +347,7 @@ def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Page
     page.locator("#lesson_next:enabled").wait_for()
     axe_of.append(axe(page))
     press("#lesson_page .program button")
-    noted(page, "It is in the program now")
+    wait_for_note(page, "It is in the program now")
     for k in range(1, page.locator("#lesson_steps button").count()):
         press("#lesson_next")
         page.locator(f"#lesson_steps li:nth-child({k + 1}) [aria-current]").wait_for()
@@ -359,7 +360,7 @@ def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Page
 
 @drawn
 def test_the_start_leads_from_any_place_to_the_lessons(page: Page) -> None:
-    """From a floor that is drawn, and with Back from what stands in front of it."""
+    """Also from a page with a drawn floor, and with Back from a panel in front of it."""
     page.click("#side_virtual")
     page.click("#world_draw:enabled")
     page.click("#my_programs")
@@ -371,7 +372,7 @@ def test_the_start_leads_from_any_place_to_the_lessons(page: Page) -> None:
 
 @pytest.mark.parametrize("number", [1, 11])
 def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, number: int) -> None:
-    """It brings its own robot and an empty program; the other one comes back after the lesson."""
+    """It brings its own robot and an empty program; the other program returns after the lesson."""
     robot, own = (
         ("liner", "SI|IF(LINE_L);S;END_IF") if number == 1 else ("tinibot", "SI|SHOW(DISTANCE)")
     )
@@ -382,21 +383,21 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
     choose_lesson(page, 2)
     choose_lesson(page, number)
     lesson = catalogue.load(FOLDERS[number - 1])
-    noted(page, "Your program is kept, and comes back after the lesson.")
+    wait_for_note(page, "Your program is kept, and comes back after the lesson.")
     page.locator("#lesson:enabled").wait_for()
     hears(page, lambda: page.input_value("#robot") == lesson.robot, "its robot")
     page.locator(".cm-content", has_text=own).wait_for(state="detached")
-    checked(page)
+    wait_until_checked(page)
     assert page.locator("#messages li").count() == 0
-    page.click("#side_virtual")  # where nothing was done, nothing is lost
+    page.click("#side_virtual")  # without work, nothing is lost
     page.locator(".cm-content", has_text=own).wait_for()
     assert page.input_value("#robot") == robot
     page.click("#side_lessons")
-    noted(page, "Your program is kept, and comes back after the lesson.")
+    wait_for_note(page, "Your program is kept, and comes back after the lesson.")
     write(page, "SI|F(1, 80)")
     page.click("#side_virtual")
-    checked(page)
-    assert "F(1, 80)" in page.inner_text(".cm-content")  # the lesson goes on
+    wait_until_checked(page)
+    assert "F(1, 80)" in page.inner_text(".cm-content")  # the lesson continues
     page.click("#home")
     page.click("#start_write")
     page.locator(".cm-content", has_text=own).wait_for()
@@ -410,7 +411,7 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
 
 @drawn
 def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
-    """Nobody is told on the start page, and whoever reads on in another language reads why."""
+    """The start page shows no verdict, and after a change of language the reason is translated."""
     choose_lesson(page, 7)
     write(page, SLOW)
     page.click("#lesson_check")
@@ -434,32 +435,32 @@ def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
 
 @drawn
 def test_who_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page: Page) -> None:
-    """What was written in place of a lesson's program is in the list; one's own comes back."""
+    """Programs of lessons are in the list; the person's own program returns."""
     own, of_lesson = "SI|F(1, 70)", "SI|SHOW(DISTANCE)"
     write(page, own)
     choose_lesson(page, 1)
     page.locator("#lesson_steps button").first.click()
     page.locator("#lesson_page .program button").first.click()
-    noted(page, "It is in the program now. Your own program is in My programs")
+    wait_for_note(page, "It is in the program now. Your own program is in My programs")
     page.locator("#lesson_steps button").last.click()
-    assert not page.locator("#note").is_visible()  # the step before said so
+    assert not page.locator("#note").is_visible()  # the previous step announced it
     page.click("#side_virtual")
     write(page, of_lesson)
     page.click("#side_lessons")
     choose_lesson(page, 11)
-    noted(page, "The program of the previous lesson is in My programs.")
+    wait_for_note(page, "The program of the previous lesson is in My programs.")
     page.click("#home")
     page.click("#start_write")
     page.locator(".cm-content", has_text=own).wait_for()
     page.click("#my_programs")
     versions = page.locator("#versions button", has_text=catalogue.load(FOLDERS[0]).title("en"))
-    versions.first.click()  # a slow page may have kept what it had before, too
+    versions.first.click()  # a slow page may also have kept the earlier text
     page.locator(".cm-content", has_text=of_lesson).wait_for()
 
 
 @drawn
 def test_who_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
-    """From another lesson, from the start and after a reload; one's own comes back after it."""
+    """From another lesson, from the start and after a reload; the own program returns later."""
     own, first, second = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"
     editor = page.locator(".cm-content")
     write(page, own)
@@ -468,12 +469,12 @@ def test_who_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     page.locator("#lesson_page .program button").first.click()
     write(page, first)
     choose_lesson(page, 2)
-    write(page, second)  # in the program that was there
+    write(page, second)  # in the existing program
     page.select_option("#lesson", "1")
-    noted(page, "Here is your program for this lesson again.")
+    wait_for_note(page, "Here is your program for this lesson again.")
     assert editor.inner_text() == first
     choose_lesson(page, 3)
-    assert not page.locator("#note").is_visible()  # which has none yet
+    assert not page.locator("#note").is_visible()  # the program has no note yet
     page.click("#home")
     page.click("#start_write")
     editor.filter(has_text=own).wait_for()
@@ -484,7 +485,7 @@ def test_who_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     choose_lesson(page, 2)
     editor.filter(has_text=second).wait_for()
     page.reload()
-    checked(page)
+    wait_until_checked(page)
     assert editor.inner_text() == second
     page.click("#side_lessons")
     page.locator("#lesson_page[data-lesson='2']").wait_for()
@@ -496,7 +497,7 @@ def test_who_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
 
 
 def test_a_program_that_suits_the_lesson_stays(page: Page) -> None:
-    """And one that was wrong before stays as it is, too, and one that names its robot."""
+    """Wrong programs stay unchanged too, and so do those that name their robot."""
     for own in ("SI|F(1, 80)", "SI|LINE_L(", "// robot: tinibot\nSI|SHOW(DISTANCE)"):
         write(page, own)
         for number in (1, 11):

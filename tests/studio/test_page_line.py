@@ -24,25 +24,25 @@ OWNER = 0
 class Page:
     """A page and its robot."""
 
-    def __init__(self, kept: PageKeys | None = None, memory: bytes | None = None) -> None:
+    def __init__(self, page_keys: PageKeys | None = None, memory: bytes | None = None) -> None:
         self.robot = robot_in(memory=memory)
-        self.page = PageRobot("tinibot", "en", kept or PageKeys(b""))
+        self.page = PageRobot("tinibot", "en", page_keys or PageKeys(b""))
         self.news: list[dict[str, Any]] = []
         self.file = ""
         self._count = 0
         self._back = b""
 
-    def go(self, milliseconds: int, *asked: dict[str, Any], is_away: bool = False) -> None:
-        """Let time go on. A page that is away asks for nothing."""
+    def go(self, milliseconds: int, *requests: dict[str, Any], is_away: bool = False) -> None:
+        """Advance time. A page that is away asks for nothing."""
         for ms in range(milliseconds):
             now_ms = self.robot.now_ms + 1
-            sent = b""
+            sent_bytes = b""
             if not is_away:
-                answer = self.page.go(self._back, now_ms, list(asked) if ms == 0 else [])
-                sent, self._back = bytes.fromhex(answer["send"]), b""
+                answer = self.page.go(self._back, now_ms, list(requests) if ms == 0 else [])
+                sent_bytes, self._back = bytes.fromhex(answer["send"]), b""
                 self.news += answer["news"]
                 self.file = answer.get("keys", self.file)
-            self._back += self.robot.step(now_ms, sent)
+            self._back += self.robot.step(now_ms, sent_bytes)
 
     def ask(self, do: str, limit_ms: int = 30_000, **fields: object) -> dict[str, Any]:
         self._count += 1
@@ -76,16 +76,16 @@ def test_a_page_that_was_away_stops_its_robot_when_it_is_back(page: Page) -> Non
     assert page.robot.is_running
     page.go(ATTENDED_MS - 100, is_away=True)
     page.go(50)
-    assert page.robot.is_running  # for that long a browser may be busy
+    assert page.robot.is_running  # a busy browser may take that long
     page.go(ATTENDED_MS + 50, is_away=True)
-    assert page.robot.is_running  # its dead-man timer takes longer
+    assert page.robot.is_running  # the dead-man timer takes longer
     page.go(100)
     assert not page.robot.is_running
     assert page.news[-1] == {"event": "STOPPED", "cause": "SEQUENCE"}
     page.upload(FOREVER)
     page.go(300)
     assert page.robot.is_running
-    page.go(1300, is_away=True)  # one that stays away is not waited for
+    page.go(1300, is_away=True)  # a page that stays away is not waited for
     assert not page.robot.is_running
 
 
@@ -107,9 +107,9 @@ def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
     claimed = page.ask("claim")
     page.robot.let_go()
     assert claimed == {"id": 2, "ok": True}
-    kept = page.file.encode()
-    assert [key.which for key in keys.decode_keys(kept)] == [OWNER]
-    page.go(3000)  # it is written
+    kept_bytes = page.file.encode()
+    assert [key.which for key in keys.decode_keys(kept_bytes)] == [OWNER]
+    page.go(3000)  # until the program is saved
     memory = page.robot.memory
 
     stranger = Page(memory=memory)
@@ -119,7 +119,7 @@ def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
     assert refused["failure"] == "NOT_OWNER" and refused["said"]
     assert not stranger.robot.is_running
 
-    owner = Page(PageKeys(kept), memory)
+    owner = Page(PageKeys(kept_bytes), memory)
     assert owner.ask("hello")["robot"]["owner"] == "yours"
     assert owner.upload(FOREVER)["ok"]
     owner.go(100)
@@ -131,15 +131,15 @@ def key(robot: int, which: int = OWNER, byte: int = 1) -> RobotKey:
 
 
 def test_keys_of_a_file_replace_those_of_the_same_robot() -> None:
-    kept = PageKeys(keys.encode_keys([key(1, byte=1), key(2, byte=2)]))
-    assert kept.add(keys.encode_keys([key(1, byte=9), key(3, byte=3)])) == 2
-    assert sorted((key.id, key.key[0]) for key in keys.decode_keys(kept.file().encode())) == [
+    page_keys = PageKeys(keys.encode_keys([key(1, byte=1), key(2, byte=2)]))
+    assert page_keys.add(keys.encode_keys([key(1, byte=9), key(3, byte=3)])) == 2
+    assert sorted((key.id, key.key[0]) for key in keys.decode_keys(page_keys.file().encode())) == [
         (1, 9), (2, 2), (3, 3),
     ]  # fmt: skip
 
 
 def ask(data: bytes, **fields: object) -> dict[str, Any]:
-    """Return what the page's Python answers."""
+    """Return the answer of the page's Python."""
     answer: dict[str, Any] = json.loads(worker.answer(json.dumps(fields), data))
     return answer
 
@@ -150,7 +150,7 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
     robot and person, and the session with a robot that is connected has the same.
     """
     monkeypatch.setattr(page_line, "_robot", None)
-    chance, kept = Random(seed), ""
+    chance, kept_text = Random(seed), ""
     newest_keys: dict[tuple[int, int], bytes] = {}
     for now_ms in range(40):
         new_keys = [
@@ -159,29 +159,31 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
         ]
         match chance.choice(("connect", "import", "claim", "link")):
             case "connect":
-                ask(kept.encode(), do="connect", robot="tinibot", language="en")
+                ask(kept_text.encode(), do="connect", robot="tinibot", language="en")
                 new_keys = []
             case "import":
-                others = PageKeys(kept.encode())  # in another tab
+                others = PageKeys(kept_text.encode())  # in another tab
                 others.add(
                     keys.encode_keys(
                         [RobotKey(chance.randrange(5, 9), OWNER, chance.randbytes(KEY_BYTES))]
                     )
                 )
-                kept = others.file()
+                kept_text = others.file()
                 newest_keys |= {key.slot: key.key for key in others.keys}
-                kept = ask(keys.encode_keys(new_keys), do="import_keys", kept=kept)["keys"]
+                kept_text = ask(keys.encode_keys(new_keys), do="import_keys", kept=kept_text)[
+                    "keys"
+                ]
             case "claim" | "link" as does if page_line._robot:
                 new_keys = new_keys[: does == "claim"]
                 for key in (*new_keys, *new_keys):  # the second time it is there already
                     page_line._robot.keys.settle_key(key)
                 answer = ask(b"", do="link", now_ms=now_ms, asked=[])
                 assert ("keys" in answer) == bool(new_keys)  # another tab may have kept others
-                kept = answer.get("keys", kept)
+                kept_text = answer.get("keys", kept_text)
             case _:
                 continue
         newest_keys |= {key.slot: key.key for key in new_keys}
-        kept_keys = keys.decode_keys(kept.encode()) if kept else []
+        kept_keys = keys.decode_keys(kept_text.encode()) if kept_text else []
         assert {key.slot: key.key for key in kept_keys} == newest_keys
         assert not page_line._robot or page_line._robot.keys.keys_of_robot(None) == kept_keys
 
@@ -190,8 +192,8 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
     "data", [b"", b"{", b"[]", b"\xff", b'{"tiniscript_keys": 1}', b"[" * 5000]
 )
 def test_what_is_no_file_of_keys_changes_nothing(data: bytes) -> None:
-    kept = keys.encode_keys([key(1)]).decode()
-    assert ask(data, do="import_keys", kept=kept) == {"count": None}
+    kept_text = keys.encode_keys([key(1)]).decode()
+    assert ask(data, do="import_keys", kept=kept_text) == {"count": None}
 
 
 def test_kept_keys_that_are_damaged_do_not_keep_a_robot_out() -> None:
@@ -214,7 +216,7 @@ def test_a_page_is_told_where_its_program_is(page: Page) -> None:
 STICK = "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nIF(KEY_B);\nS;\nENDIF;\nW(0.02);\nEND_LOOP"
 
 
-def held(page: Page, keys: int = 0, x: int = 0, y: int = 0) -> dict[str, Any]:
+def hold_keys(page: Page, keys: int = 0, x: int = 0, y: int = 0) -> dict[str, Any]:
     return page.ask("keys", keys=keys, x=x, y=y)
 
 
@@ -222,13 +224,13 @@ def test_a_stick_is_read_until_it_returns_or_nobody_says_anything(page: Page) ->
     assert page.ask("hello")["robot"]["has_remote"]
     page.upload(STICK)
     for _ in range(4):
-        assert held(page, y=60)["ok"]
+        assert hold_keys(page, y=60)["ok"]
         page.go(200)
         assert round(page.robot.driving.left) == 60
-    assert held(page)["ok"]
+    assert hold_keys(page)["ok"]
     page.go(60)
     assert round(page.robot.driving.left) == 0
-    held(page, y=-60)
+    hold_keys(page, y=-60)
     page.go(HOLD_MS - 100)
     assert round(page.robot.driving.left) == -60
     page.go(200)
@@ -237,7 +239,7 @@ def test_a_stick_is_read_until_it_returns_or_nobody_says_anything(page: Page) ->
 
 def test_a_page_that_hangs_holds_nothing(page: Page) -> None:
     page.upload(STICK)
-    held(page, y=60)
+    hold_keys(page, y=60)
     page.go(100)
     page.go(HOLD_MS + 50, is_away=True)
     assert round(page.robot.driving.left) == 0
@@ -245,15 +247,15 @@ def test_a_page_that_hangs_holds_nothing(page: Page) -> None:
 
 def test_keys_after_a_stop_start_nothing_and_are_read_by_the_next_program(page: Page) -> None:
     page.upload(STICK)
-    held(page, y=60)
+    hold_keys(page, y=60)
     page.ask("stop")
-    assert not held(page, y=60).get("said"), "the stop is on its way, and ends it"
+    assert not hold_keys(page, y=60).get("said"), "the stop is on its way, and ends it"
     for _ in range(5):
         page.go(200)
-        assert held(page, y=60)["ok"]
+        assert hold_keys(page, y=60)["ok"]
     assert round(page.robot.driving.left) == 0 and not page.robot.is_running
     page.upload(STICK)
-    assert held(page, y=60)["ok"]
+    assert hold_keys(page, y=60)["ok"]
     page.go(100)
     assert round(page.robot.driving.left) == 60
 
@@ -292,7 +294,7 @@ def test_a_robot_without_a_remote_control_is_told_nothing(page: Page) -> None:
     assert robot is not None
     values = robot.values._replace(features=robot.values.features & ~REMOTE)
     page.page.line.session._handshake.robot = robot._replace(values=values)
-    refused = held(page, y=60)
+    refused = hold_keys(page, y=60)
     assert refused["failure"] == "NO_REMOTE" and "no remote control" in refused["said"]
     assert page.upload(STICK)["failure"] == "NO_REMOTE"
     assert round(page.robot.driving.left) == 0

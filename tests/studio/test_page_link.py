@@ -1,4 +1,4 @@
-"""The page and a robot through `tsc studio`: the robot's firmware is behind a pty."""
+"""The page and a robot through `tsc studio`: the robot's firmware is on a pty."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ from tests.support.studio import (
     HUNG_MS,
     Pages,
     axe,
-    checked,
     drives,
     enter,
     hang,
     hears,
-    shown,
     speak,
     turn,
+    wait_for_blocks,
+    wait_until_checked,
     write,
 )
 from tiniscript.link import known_ports
@@ -60,11 +60,11 @@ BLINKS = "The robot that blinks and plays its tune is"
 def test_a_program_and_a_line_are_sent_and_run(page: Page, robot: PtyRobot) -> None:
     text = "SHOW(2.5);\nF(0.2, 80);\nSHOW(1 < 2)"
     write(page, text)
-    before = len(robot.did)
+    count_before = len(robot.actions)
     page.click("#link_upload")
     wait_for_message(page, "Done.")
     assert page.locator("#link_shown").inner_text() == "2.5\n1 < 2 TRUE"
-    assert "MOTORS 80 80" in robot.did[before:]
+    assert "MOTORS 80 80" in robot.actions[count_before:]
     page.click("#link_send")
     wait_for_message(page, "The robot has the program. ")
     page.fill("#link_line", "SHOW(6 * 7)")
@@ -87,14 +87,14 @@ def test_a_robot_that_restarts_is_told(page: Page, robot: PtyRobot) -> None:
     robot.switch_on()
     wait_for_message(page, "The robot restarted, which ended its program.")
     assert not robot.moves
-    page.click("#link_upload")  # the connection goes on
+    page.click("#link_upload")  # the connection continues
     wait_for_message(page, "The robot has the program")
     page.click("#stop")
     wait_for_message(page, "Stopped: the robot has confirmed the stop.")
 
 
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
-    """By its button, by a key in the editor, and while the virtual robot is seen."""
+    """By its button, by a key in the editor, and while the virtual robot is shown."""
     for way in ("button", "Escape", "virtual"):
         drives(page, robot)
         if way == "Escape":
@@ -115,7 +115,7 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
     began_ms = robot.robot_ms
     hang(page, HUNG_MS)
     assert robot.stands_after_ms(began_ms) < 0.9 * HUNG_MS
-    wait_for_message(page, "Stopped")  # and it is told when it is back
+    wait_for_message(page, "Stopped")  # the page shows it after reconnecting
     drives(page, robot)
     page.evaluate(
         "Object.defineProperty(document, 'visibilityState', {value: 'hidden', configurable: true});"
@@ -142,7 +142,7 @@ def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: Pty
     other.click("#link_connect")
     wait_for_message(other, "Another tab of this browser is driving this robot.")
     drives(page, robot)
-    other.click("#stop")  # whoever sees STOP may press it
+    other.click("#stop")  # anyone who sees STOP may press it
     robot.until(lambda: not robot.moves, "it stands")
     other.close()
     while BLINKS not in page.locator("#link_said").inner_text():
@@ -192,7 +192,7 @@ def test_everything_is_seen_and_axe_finds_nothing(
         for language, (width, height) in product(("en", "es"), screens):
             page.set_viewport_size({"width": width, "height": height})
             speak(page, language)
-            checked(page)
+            wait_until_checked(page)
             turn(page, "robot")
             assert page.evaluate(LOOK) == [], (width, language, is_connected)
         if is_connected:
@@ -244,7 +244,7 @@ def test_why_there_is_no_connection(pages: Pages) -> None:
 def test_the_token_is_not_in_the_address(page: Page, server: serving.Server) -> None:
     assert page.evaluate("location.href") == server.address + "#editor"
     page.reload()
-    checked(page)
+    wait_until_checked(page)
     page.click("#side_real")
     assert page.locator("#link_ports").is_visible()  # a tab keeps it
 
@@ -261,10 +261,10 @@ def test_run_with_a_mistake_stops_what_runs(page: Page, robot: PtyRobot) -> None
 def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
     pages: Pages, server: serving.Server, robot: PtyRobot
 ) -> None:
-    """And a page that is closed stops its robot."""
+    """A closed page stops its robot."""
     entrance = server.entrance()
     first, second = pages.visit(entrance), pages.visit(entrance)
-    studio.noted(second, "This address has already been used")
+    studio.wait_for_note(second, "This address has already been used")
     assert first.locator("#note").inner_text() == ""
     for either, has_robots in ((first, True), (second, False)):
         either.click("#side_real")
@@ -285,23 +285,23 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
 @drawn
 def test_what_the_robot_shows_has_the_name_of_its_show(page: Page) -> None:
     """Also beside another text; a line of the same code has its own names."""
-    shown = page.locator("#link_shown")
+    shown_element = page.locator("#link_shown")
     write(page, "X = 3;\nSHOW(X);\nSHOW(DISTANCE < -1);\nSHOW(x);\nW(1)")
     upload_until_it_runs(page)
     write(page, "S")
     wait_for_message(page, "Done.")
-    assert shown.inner_text() == "X (line 2) 3\nDISTANCE < -1 FALSE\nX (line 4) 3"
+    assert shown_element.inner_text() == "X (line 2) 3\nDISTANCE < -1 FALSE\nX (line 4) 3"
     for line in ("NEAR = 4; SHOW(NEAR)", "FAR = 4; SHOW(FAR)"):
         page.fill("#link_line", line)
         page.keyboard.press("Enter")
         wait_for_message(page, "Done.")
-        shown.filter(has_text=f"{line.split()[0]} 4").wait_for()
+        shown_element.filter(has_text=f"{line.split()[0]} 4").wait_for()
 
 
 @drawn
 def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> None:
     """The next one has the same code, and is sent before the last values of the one before come."""
-    shown = page.locator("#link_shown")
+    shown_element = page.locator("#link_shown")
     late: list[dict[str, Any]] = []
     has_begun: list[bool] = []
 
@@ -320,13 +320,13 @@ def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> 
 
     write(page, "NEAR = 4;\nLOOP(FOREVER);\nSHOW(NEAR);\nW(0.1);\nEND_LOOP")
     upload_until_it_runs(page)
-    shown.filter(has_text="NEAR 4").wait_for()
+    shown_element.filter(has_text="NEAR 4").wait_for()
     page.route("**/robots", hold)
     hears(page, lambda: len(late) > 2, "values are held back")
     write(page, "FAR = 4;\nLOOP(FOREVER);\nSHOW(FAR);\nW(0.1);\nEND_LOOP")
     upload_until_it_runs(page)
-    shown.filter(has_text="FAR 4").wait_for()
-    names = [line.split()[0] for line in shown.inner_text().splitlines()]
+    shown_element.filter(has_text="FAR 4").wait_for()
+    names = [line.split()[0] for line in shown_element.inner_text().splitlines()]
     assert names[: len(late)] == ["NEAR"] * len(late), names
     page.unroute_all(behavior="wait")
     page.click("#stop")
@@ -368,7 +368,7 @@ def test_a_program_of_the_button_is_recorded_from_its_first_event(
 
 
 def test_a_recording_has_what_the_program_read(page: Page) -> None:
-    """So what is calculated of it is the same on the virtual robot, whose world is another one."""
+    """Therefore calculations from it are the same on the virtual robot, in another world."""
     write(page, "X = LIGHT_L + 5;\nSHOW(X);\nSHOW(X + LIGHT_R)")
 
     def run() -> None:
@@ -422,7 +422,7 @@ def test_a_run_is_recorded_and_played_on_the_virtual_robot_beside(page: Page) ->
     agrees(page, run)
     assert events(page)[-2:] == ["SHOW 5", "DONE"]
     write(page, "SHOW(6)")
-    page.click("#record_play")  # it has its own program
+    page.click("#record_play")  # the recording has its own program
     page.locator(".cm-content", has_text="SHOW(DISTANCE)").wait_for()
     page.locator("#doing", has_text="Values compared: 3.").wait_for()
     page.click("#side_real")
@@ -434,24 +434,24 @@ def test_a_run_is_recorded_and_played_on_the_virtual_robot_beside(page: Page) ->
 DRIVE = "F(3, 80);\nR(3, 60)"  # parts that differ, and longer than a busy page is late
 
 
-def unmarked(page: Page) -> None:
+def wait_for_no_mark(page: Page) -> None:
     wait_for_nothing_running(page)
     page.locator("#blocks .running").wait_for(state="detached")
 
 
-@pytest.mark.usefixtures("unhurried")
+@pytest.mark.usefixtures("no_page_timeouts")
 @drawn
 def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
     write(page, DRIVE)
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
     page.click("#link_upload")
     for part in DRIVE.split(";\n"):
         wait_for_running(page, part)
         assert page.locator("#blocks .blocklyDraggable.running").count() == 1
     page.click("#view_text")
     wait_for_message(page, "Done.")
-    unmarked(page)
+    wait_for_no_mark(page)
 
 
 @drawn
@@ -462,20 +462,20 @@ def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> 
     page.locator(".cm-content").focus()
     page.keyboard.press("Control+End")
     page.keyboard.insert_text(";\nW(1)")
-    unmarked(page)
-    checked(page)
-    unmarked(page)
+    wait_for_no_mark(page)
+    wait_until_checked(page)
+    wait_for_no_mark(page)
     page.keyboard.press("Control+z")
     wait_for_running(page)
     page.click("#link_leave")
-    unmarked(page)
+    wait_for_no_mark(page)
 
 
 def upload_until_told(page: Page, at: int) -> None:
     """Upload, and wait until the page was told `at` in place of where the robot is."""
     places: list[int] = []
 
-    def changed(route: Route) -> None:
+    def change_places(route: Route) -> None:
         response = route.fetch()
         answer = response.json()
         for item in answer.get("news", []):
@@ -484,7 +484,7 @@ def upload_until_told(page: Page, at: int) -> None:
                 places.append(item["at"])
         route.fulfill(response=response, json=answer)
 
-    page.route("**/robots", changed)
+    page.route("**/robots", change_places)
     page.click("#link_upload")
     hears(page, lambda: places, "a place is told")
     page.unroute_all(behavior="wait")
@@ -516,7 +516,7 @@ def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
     wait_for_running(page, second)
     page.click("#side_virtual")
     wait_for_running(page, first)
-    page.click("#pause")  # goes on
+    page.click("#pause")  # continues
     wait_for_running(page, second)
     page.click("#stop")
     breakpoint.click()  # no later program is to halt
@@ -524,4 +524,4 @@ def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
     page.click("#link_upload")
     wait_for_running(page, second)
     page.click("#link_leave")
-    unmarked(page)
+    wait_for_no_mark(page)

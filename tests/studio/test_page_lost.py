@@ -11,7 +11,7 @@ import pytest
 from tests.support.command import FOREVER
 from tests.support.page_link import KIT, connect, wait_for_message
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import Pages, checked, drives, hang, hears, write
+from tests.support.studio import Pages, drives, hang, hears, wait_until_checked, write
 from tests.support.torn_requests import lose_answer, refuse, tear_requests
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
@@ -29,7 +29,7 @@ SILENT = (
     " If it moves, lift it and remove its batteries or unplug it."
 )
 LATE = "The robot has now confirmed the stop: it is standing still."
-# What is said beneath the buttons from now on.
+# Records the messages below the buttons from now on.
 LISTEN = """() => {
   const line = document.querySelector('#link_said');
   window.told = [];
@@ -44,7 +44,7 @@ HIDE = """(state) => {
 
 
 @pytest.fixture(scope="module")
-def opened(browser: Browser, server: serving.Server) -> Iterator[tuple[Pages, Page]]:
+def open_page(browser: Browser, server: serving.Server) -> Iterator[tuple[Pages, Page]]:
     pages = Pages(browser, server.address, entrance=server.entrance)
     yield pages, pages.open()
     pages.close()
@@ -58,9 +58,9 @@ def robot() -> Iterator[PtyRobot]:
 
 
 @pytest.fixture
-def page(opened: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
+def page(open_page: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     """A page of many tests, which has not connected yet."""
-    pages, current_page = opened
+    pages, current_page = open_page
     yield current_page
     current_page.unroute_all(behavior="ignoreErrors")
     current_page.evaluate("delete document.visibilityState")
@@ -89,7 +89,7 @@ def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> 
     hears(page, lambda: len(torn) == 2, "they are refused")
     page.wait_for_timeout(300)
     assert page.locator("html[data-robot=connected]").count() and robot.moves
-    torn = tear_requests(page, "beat", refuse, times=1000)  # but one that goes on is told
+    torn = tear_requests(page, "beat", refuse, times=1000)  # a failure that lasts is reported
     wait_for_message(page, "tsc studio has stopped responding")
     assert torn
 
@@ -129,7 +129,7 @@ def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
 
 
 class Mute:
-    """What keeps the word of a stop from a page, until it is told."""
+    """A filter that keeps a stop's event from a page until it is released."""
 
     def __init__(self, page: Page, *kinds: str) -> None:
         self.withheld: list[dict[str, Any]] = []
@@ -179,7 +179,7 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
     drives(page, robot)
     page.evaluate(LISTEN)
     stop()
-    page.keyboard.press("Escape")  # it is the same stop
+    page.keyboard.press("Escape")  # this is the same stop
     wait_for_message(page, SILENT)
     mute.is_open = True
     wait_for_message(page, LATE)
@@ -189,13 +189,13 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
 @drawn
 def test_who_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
-    for _ in range(2):  # and the next stop is another one
+    for _ in range(2):  # the second round is another stop
         drives(page, robot)
         mute = Mute(page, "STOPPED")
         page.evaluate(LISTEN)
         page.dblclick("#stop")
         hears(page, partial(mute.keeps, True), "it has stopped")
-        page.wait_for_timeout(300)  # for the second stop, unless both were one
+        page.wait_for_timeout(300)  # waits for a second stop request, if there is one
         mute.is_open = True
         wait_for_message(page, CONFIRMED)
         hears(page, partial(mute.keeps, False), "all is told")
@@ -220,7 +220,7 @@ def test_who_presses_five_times_stops_once_more_and_is_told_once(
     assert page.evaluate("window.told") == ["Stopping…", CONFIRMED]
     page.unroute_all(behavior="wait")
     drives(page, robot)
-    page.wait_for_timeout(700)  # beats have come since
+    page.wait_for_timeout(700)  # beats have arrived since
     assert robot.moves
 
 
@@ -237,7 +237,7 @@ def test_a_page_that_is_loaded_again_before_its_stop_is_answered_stops_its_robot
         page.reload()
         hears(page, lambda: not robot.moves, "it stands")
         page.unroute_all(behavior="wait")
-        checked(page)
+        wait_until_checked(page)
         page.click("#side_real")
 
 
@@ -248,14 +248,15 @@ def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
     page.evaluate(LISTEN)
     page.click("#stop")
     wait_for_message(page, SILENT)
-    page.wait_for_timeout(2500)  # the link gives it up, too
+    page.wait_for_timeout(2500)  # the link is given up, too
     assert page.evaluate("window.told") == ["Stopping…", SILENT]
 
 
 @drawn
 def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
-    """What was asked of it ends, and the link does. A slow page, which is not heard for a while,
-    stops what is under way first, and that is told, too."""
+    """Its requests and the link end. A slow page, which is not heard for a while, first stops the
+    run under way, and reports that, too.
+    """
     connect(page, robot)
     robot.switch_off()
     page.evaluate(LISTEN)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support import studio
-from tests.support.class_pages import joined, teaches
+from tests.support.class_pages import join_class, teaches
 from tests.support.noted_effects import NOTE_EFFECTS
 from tests.support.page_lessons import check_answer, choose_lesson
 from tests.support.studio import Pages, axe, colors_of, enter, hears, in_phase, write
@@ -25,7 +25,7 @@ CONFETTI = "window.fell = 0; new MutationObserver((all) => { for (const {addedNo
 
 
 def names(page: Page, name: str, colour: int) -> None:
-    """Give the robot a name and a colour, as a person does."""
+    """Enter a name and choose a colour, as a person does."""
     page.click("#home")
     page.click("#start_own")
     page.fill("#own_name", name)
@@ -41,7 +41,7 @@ def store(page: Page, place: str, what: object) -> None:
 def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages) -> None:
     page = pages.open()
     assert GREEN in colors_of(page, "#arena")
-    before = page.inner_text("#doing")
+    text_before = page.inner_text("#doing")
     names(page, "  Pip ", 3)
     drawn = page.evaluate("getComputedStyle(document.querySelector('#drawn_robot path')).fill")
     assert drawn == f"rgb({PINK.replace(',', ', ')})"
@@ -52,7 +52,7 @@ def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages)
     page.keyboard.press("Escape")
     page.reload()
     enter(page, page.url)
-    assert page.inner_text("#doing") == f"Pip: {before}"
+    assert page.inner_text("#doing") == f"Pip: {text_before}"
     colors = colors_of(page, "#arena")
     assert PINK in colors and GREEN not in colors
 
@@ -101,7 +101,7 @@ def test_a_name_and_a_face_leave_a_run_as_it_is(pages: Pages) -> None:
 @pytest.mark.sampled(of="pages of their own", keep=2)
 @pytest.mark.parametrize("way", ["seen and heard", "muted", "still"])
 def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
-    """And its stars are added up, each lesson's once."""
+    """The stars of all lessons are added up, once each."""
     page = pages.open(reduced_motion="reduce" if way == "still" else "no-preference")
     store(page, DONE, ["01_first_line"])
     store(page, STARS, {"01_first_line": 1, "04_none": 2})
@@ -133,9 +133,9 @@ def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
 def test_the_teacher_sees_whose_robot_is_whose(browser: Browser) -> None:
-    with studio.taught([]) as taught:
-        pages = Pages(browser, taught.server.address)
-        teacher, pupil = teaches(pages, taught), joined(pages, taught, "Ana")
+    with studio.serve_class([]) as class_:
+        pages = Pages(browser, class_.server.address)
+        teacher, pupil = teaches(pages, class_), join_class(pages, class_, "Ana")
         pupil.click("#class_pupil [data-text=own_robot]")
         pupil.fill("#own_name", "<b>Pip")
         pupil.locator("#own [role=radiogroup] label").nth(3).click()

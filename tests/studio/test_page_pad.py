@@ -17,9 +17,9 @@ from tests.support.studio import (
     axe,
     hears,
     in_phase,
-    shown,
     speak,
     turn,
+    wait_for_blocks,
     write,
 )
 from tiniscript import robots
@@ -29,7 +29,7 @@ from tiniscript.link import known_ports
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-pytestmark = pytest.mark.usefixtures("unhurried")
+pytestmark = pytest.mark.usefixtures("no_page_timeouts")
 drawn = pytest.mark.sampled(of="details of the remote control", keep=1)
 
 STICK = "LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP;\n"
@@ -43,7 +43,7 @@ def pages(hosted_pages: Pages) -> Pages:
     return hosted_pages
 
 
-def driven(page: Page) -> str:
+def read_motor_powers(page: Page) -> str:
     """Return the power of the virtual robot's motors, as its trace has it."""
     powers = [line.partition(" MOTORS ")[2] for line in trace(page) if " MOTORS " in line]
     return powers[-1] if powers else ""
@@ -54,7 +54,7 @@ def trace(page: Page) -> list[str]:
 
 
 class Fingers:
-    """Those on the screen of a page."""
+    """Fingers on the screen of a page."""
 
     def __init__(self, page: Page) -> None:
         self._session = page.context.new_cdp_session(page)
@@ -73,7 +73,7 @@ def middle(page: Page, place: str) -> tuple[float, float]:
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [PHONE, DESK], ids=["phone", "desk"])
 def test_a_picture_of_the_start_is_driven_at_once(pages: Pages, size: dict[str, int]) -> None:
-    """By a finger with another one on A; what is let go stops it."""
+    """With one finger, and another one on A; releasing it stops the robot."""
     page = pages.visit(pages.entrance(), "start", viewport=size, has_touch=True)
     page.click("[data-begin=drive]")
     in_phase(page, "running")
@@ -88,19 +88,19 @@ def test_a_picture_of_the_start_is_driven_at_once(pages: Pages, size: dict[str, 
     fingers = Fingers(page)
     fingers.are("touchStart", (x, y))
     fingers.are("touchMove", (x, y - 200))
-    hears(page, lambda: driven(page) == "100 100", "it drives")
+    hears(page, lambda: read_motor_powers(page) == "100 100", "it drives")
     fingers.are("touchStart", (x, y - 200), a)
     hears(page, lambda: any("BEEP 440" in line for line in trace(page)), "it beeps")
     fingers.are("touchEnd")
-    hears(page, lambda: driven(page) == "0 0", "it stands")
+    hears(page, lambda: read_motor_powers(page) == "0 0", "it stands")
     page.keyboard.down("ArrowUp")
-    hears(page, lambda: driven(page) == "100 100", "it drives by a key")
+    hears(page, lambda: read_motor_powers(page) == "100 100", "it drives by a key")
     page.keyboard.down("ArrowRight")
-    hears(page, lambda: driven(page) in ("142 0", "100 0"), "it turns")
+    hears(page, lambda: read_motor_powers(page) in ("142 0", "100 0"), "it turns")
     page.evaluate("dispatchEvent(new Event('blur'))")
-    hears(page, lambda: driven(page) == "0 0", "nobody presses it")
+    hears(page, lambda: read_motor_powers(page) == "0 0", "nobody presses it")
     turn(page, "program")
-    shown(page)
+    wait_for_blocks(page)
     page.click("#stop")
     in_phase(page, "ended")
     assert not page.locator("#pad").is_visible()
@@ -110,7 +110,7 @@ def test_a_picture_of_the_start_is_driven_at_once(pages: Pages, size: dict[str, 
 def test_the_picture_opens_the_example(pages: Pages) -> None:
     page = pages.visit(pages.entrance(), "start")
     page.click("[data-begin=drive]")
-    shown(page)
+    wait_for_blocks(page)
     example = (ROOT / "examples" / "remote.ts").read_text("utf-8")
     page.click("#view_text")
     ours = page.locator(".cm-content").inner_text()
@@ -125,30 +125,30 @@ def test_a_run_that_is_held_stopped_or_run_again_reads_what_is_held_then(pages: 
     in_phase(page, "running")
     page.locator("#pad_stick").wait_for()
     page.keyboard.down("ArrowUp")
-    hears(page, lambda: driven(page) == "100 100", "it drives")
+    hears(page, lambda: read_motor_powers(page) == "100 100", "it drives")
     page.click("#pause")
     in_phase(page, "paused")
     page.keyboard.up("ArrowUp")
     page.click("#pause")
     in_phase(page, "running")
-    hears(page, lambda: driven(page) == "0 0", "what was let go meanwhile is not held")
+    hears(page, lambda: read_motor_powers(page) == "0 0", "what was let go meanwhile is not held")
     page.keyboard.down("ArrowUp")
-    hears(page, lambda: driven(page) == "100 100", "it drives")
+    hears(page, lambda: read_motor_powers(page) == "100 100", "it drives")
     page.click("#stop")
     in_phase(page, "ended")
     page.click("#run")
     in_phase(page, "running")
     page.locator("#pad_stick").wait_for()
-    hears(page, lambda: driven(page) == "0 0", "it is pressed anew first")
+    hears(page, lambda: read_motor_powers(page) == "0 0", "it is pressed anew first")
     page.keyboard.up("ArrowUp")
     page.keyboard.down("ArrowUp")
-    hears(page, lambda: driven(page) == "100 100", "it drives")
+    hears(page, lambda: read_motor_powers(page) == "100 100", "it drives")
     page.select_option("#speed", "20")
     since = trace(page)[-1]
     hears(page, lambda: since not in trace(page), "it goes on, at each speed")
     assert not any(line.endswith("MOTORS 0 0") for line in trace(page))
     page.keyboard.up("ArrowUp")
-    hears(page, lambda: driven(page) == "0 0", "it stands")
+    hears(page, lambda: read_motor_powers(page) == "0 0", "it stands")
 
 
 @drawn
@@ -198,7 +198,7 @@ def test_a_run_of_the_judges_is_driven_by_nobody_else(pages: Pages) -> None:
     in_phase(page, "running")
     page.locator("[data-key=KEY_UP]").wait_for()
     page.click("#lesson_check")
-    hears(page, lambda: driven(page) == "60 60", "the judge presses")
+    hears(page, lambda: read_motor_powers(page) == "60 60", "the judge presses")
     assert not page.locator("#pad").is_visible()
     page.locator("#lesson_said[data-verdict]").wait_for()
     assert "KEY_RIGHT" in page.locator("#lesson_findings").inner_text()

@@ -13,12 +13,12 @@ from tests.support.studio import (
     SETTLED,
     Pages,
     axe,
-    checked,
     hears,
     in_phase,
-    shown,
     speak,
     turn,
+    wait_for_blocks,
+    wait_until_checked,
     write,
 )
 
@@ -38,7 +38,7 @@ END_LOOP
 F(-2, 80)
 B(1, 80)
 L(1, 80)"""
-# How many blocks are seen whole above what the compiler says.
+# The number of blocks fully visible above the compiler's message.
 SEEN = """() => {
   const sheet = document.querySelector('#messages').getBoundingClientRect();
   const { top, bottom } = document.querySelector('#blocks').getBoundingClientRect();
@@ -71,7 +71,7 @@ def half(page: Page) -> str:
 def test_six_blocks_are_seen_while_one_is_wrong(phone: Page) -> None:
     write(phone, NINE)
     phone.click("#view_blocks")
-    shown(phone)
+    wait_for_blocks(phone)
     assert phone.locator("#messages li").is_visible()
     assert phone.evaluate(SEEN) >= 6
     assert axe(phone) == []
@@ -86,11 +86,11 @@ def test_the_messages_can_be_put_away(phone: Page) -> None:
             phone.click("#sheet")
         assert not phone.locator("#messages li").is_visible()
     assert axe(phone) == []
-    phone.click("#run")  # says why not
+    phone.click("#run")  # shows the reason
     assert half(phone) == "program"
     assert phone.locator("#messages li").is_visible()
     phone.click("#sheet")
-    write(phone, "S")  # once it is right, the next mistake is told
+    write(phone, "S")  # once it is corrected, the next mistake is reported
     assert not phone.locator("#sheet").is_visible()
     write(phone, "F(-2, 80)")
     assert phone.locator("#messages li").is_visible()
@@ -134,7 +134,7 @@ def test_run_shows_the_virtual_robot_unless_the_real_one_is_seen(phone: Page) ->
 
 @drawn
 def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
-    """On a tablet, a second tap is not for what comes to the place of the first."""
+    """On a tablet, a second tap does not hit the element that replaces the first."""
     page = pages.open("start", viewport={"width": 390, "height": 844}, has_touch=True)
     assert page.locator("#bar button:visible").evaluate_all("all => all.map(e => e.id)") == ["stop"]
     page.tap("[data-begin=dance]")
@@ -153,7 +153,7 @@ def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
     assert box
     for _ in range(2):
         page.touchscreen.tap(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    shown(page)
+    wait_for_blocks(page)
     assert page.get_attribute("#side_real", "aria-pressed") == "false"
 
 
@@ -168,7 +168,7 @@ def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
         ratio = phone.locator("#arena").evaluate(
             "(a) => a.width / a.clientWidth / (a.height / a.clientHeight)"
         )
-        assert ratio == pytest.approx(1, abs=0.02)  # what is drawn is not stretched
+        assert ratio == pytest.approx(1, abs=0.02)  # the picture is not stretched
         assert phone.evaluate("document.documentElement.dataset.phase") == "running"
     phone.evaluate("scrollTo(0, document.documentElement.scrollHeight)")
     phone.click("#stop")
@@ -194,7 +194,7 @@ def test_what_is_chosen_and_runs_is_seen_without_backgrounds(page: Page) -> None
     part = page.locator(".cm-line").first
     assert part.evaluate(mark) not in (part.evaluate(field), TRANSPARENT)
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
     page.locator("#blocks .running").wait_for()
     assert axe(page) == []
     page.keyboard.press("Escape")
@@ -223,13 +223,14 @@ F(5, 60) UNTIL(DISTANCE < 10);
 @drawn
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> None:
-    """Letters are 12 pixels high, what is touched is 24, and a long question has more rows: all of
-    the program is seen, but for a question in a question."""
+    """Letters are 12 pixels high, touch targets 24, and a long question has more rows: the whole
+    program is visible, except for a question in a question.
+    """
     page = pages.open(viewport={"width": 390, "height": 844})
     speak(page, language)
     write(page, LONG)
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
     canvas = "#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas"
     letters = page.locator(f"{canvas} .blocklyText").evaluate_all(LETTERS)
     assert letters and min(letters) >= 11.99
@@ -243,7 +244,7 @@ def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> 
     assert rows.first.evaluate("e => e.getBoundingClientRect().height") > 60  # two rows
     page.set_viewport_size({"width": 1366, "height": 768})
     speak(page, "en" if language != "en" else "es")  # blocks are made anew
-    shown(page)
+    wait_for_blocks(page)
     assert rows.first.evaluate("e => e.getBoundingClientRect().height") < 60
 
 
@@ -271,12 +272,12 @@ def test_moves_and_messages_of_a_phone_are_seen_whole(pages: Pages, language: st
         bubble = page.locator("#blocks .blocklyBubble rect").first
         bubble.wait_for()
         page.evaluate(SETTLED)
-        said = bubble.evaluate("e => e.getBoundingClientRect().toJSON()")
+        bubble_box = bubble.evaluate("e => e.getBoundingClientRect().toJSON()")
         bar = page.locator("#blocks .blocklyMainWorkspaceScrollbar.blocklyScrollbarVertical")
-        assert 0 < said["right"] <= bar.evaluate("e => e.getBoundingClientRect().left")
+        assert 0 < bubble_box["right"] <= bar.evaluate("e => e.getBoundingClientRect().left")
 
 
-# What can be tapped and lies under STOP; what is scrolled away at the top lies under nothing.
+# Tappable elements below STOP; those scrolled out at the top are below nothing.
 UNDER_STOP = """() => {
   const stop = document.querySelector('#stop').getBoundingClientRect();
   const top = document.querySelector('body > header').getBoundingClientRect().bottom;
@@ -306,7 +307,7 @@ def test_a_new_program_is_begun_from_the_bar_of_a_phone(phone: Page) -> None:
     speak(phone, "en")
     write(phone, "SI|F(1, 80)")
     phone.click("#bar_new")
-    checked(phone)
+    wait_until_checked(phone)
     assert phone.locator(".cm-content").inner_text().strip() == ""
 
 
@@ -345,11 +346,11 @@ def test_stop_takes_the_place_of_run_while_something_runs(phone: Page, language:
         )
         return dict(found)
 
-    before = boxes()
+    boxes_before = boxes()
     assert phone.locator("#bar button").evaluate_all(
         "all => all.every((e) => e.scrollWidth <= e.clientWidth)"
     )
-    phone.dblclick("#run")  # as children do
+    phone.dblclick("#run")  # a double click, as children do
     in_phase(phone, "running")
     hears(phone, lambda: not phone.locator("#run").is_visible(), "STOP in its place")
     for step in ("program", "robot", "paused"):
@@ -358,10 +359,10 @@ def test_stop_takes_the_place_of_run_while_something_runs(phone: Page, language:
             in_phase(phone, "paused")
         now = boxes()
         assert now["stop"]["width"] > 0.75 * 390
-        assert now["run"] == before["run"], "nothing moves"
+        assert now["run"] == boxes_before["run"], "nothing moves"
         assert axe(phone, within="#bar") == []
     phone.click("#stop")
     in_phase(phone, "ended")
     turn(phone, "program")
-    assert boxes() == before
+    assert boxes() == boxes_before
     speak(phone, "en")

@@ -18,13 +18,23 @@ from tests.support.page_programs import (
     as_json,
     colours,
     content,
-    opened,
-    packed,
+    list_programs,
+    pack,
     share,
     unfold,
 )
 from tests.support.rows import each_row
-from tests.support.studio import SETTLED, Pages, asked, axe, checked, image, in_phase, noted, write
+from tests.support.studio import (
+    SETTLED,
+    Pages,
+    ask_worker,
+    axe,
+    image,
+    in_phase,
+    wait_for_note,
+    wait_until_checked,
+    write,
+)
 from tiniscript import check, compile
 from tiniscript.studio.building import MODULES
 from tiniscript.studio.checking import line_for_robot
@@ -41,30 +51,30 @@ TEXT = "// ñandú 🤖 </script>\nSI|LOOP(2);\n  F(1, 80);\nEND_LOOP\n"
 def test_a_link_brings_the_program_and_runs_nothing(pages: Pages, page: Page) -> None:
     page.select_option("#robot", "grabber")
     write(page, TEXT)
-    wanted = image(page)
+    wanted_bytes = image(page)
     link = share(page)
     assert link.startswith(pages.address + "#program=")
     assert "works only on this computer. To share with others" in page.inner_text("#shared_told")
     page.keyboard.press("Escape")
     page.select_option("#robot", "tinibot")
     write(page, "SI|F(9, 90)")
-    page.goto(link)  # in an open tab: only the part after # changes
-    noted(page, "This program came from a link.")
-    checked(page)
+    page.goto(link)  # in an open tab, only the part after # changes
+    wait_for_note(page, "This program came from a link.")
+    wait_until_checked(page)
     assert content(page).rstrip() == TEXT.rstrip()
-    assert (page.input_value("#robot"), image(page)) == ("grabber", wanted)
+    assert (page.input_value("#robot"), image(page)) == ("grabber", wanted_bytes)
     assert page.evaluate("document.documentElement.dataset.phase") == "off"
     assert page.evaluate("location.hash") == "#editor"
     page.click("#my_programs")
-    assert "SI|F(9, 90)" in opened(page)
+    assert "SI|F(9, 90)" in list_programs(page)
     page.keyboard.press("Escape")
     visitor = pages.visit(link)  # in a new tab
-    noted(visitor, "This program came from a link.")
-    checked(visitor)
-    assert image(visitor) == wanted
-    visitor.reload()  # and it is kept from then on
-    checked(visitor)
-    assert image(visitor) == wanted
+    wait_for_note(visitor, "This program came from a link.")
+    wait_until_checked(visitor)
+    assert image(visitor) == wanted_bytes
+    visitor.reload()  # the program is kept from here on
+    wait_until_checked(visitor)
+    assert image(visitor) == wanted_bytes
 
 
 REACHES = {
@@ -81,7 +91,7 @@ def test_a_program_gets_a_name(page: Page) -> None:
     write(page, "SI|F(1, 33)")
     page.click("#my_programs")
     page.fill("#program_name", ' my/ <b>dance: "2" ')
-    assert opened(page)[0] == "my bdance 2"
+    assert list_programs(page)[0] == "my bdance 2"
     page.click("#programs_close")
     with page.expect_download() as download:
         page.click("#save")
@@ -89,13 +99,13 @@ def test_a_program_gets_a_name(page: Page) -> None:
     page.click("#my_programs")
     assert page.input_value("#program_name") == "my bdance 2"
     page.fill("#program_name", "..ñandú 🤖.ts")
-    assert opened(page)[0] == "ñandú 🤖"
+    assert list_programs(page)[0] == "ñandú 🤖"
     page.fill("#program_name", "  ")
-    assert opened(page)[0] == "SI|F(1, 33)"
+    assert list_programs(page)[0] == "SI|F(1, 33)"
     page.click("#programs_close")
     write(page, "SI|S //" + 99 * "🤖")
     page.click("#my_programs")
-    assert opened(page)[0] == "SI|S //" + 53 * "🤖" + "…"
+    assert list_programs(page)[0] == "SI|S //" + 53 * "🤖" + "…"
     page.click("#programs_close")
 
 
@@ -127,9 +137,9 @@ def test_a_link_says_from_where_it_opens() -> None:
          f"{code}.forEach((each) => console.log(reachOf(each)));"],
         cwd=MODULES.parent, capture_output=True, text=True, check=True,
     )  # fmt: skip
-    wanted = [name for name, row in REACHES.items() for _ in row.split()]
+    wanted_texts = [name for name, row in REACHES.items() for _ in row.split()]
     assert dict(zip(addresses, completed.stdout.split(), strict=True)) == dict(
-        zip(addresses, wanted, strict=True)
+        zip(addresses, wanted_texts, strict=True)
     )
 
 
@@ -138,8 +148,8 @@ WRONG = {
     "no letters": "<img src=x onerror=alert(1)>",
     "cut": GOOD[:-8],
     "not deflated": base64.urlsafe_b64encode(b'{"text": "S"}').decode().rstrip("="),
-    "no JSON": packed(b"SI|F(9, 90)"),
-    "no UTF-8": packed(b'{"text": "\xff", "robot": "tinibot"}'),
+    "no JSON": pack(b"SI|F(9, 90)"),
+    "no UTF-8": pack(b'{"text": "\xff", "robot": "tinibot"}'),
     "null": as_json(None),
     "a list": as_json(["S", "tinibot"]),
     "no text": as_json({"robot": "tinibot"}),
@@ -154,12 +164,12 @@ WRONG = {
 @each_row("name", WRONG)
 def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
     write(page, "SI|F(4, 80)")
-    before = image(page)
+    image_before = image(page)
     page.evaluate("document.querySelector('#note').textContent = ''")
     page.evaluate("packed => { location.hash = '#program=' + packed; }", WRONG[name])
-    noted(page, "The link is incomplete")
-    checked(page)
-    assert (content(page), image(page)) == ("SI|F(4, 80)", before)
+    wait_for_note(page, "The link is incomplete")
+    wait_until_checked(page)
+    assert (content(page), image(page)) == ("SI|F(4, 80)", image_before)
     assert page.evaluate("location.hash") == "#editor"
     assert page.locator("img").count() == 0
 
@@ -169,7 +179,8 @@ def test_what_cannot_be_shared_says_why(page: Page) -> None:
     """A program that is too long for a link, one that the robot cannot read in a line, a wrong one,
     and one that is too long for a picture of a line."""
     chance = random.Random(1)
-    noise = "".join(f"// {chance.randbytes(40).hex()}\n" for _ in range(200))  # nothing packs it
+    # Text that cannot be compressed.
+    noise = "".join(f"// {chance.randbytes(40).hex()}\n" for _ in range(200))
     write(page, noise)
     assert share(page) == ""
     assert "too long for a link" in page.inner_text("#shared_told")
@@ -183,7 +194,7 @@ def test_what_cannot_be_shared_says_why(page: Page) -> None:
     assert share(page, "line") == ""
     assert check("F(2")[0].message in page.inner_text("#shared_told")
     page.keyboard.press("Escape")
-    page.select_option("#robot", "tinibot32")  # it has the memory for such names
+    page.select_option("#robot", "tinibot32")  # its memory can hold such names
     write(page, "SI|" + "".join(f"{letter * 190}=1;" for letter in "BCDEG"))
     assert len(share(page, "line")) > 900
     assert page.locator("#shared_picture").is_hidden()
@@ -198,17 +209,17 @@ def test_every_line_is_that_of_the_command(page: Page, part: int) -> None:
     requests = [
         {"text": program.text, "robot": program.robot, "language": "es"} for program in sample
     ]
-    refused = 0
+    refused_count = 0
     for program, answer in zip(
-        sample, asked(page, [{"do": "line", **request} for request in requests]), strict=True
+        sample, ask_worker(page, [{"do": "line", **request} for request in requests]), strict=True
     ):
         wanted = line_for_robot(program.text.encode(), program.robot, "es")
         if isinstance(wanted, str):
             assert answer == {"text": wanted}, program.name
         else:
-            refused += 1
+            refused_count += 1
             assert answer == {"message": wanted.message, "fix": wanted.fix}, program.name
-    assert 0 < refused < len(sample)
+    assert 0 < refused_count < len(sample)
 
 
 # Reads the modules of the code as a camera would see them: another package than the one that draws.
@@ -231,7 +242,7 @@ PIXELS = """() => {
 }"""
 
 
-def pictured(page: Page) -> str:
+def read_picture(page: Page) -> str:
     completed = subprocess.run(
         [*find_tools().node, "--input-type=module", "-e", READ],
         cwd=MODULES.parent,
@@ -253,8 +264,8 @@ def test_the_pictures_hold_what_is_shared(page: Page) -> None:
     page.locator("#public").blur()
     page.locator("#shared_picture").wait_for()
     for how in ("link", "line"):
-        shared = share(page, how)
-        assert pictured(page) == shared != ""
+        shared_text = share(page, how)
+        assert read_picture(page) == shared_text != ""
     page.fill("#public", "")
     page.locator("#public").blur()
     page.keyboard.press("Escape")
@@ -276,8 +287,8 @@ def test_the_window_opens_on_programs(page: Page) -> None:
     for tile in tiles.all():
         box = tile.bounding_box()
         assert box is not None and min(box["width"], box["height"]) >= 100
-    hidden = page.locator("#share_link, #shared, #shared_picture, #public")
-    assert hidden.count() == 4 and not hidden.filter(visible=True).count()
+    hidden_element = page.locator("#share_link, #shared, #shared_picture, #public")
+    assert hidden_element.count() == 4 and not hidden_element.filter(visible=True).count()
     assert axe(page, within="#programs") == []
     page.keyboard.press("Escape")
 
@@ -288,10 +299,10 @@ def test_a_new_program_is_one_press_away_and_keeps_the_one_before(page: Page, bu
     if button == "#new":
         page.click("#my_programs")
     page.click(button)
-    checked(page)
+    wait_until_checked(page)
     assert content(page).strip() == "" and not page.locator("#programs").is_visible()
     page.click("#my_programs")
-    assert opened(page)[0] == "SI|F(7, 70)"
+    assert list_programs(page)[0] == "SI|F(7, 70)"
     page.keyboard.press("Escape")
 
 
@@ -306,7 +317,7 @@ def picture_of_blocks(page: Page) -> tuple[int, int, dict[str, int]]:
 
 @drawn
 def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
-    """From the text, too; unless there are too many of them."""
+    """From the text view, too, unless there are too many of them."""
     for view in ("text", "blocks"):
         page.click("#view_text")
         write(page, "SI|F(2, 80)")
@@ -322,8 +333,8 @@ def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
         page.keyboard.press("Escape")
         assert large[1] > small[1] * 1.8, view  # rows
         assert large[2][MOVE] > 4 * small[2][MOVE] > 4000, view  # the blocks are filled
-        assert small[2]["255,255,255"] > small[0] * small[1] / 10  # letters and what is around
-        assert "0,0,0" not in small[2], view  # nothing lacks its colour
+        assert small[2]["255,255,255"] > small[0] * small[1] / 10  # letters and their surroundings
+        assert "0,0,0" not in small[2], view  # every block has its colour
     write(page, "S;" * 1600)
     page.click("#my_programs")
     unfold(page)
@@ -336,17 +347,17 @@ def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
 def test_what_is_shared_can_be_copied(page: Page) -> None:
     write(page, "SI|F(1, 80)")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    shared = share(page, "line")
+    shared_text = share(page, "line")
     page.click("#copy")
     page.locator("#shared_told", has_text="Copied").wait_for()
-    assert page.evaluate("navigator.clipboard.readText()") == shared
+    assert page.evaluate("navigator.clipboard.readText()") == shared_text
     page.context.clear_permissions()
     page.evaluate(
         "() => { navigator.clipboard.writeText = () => Promise.reject(new Error('no')); }"
     )
     page.click("#copy")
     page.locator("#shared_told", has_text="Ctrl+C").wait_for()
-    assert page.evaluate("String(getSelection())") == shared
+    assert page.evaluate("String(getSelection())") == shared_text
     page.evaluate("delete navigator.clipboard.writeText")
     page.keyboard.press("Escape")
 
@@ -357,25 +368,25 @@ def test_earlier_programs_come_back(page: Page) -> None:
     page.click("#run")  # a program that has run is kept
     write(page, "SI|F(2, 20)")
     page.click("#my_programs")
-    assert opened(page) == ["SI|F(2, 20)", "SI|F(1, 10)"]
+    assert list_programs(page) == ["SI|F(2, 20)", "SI|F(1, 10)"]
     page.click("#new")
-    checked(page)
+    wait_until_checked(page)
     assert content(page).strip() == ""
     write(page, "SI|F(3, 30)")
     page.select_option("#robot", "liner")
     page.reload()
-    checked(page)
+    wait_until_checked(page)
     page.click("#my_programs")
-    assert opened(page) == ["SI|F(3, 30)", "SI|F(2, 20)", "SI|F(1, 10)"]
+    assert list_programs(page) == ["SI|F(3, 30)", "SI|F(2, 20)", "SI|F(1, 10)"]
     rows = page.locator("#versions li")
     assert rows.locator("svg").count() == 4
     rows.filter(has_text="SI|F(1, 10)").get_by_role("button").first.click()
-    noted(page, "Opened: the program of")
-    checked(page)
+    wait_for_note(page, "Opened: the program of")
+    wait_until_checked(page)
     assert content(page) == "SI|F(1, 10)" and page.input_value("#robot") == "tinibot"
     page.locator(".cm-content").focus()
     page.keyboard.press("Control+z")
-    checked(page)
+    wait_until_checked(page)
     assert content(page) == "SI|F(3, 30)"
 
 
@@ -392,12 +403,12 @@ def test_a_program_is_kept_once_however_it_is_written(page: Page) -> None:
     for text in SAME:
         write(page, text)
         page.click("#my_programs")
-        assert len(opened(page)) == 1
+        assert len(list_programs(page)) == 1
         page.keyboard.press("Escape")
     for count, text in enumerate(OTHER, 2):
         write(page, text)
         page.click("#my_programs")
-        assert len(opened(page)) == count, text
+        assert len(list_programs(page)) == count, text
         page.keyboard.press("Escape")
 
 
@@ -413,27 +424,27 @@ def test_a_program_is_deleted_and_brought_back(page: Page) -> None:
     rows = page.locator("#versions li:not(:has(#new))")
     for at in (0, 2, 3, 1):
         title = texts[::-1][at]
-        assert opened(page) == texts[::-1]
+        assert list_programs(page) == texts[::-1]
         delete = rows.nth(at).get_by_role("button", name=f"Delete {title}")
         assert delete.count() == (at > 0)
         if not at:
             continue
         delete.click()
-        assert opened(page) == [each for each in texts[::-1] if each != title]
+        assert list_programs(page) == [each for each in texts[::-1] if each != title]
         assert axe(page, within="#programs") == []
-        page.keyboard.press("Enter")  # it has the focus, where the program was
+        page.keyboard.press("Enter")  # the button in the program's place has the focus
     rows.nth(2).locator(".delete").click()
     page.keyboard.press("Escape")
     page.reload()
-    checked(page)
+    wait_until_checked(page)
     page.click("#my_programs")
-    assert opened(page) == [texts[3], texts[2], texts[0]]
+    assert list_programs(page) == [texts[3], texts[2], texts[0]]
     page.keyboard.press("Escape")
 
 
 def test_no_more_is_kept_than_has_room(page: Page) -> None:
-    write(page, "SI|F(4, 44)")  # what is kept when somebody looks at the programs
-    kept = page.evaluate(
+    write(page, "SI|F(4, 44)")  # saved when someone opens the list of programs
+    kept_state = page.evaluate(
         """() => {
           const at = 'tiniscript.versions';
           const long = Array.from({length: 60}, (_, k) =>
@@ -443,7 +454,7 @@ def test_no_more_is_kept_than_has_room(page: Page) -> None:
           return JSON.parse(localStorage.getItem(at)).map(each => each.text.length);
         }"""
     )
-    assert sum(kept) <= 400_000 and 5 < len(kept) <= 40
+    assert sum(kept_state) <= 400_000 and 5 < len(kept_state) <= 40
     page.keyboard.press("Escape")
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
 
@@ -454,12 +465,12 @@ DAMAGED = ("no JSON", "null", "7", '{"length": 3}', '[null, 1, {"text": 5}]',
            '[{"text": "S", "robot": "tinibot", "name": "", "at_ms": 1e300}]')  # fmt: skip
 
 
-@each_row("kept", DAMAGED)
-def test_damaged_programs_do_no_harm(page: Page, kept: str) -> None:
+@each_row("kept_text", DAMAGED)
+def test_damaged_programs_do_no_harm(page: Page, kept_text: str) -> None:
     write(page, "SI|F(6, 60)")
-    page.evaluate("kept => localStorage.setItem('tiniscript.versions', kept)", kept)
+    page.evaluate("kept => localStorage.setItem('tiniscript.versions', kept)", kept_text)
     page.click("#my_programs")
-    assert opened(page) == ["SI|F(6, 60)"]
+    assert list_programs(page) == ["SI|F(6, 60)"]
     page.keyboard.press("Escape")
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
 
@@ -471,7 +482,7 @@ def test_a_browser_that_keeps_nothing_says_so(page: Page) -> None:
         " Storage.prototype.setItem = () => { throw new DOMException('full'); }; }"
     )
     page.click("#run")
-    noted(page, "This browser does not save anything")
+    wait_for_note(page, "This browser does not save anything")
     page.evaluate("() => { Storage.prototype.setItem = window.kept; }")
     page.click("#stop")
 

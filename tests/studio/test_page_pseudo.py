@@ -49,8 +49,8 @@ CUT = """() => {
   return [...found];
 }"""
 
-# Each text that can be seen, or is read aloud, and is in no catalogue of the page. Python says what
-# is in the others: what is measured, mistakes, lessons and robots.
+# Texts that are visible or read aloud, and are in no catalogue of the page. Python provides the
+# others: measured values, mistakes, lessons and robots.
 PLAIN = """() => {
   const is_plain = (text) => /[a-z]{3}/.test(text) && !/[äéîñöûóÄÉÎÑÖÛ]/.test(text);
   const found = [];
@@ -100,7 +100,7 @@ def would_be_noticed(page: Page, button: str) -> None:
 @pytest.mark.sampled(of="longer texts")
 def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
     """The wall of ten pupils who want a robot and help, and each window in front of it."""
-    with studio.taught([]) as taught_class:
+    with studio.serve_class([]) as taught_class:
         joins = {"do": "join", "code": taught_class.room.code}
         for number in range(10):
             join = {**joins, "name": f"Maximiliano {number}"}

@@ -19,13 +19,13 @@ from tests.support.page_screens import SCREENS
 from tests.support.rows import each_row
 from tests.support.studio import (
     SETTLED,
-    asked,
-    checked,
+    ask_worker,
     colors_of,
     dances_like_the_command,
     in_phase,
     speak,
     turn,
+    wait_until_checked,
     write,
 )
 from tiniscript import compile
@@ -57,7 +57,7 @@ def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, 
         *({"do": "go", "duration_ms": 400} for _ in range(20)),
         {"do": "stop"},
     ]
-    answers = asked(page, [{**request, "image": image.hex()} for request in requests])
+    answers = ask_worker(page, [{**request, "image": image.hex()} for request in requests])
     simulation = Simulation(robot, worlds.load(world), image)
     for request, answer in zip(requests, answers, strict=True):
         if request["do"] == "go":
@@ -70,12 +70,12 @@ def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, 
 
 
 def test_the_list_is_the_trace_of_the_command(page: Page) -> None:
-    wanted = dances_like_the_command(page)
+    wanted_texts = dances_like_the_command(page)
     assert page.inner_text("#doing") == "It has ended."
     page.click("#seen_trace")
-    with page.expect_download() as saved:
+    with page.expect_download() as download_info:
         page.click("#save_trace")
-    assert saved.value.path().read_text().splitlines() == wanted
+    assert download_info.value.path().read_text().splitlines() == wanted_texts
     page.click("#seen_arena")
 
 
@@ -111,7 +111,7 @@ def test_step_goes_to_the_next_part_of_the_program(page: Page) -> None:
         page.click("#step")
     in_phase(page, "ended")
     assert value(page, "Time") == "2.5 s"
-    write(page, "W(50);\nS")  # STOP comes through in the middle of a long step
+    write(page, "W(50);\nS")  # STOP works in the middle of a long step
     page.click("#step")
     in_phase(page, "paused")
     wait_for_running(page)
@@ -127,7 +127,7 @@ def test_a_change_of_the_text_ends_the_mark(page: Page) -> None:
     wait_for_running(page)
     page.locator(".cm-content").focus()
     page.keyboard.type(" ")
-    checked(page)
+    wait_until_checked(page)
     assert running(page) == ""
 
 
@@ -142,7 +142,7 @@ PASTED_AND_PRESSED = (
 
 
 def test_run_waits_for_the_compiler(page: Page) -> None:
-    """Whoever is quick is not told to repair what is right: the newest text runs."""
+    """A fast user is not told to repair a correct program: the newest text runs."""
     write(page, "F(1, ")
     page.select_option("#speed", "20")
     page.locator(".cm-content").focus()
@@ -165,7 +165,7 @@ def test_stop_ends_the_waiting_for_the_compiler(page: Page) -> None:
     page.locator(".cm-content").focus()
     page.keyboard.press("Control+A")
     page.locator(".cm-content").evaluate(PASTED_AND_PRESSED, ["F(9, 80)", "#run", "#stop"])
-    checked(page)
+    wait_until_checked(page)
     page.wait_for_timeout(300)
     assert page.locator("html[data-phase=running]").count() == 0
     assert page.locator("#doing", has_text="still working").count() == 0
@@ -182,7 +182,7 @@ def test_a_program_waits_for_its_button(page: Page) -> None:
     assert (page.locator("#trace").text_content() or "").split("\n")[-1] == "1000 DONE"
 
 
-# Where everything of the run is; what is told has its words inside.
+# The parts of the run's display; messages contain their own words.
 PLACES = """() => 'arena controls told run pause step speed world values'.split(' ').map((id) => {
   const { x, y, width, height } = document.getElementById(id).getBoundingClientRect();
   return [id, x, y, width, height];
@@ -202,7 +202,7 @@ def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) ->
     turn(page, "robot")
     for language, world in (("es", "obstacles"), ("es", "maze"), ("en", "maze")):
         speak(page, language)
-        page.select_option("#world", world)  # nothing has run in it
+        page.select_option("#world", world)  # nothing has run in this world
         if not page.locator("html[data-phone]").count():
             page.click("#run")
             page.locator("#push").wait_for()
@@ -242,7 +242,7 @@ def test_another_world_or_robot_begins_again(page: Page) -> None:
     page.click("#run")
     wait_for_running(page)
     page.select_option("#robot", "liner")
-    checked(page)
+    wait_until_checked(page)
     assert value(page, "left line sensor") == "–"
     assert len(colors_of(page, "#arena")) > 5  # floor, border, line
 

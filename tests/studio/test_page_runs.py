@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.runs_again import recorded
+from tests.studio.runs_again import record_run
 from tests.support.page_robot import running, value
 from tests.support.page_runs import run_names
 from tests.support.studio import in_phase, write
@@ -35,14 +35,14 @@ def page(page: Page) -> Page:
     return page
 
 
-def ran(page: Page, text: str, shown: str) -> None:
+def run_to_end(page: Page, text: str, shown_text: str) -> None:
     write(page, text)
     page.click("#run")
-    page.locator("#trace", has_text=shown).wait_for(state="attached")
+    page.locator("#trace", has_text=shown_text).wait_for(state="attached")
     in_phase(page, "ended")
 
 
-def saved(page: Page, row: int) -> bytes:
+def save_run(page: Page, row: int) -> bytes:
     with page.expect_download() as download:
         page.locator("#runs_list li").nth(row).locator("button", has_text="Save run").click()
     assert download.value.suggested_filename == "run.tsr"
@@ -62,7 +62,7 @@ def real(*rows: tuple[int, str], text: str = LOOKS) -> str:
     return encode(first, [Row(*row) for row in rows], rows[-1][0])
 
 
-def opened(page: Page, data: bytes | str, file: Path) -> None:
+def open_run(page: Page, data: bytes | str, file: Path) -> None:
     file.write_bytes(data.encode() if isinstance(data, str) else data)
     page.click("#runs_open")
     page.set_input_files("#run_file", file)
@@ -70,12 +70,12 @@ def opened(page: Page, data: bytes | str, file: Path) -> None:
 
 @drawn
 def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> None:
-    ran(page, "SI|X = 7;\nF(0.5, 60);\nSHOW(X)", "SHOW 7")
+    run_to_end(page, "SI|X = 7;\nF(0.5, 60);\nSHOW(X)", "SHOW 7")
     pose = page.locator("#where").text_content()
-    ran(page, "SI|Y = 8;\nSHOW(Y)", "SHOW 8")
+    run_to_end(page, "SI|Y = 8;\nSHOW(Y)", "SHOW 8")
     assert len(run_names(page)) >= 2
     page.locator("#runs_list li").nth(1).locator("button").first.click()
-    wait_for_status(page, "Looking back: this was at ")  # its text is another one
+    wait_for_status(page, "Looking back: this was at ")  # the text of that run differs
     assert page.locator("#where").text_content() == pose
     assert value(page, "X") == "7"
     page.focus("#time_at")
@@ -89,7 +89,7 @@ def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> N
 @drawn
 def test_of_more_than_ten_runs_the_newest_ten_are_kept(page: Page) -> None:
     for number in range(12):
-        ran(page, f"SI|SHOW({number})", f"SHOW {number}")
+        run_to_end(page, f"SI|SHOW({number})", f"SHOW {number}")
     rows = run_names(page)
     assert len(rows) == 10
     numbers = [int(row.split(":")[0].removeprefix("Run ")) for row in rows]
@@ -116,25 +116,27 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
     page.click("#stop")
     in_phase(page, "ended")
     run_names(page)
-    data = saved(page, 0)
+    data = save_run(page, 0)
     recording = decode(data)
-    assert any(row.pressed is not None and row.pressed.keys for row in recording.rows)
-    played = play(prepare(recording)).divergence
-    assert played is not None and (played.what, played.agreed) == (
+    assert any(row.remote_state is not None and row.remote_state.keys for row in recording.rows)
+    played_divergence = play(prepare(recording)).divergence
+    assert played_divergence is not None and (played_divergence.what, played_divergence.agreed) == (
         "again", sum(not row.is_input for row in recording.rows))  # fmt: skip
     page.click("#runs_close")
     write(page, "SI|S")
-    opened(page, data, tmp_path / "run.tsr")
-    wait_for_status(page, f"The virtual robot did exactly the same again. Rows: {played.agreed}.")
+    open_run(page, data, tmp_path / "run.tsr")
+    wait_for_status(
+        page, f"The virtual robot did exactly the same again. Rows: {played_divergence.agreed}."
+    )
     run_names(page)
-    assert decode(saved(page, 0)).rows == recording.rows
+    assert decode(save_run(page, 0)).rows == recording.rows
     page.click("#runs_close")
 
 
 @drawn
 def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path) -> None:
-    data, rows = next(run for run in map(recorded, range(99)) if b'"tinibot32"' in run[0])
-    opened(page, data, tmp_path / "run.tsr")
+    data, rows = next(run for run in map(record_run, range(99)) if b'"tinibot32"' in run[0])
+    open_run(page, data, tmp_path / "run.tsr")
     wait_for_status(page, f"The virtual robot did exactly the same again. Rows: {len(rows)}.")
     first = json.loads(data.splitlines()[0])
     assert (page.input_value("#robot"), page.input_value("#world")) == (
@@ -146,19 +148,19 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     page: Page, tmp_path: Path
 ) -> None:
     rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
-    opened(page, real(*rows), tmp_path / "run.tsr")
+    open_run(page, real(*rows), tmp_path / "run.tsr")
     wait_for_status(page, "Both did the same. Values compared: 4.")
     changed = (*rows[:2], (451, "SHOW 6"), (452, "DONE"))
-    opened(page, real(*changed), tmp_path / "run.tsr")
+    open_run(page, real(*changed), tmp_path / "run.tsr")
     wait_for_status(
         page, "Line 5: the robot reported 6 after 0.5 s, but the virtual robot reported 5 after"
     )
     names = run_names(page)
     assert names[0].startswith("Run ") and "real robot" in names[0]
-    assert [row.event for row in decode(saved(page, 0)).rows] == [event for _, event in changed]
+    assert [row.event for row in decode(save_run(page, 0)).rows] == [event for _, event in changed]
     page.click("#runs_close")
     text = "SI|X = DISTANCE;\nSHOW(X)"
-    opened(page, real((20, "SHOW 3"), text=text), tmp_path / "run.tsr")
+    open_run(page, real((20, "SHOW 3"), text=text), tmp_path / "run.tsr")
     wait_for_status(page, "Line 1: the program reads DISTANCE, but the recording lacks")
 
 
@@ -180,10 +182,10 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
 def test_a_file_that_is_no_run_says_why_and_nothing_is_lost(
     page: Page, tmp_path: Path, data: bytes, message: str
 ) -> None:
-    ran(page, "SI|SHOW(77)", "SHOW 77")
+    run_to_end(page, "SI|SHOW(77)", "SHOW 77")
     before = run_names(page)
     page.click("#runs_close")
-    opened(page, data, tmp_path / "run.tsr")
+    open_run(page, data, tmp_path / "run.tsr")
     page.locator("#runs_said", has_text=message).wait_for()
     page.click("#runs_close")
     assert run_names(page) == before

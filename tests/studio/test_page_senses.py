@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from tests.machines.host_firmware import HostFirmware
 
-pytestmark = pytest.mark.usefixtures("unhurried")
+pytestmark = pytest.mark.usefixtures("no_page_timeouts")
 drawn = pytest.mark.sampled(of="details of the senses", keep=2)
 
 SENSED = ((12, 1, 250), (1023, 0, 7), (512, 88, 0), (12, 1, 250))
@@ -34,7 +34,7 @@ FOREVER_SHOW = "LOOP(FOREVER);SHOW(7);W(0.1);END_LOOP"
 
 
 class MeteredRobot(PtyRobot):
-    """It notes when the values come that it sends, and how many bytes each takes."""
+    """A robot that records the times and sizes of the values it sends."""
 
     def __init__(self, name: str) -> None:
         self.values: list[tuple[int, int]] = []
@@ -42,18 +42,18 @@ class MeteredRobot(PtyRobot):
         super().__init__(robots.load(name).kit, bytes_per_ms=1)  # 9600 baud
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
-        sent = super().pass_ms(milliseconds, data)
-        for byte in sent:
+        sent_bytes = super().pass_ms(milliseconds, data)
+        for byte in sent_bytes:
             self._receiver.put(byte, self.robot_ms)
             packet = self._receiver.take()
             frame = decode_frame(packet.data) if packet and not packet.is_text else None
             if packet and frame and frame.number == BY_NAME["SHOW"].number:
                 self.values.append((self.robot_ms, len(packet.data) + 1))
-        return sent
+        return sent_bytes
 
 
 @pytest.fixture(scope="module")
-def opened(browser: Browser, server: serving.Server) -> Iterator[tuple[Pages, Page]]:
+def open_page(browser: Browser, server: serving.Server) -> Iterator[tuple[Pages, Page]]:
     pages = Pages(browser, server.address, entrance=server.entrance)
     yield pages, pages.open()
     pages.close()
@@ -67,9 +67,9 @@ def robot() -> Iterator[PtyRobot]:
 
 
 @pytest.fixture
-def page(opened: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
+def page(open_page: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     """A page of many tests that has met its robot, and has never read a sensor."""
-    pages, current_page = opened
+    pages, current_page = open_page
     current_page.evaluate("localStorage.removeItem('tiniscript.watches')")
     connect(current_page, robot)
     yield current_page
@@ -86,7 +86,7 @@ def does(page: Page, what: str) -> None:
 
 
 def senses(page: Page, robot: PtyRobot, *values: int) -> None:
-    """Let the robot sense so much, and wait until the gauges say so."""
+    """Set the sensors, and wait until the gauges show the values."""
     robot.ask(lambda robot: robot.sense(*(1000 * value for value in values)))
     for row, value in enumerate(values):
         gauge = page.locator(f"#gauges > div:nth-child({row + 1}) > dd")
@@ -111,7 +111,7 @@ def rests(page: Page) -> None:
 
 
 def seen_runs(page: Page) -> list[str]:
-    """Return what each run is called that is kept."""
+    """Return the names of the stored runs."""
     page.click("#side_virtual")
     runs = run_names(page)
     page.click("#runs_close")
@@ -123,12 +123,12 @@ def test_the_gauges_say_what_the_robot_senses_and_nobody_hears_of_it(
     page: Page, robot: PtyRobot
 ) -> None:
     """No motor turns, no value is shown as a program's, and no run is kept."""
-    before = len(robot.did)
+    count_before = len(robot.actions)
     runs = seen_runs(page)
     watch(page)
     for values in SENSED:
         senses(page, robot, *values)
-    assert not [line for line in robot.did[before:] if line.startswith(("BEEP", "SET"))]
+    assert not [line for line in robot.actions[count_before:] if line.startswith(("BEEP", "SET"))]
     assert not robot.moves
     assert page.locator("#link_shown").inner_text() == ""
     wait_for_message(page, "Connected: ")
@@ -138,7 +138,7 @@ def test_the_gauges_say_what_the_robot_senses_and_nobody_hears_of_it(
 
 
 def test_while_a_program_runs_the_gauges_say_what_it_reads(page: Page, robot: PtyRobot) -> None:
-    """And nothing of what it does not read."""
+    """Other sensors are not shown."""
     watch(page)
     senses(page, robot, 3, 4, 5)
     write(page, "LOOP(FOREVER);X = DISTANCE;W(0.1);END_LOOP")
@@ -176,8 +176,9 @@ def test_a_program_comes_first_and_the_gauges_after_it(page: Page, robot: PtyRob
 def test_a_program_that_waits_for_the_robots_button_gets_it(
     page: Page, robot: PtyRobot, way: str, runs_before: bool
 ) -> None:
-    """The first press starts it, though the sensors were read before, or another one ran, of which
-    it tells the end."""
+    """The first press starts it, even if sensors were read before, or another program ran, whose
+    end it reports.
+    """
     watch(page)
     if runs_before:
         write(page, FOREVER_SHOW)
@@ -187,7 +188,7 @@ def test_a_program_that_waits_for_the_robots_button_gets_it(
     page.click("#link_upload" if way == "waits for it" else "#link_send")
     wait_for_message(page, re.compile("The robot has the program.|Done."))
     rests(page)
-    page.wait_for_timeout(1500)  # in which nothing begins by itself
+    page.wait_for_timeout(1500)  # nothing may start by itself in this time
     robot.push()
     robot.until(lambda: robot.moves, "it drives")
     does(page, "own")
@@ -214,7 +215,7 @@ def test_a_stop_is_a_stop_until_somebody_wants_more(page: Page, robot: PtyRobot)
         page.click("#stop")
         wait_for_message(page, "Stopped: the robot has confirmed the stop.")
         rests(page)
-        page.wait_for_timeout(1500)  # in which nothing begins by itself
+        page.wait_for_timeout(1500)  # nothing may start by itself in this time
         does(page, "stopped")
     watch(page)
     senses(page, robot, 9, 8, 7)
@@ -249,7 +250,7 @@ def test_they_come_by_themselves_where_somebody_has_wanted_them(
 
 @drawn
 def test_what_it_does_is_said_without_a_number(page: Page, robot: PtyRobot) -> None:
-    """And in the language that is chosen, whatever it does."""
+    """The text is in the chosen language, for every action."""
     does(page, "still")
     drives(page, robot)
     does(page, "own")
@@ -267,12 +268,12 @@ def test_what_it_does_is_said_without_a_number(page: Page, robot: PtyRobot) -> N
 
 
 def test_a_port_where_nothing_answers_says_so_within_three_seconds(
-    opened: tuple[Pages, Page], robot: PtyRobot
+    open_page: tuple[Pages, Page], robot: PtyRobot
 ) -> None:
-    page = opened[0].blank()
+    page = open_page[0].blank()
     page.clock.install()
-    opened[0].watch(page)
-    page.goto(opened[0].entrance())
+    open_page[0].watch(page)
+    page.goto(open_page[0].entrance())
     page.locator("html[data-state=checked]").wait_for(state="attached")
     robot.switch_off()
     page.click("#start_robot")
@@ -288,10 +289,10 @@ def test_a_port_where_nothing_answers_says_so_within_three_seconds(
 @drawn
 @pytest.mark.parametrize("name", ["tinibot", "liner"])
 def test_the_readings_take_a_third_of_the_line_at_most(
-    opened: tuple[Pages, Page], name: str
+    open_page: tuple[Pages, Page], name: str
 ) -> None:
-    """Of the slowest line that a robot has, at 9600 baud."""
-    page, robot = opened[0].open(), MeteredRobot(name)
+    """On the slowest line of a robot, at 9600 baud."""
+    page, robot = open_page[0].open(), MeteredRobot(name)
     with robot:
         known_ports.remember(robot.port, "TINI")
         connect(page, robot)

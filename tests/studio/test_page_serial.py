@@ -1,4 +1,4 @@
-"""The page and a robot by Web Serial: the browser's own, and the robot's firmware behind a pty."""
+"""The page and a robot by Web Serial: the browser's own, and the robot's firmware on a pty."""
 
 from __future__ import annotations
 
@@ -32,16 +32,18 @@ def context(
 ) -> Iterator[BrowserContext]:
     """A browser of its own: a page that no `tsc studio` has given, as on any static host."""
     why = studio_serial.missing()
-    if why:  # in CI, too: no package brings root or a serial port
+    if why:  # skipped in CI too, without root or a serial port
         pytest.skip(why)
     folder: Path = tmp_path_factory.mktemp("serial")
     with (
-        studio.served() as server,
-        studio_serial.context(playwright, folder, robot.port, server.address) as opened,
+        studio.serve_page() as server,
+        studio_serial.context(
+            playwright, folder, robot.port, server.address
+        ) as opened_browser_context,
     ):
-        first = opened.pages[0]
+        first = opened_browser_context.pages[0]
         enter(first, server.address)
-        yield opened
+        yield opened_browser_context
 
 
 @pytest.fixture
@@ -62,7 +64,7 @@ def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
     page.click("#link_upload")
     wait_for_message(page, "Line 4: the program divided by 0.")
     assert page.locator("#link_shown").inner_text() == "2.5"
-    assert "MOTORS 80 80" in robot.did
+    assert "MOTORS 80 80" in robot.actions
 
 
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
@@ -76,7 +78,7 @@ def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     drives(page, robot)
     began_ms = robot.robot_ms
     hang(page, HUNG_MS)
-    assert robot.stands_after_ms(began_ms) < HUNG_MS  # its dead-man timer stops it
+    assert robot.stands_after_ms(began_ms) < HUNG_MS  # the dead-man timer stops it
 
 
 def test_two_tabs_do_not_fight(context: BrowserContext, page: Page, robot: PtyRobot) -> None:

@@ -1,4 +1,4 @@
-"""How large the virtual robot is seen, and from where."""
+"""The size and view of the virtual robot."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from tests.support.studio import (
     SETTLED,
     Pages,
     axe,
-    checked,
     finger,
     hears,
     in_phase,
-    shown,
     speak,
     turn,
+    wait_for_blocks,
+    wait_until_checked,
     write,
 )
 
@@ -79,7 +79,7 @@ def choose(page: Page, camera: str) -> None:
 @pytest.mark.sampled("world")
 @pytest.mark.parametrize("world", ["obstacles", "light", "delivery", "free"])
 def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -> None:
-    page.reload()  # whoever has chosen a camera keeps it
+    page.reload()  # a chosen camera is kept
     page.select_option("#world", world)
     write(page, FOREVER)
     small = page.evaluate(AREA)
@@ -89,7 +89,7 @@ def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -
     hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
     page.keyboard.press("Escape")
     in_phase(page, "ended")
-    assert page.evaluate(AREA) >= 1366 * 768 / 3  # until somebody goes on writing
+    assert page.evaluate(AREA) >= 1366 * 768 / 3  # until someone continues to write
     page.hover("#editor")
     hears(page, lambda: page.evaluate(AREA) == small, "as before")
 
@@ -97,8 +97,8 @@ def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -
 def see_last_step(page: Page, size: tuple[int, int]) -> float:
     """Open the task of a lesson, with a program that drives on; return how many px of the page the
     arena is to have at least while it does."""
-    page.reload()  # whoever has chosen a camera keeps it
-    checked(page)
+    page.reload()  # a chosen camera is kept
+    wait_until_checked(page)
     page.set_viewport_size({"width": size[0], "height": size[1]})
     turn(page, "program")
     write(page, FOREVER)
@@ -155,7 +155,7 @@ def test_a_run_that_is_judged_is_as_large_until_it_is_told(
             in_phase(page, "running")
             hears(page, lambda: page.evaluate(AREA) >= large, "a large part of the page")
             hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
-            page.click("#lesson_end")  # which leads to what is said of it
+            page.click("#lesson_end")  # the button leads to the lesson's result
         page.locator("#lesson_said[data-verdict]").wait_for()
         assert page.locator("html[data-big]").count() == 0
         assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA) < large
@@ -171,7 +171,7 @@ def test_a_finger_drags_the_block_that_it_touches_after_a_run(pages: Pages) -> N
     page.select_option("#world", "free")
     write(page, "SI|F(0.1, 60);\nBEEP(0.1, 440);\n")
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
     page.tap("#run")
     in_phase(page, "ended")
     narrow = page.evaluate("blocks.clientWidth")
@@ -194,7 +194,7 @@ def test_a_finger_drags_the_block_that_it_touches_after_a_run(pages: Pages) -> N
     assert over["left"] <= own["left"] + 1 and over["right"] >= own["right"] - 1
 
 
-# Of the blocks that run, those that are cut off by the edges of the program.
+# Running blocks that the edges of the program cut off.
 UNSEEN = """() => {
   const seen = document.querySelector('#blocks .blocklySvg').getBoundingClientRect();
   const left = document.querySelector('#blocks .blocklyToolbox').getBoundingClientRect().right;
@@ -203,11 +203,11 @@ UNSEEN = """() => {
     return box.left < left || box.right > seen.right || box.top < seen.top || box.top + 24 > seen.bottom;
   }).map((each) => each.textContent);
 }"""  # noqa: E501
-# Of all stacks, those whose hat is cut off.
+# Stacks whose hat is cut off.
 CUT = UNSEEN.replace("'#blocks .running'", "`${PROGRAM} > .blocklyBlock`").replace(
     "PROGRAM", "'#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas'"
 )
-AFTER_RUN_MS = 700  # after which the blocks are as large as before
+AFTER_RUN_MS = 700  # time after which blocks have their old size
 HATS = """SI|LOOP(FOREVER);
   F(1, 60);
 END_LOOP;
@@ -232,9 +232,9 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
     page.select_option("#world", "free")
     write(page, HATS)
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
     canvas = page.locator("#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas")
-    if size[0] == 1366:  # else it is below the others, out of sight
+    if size[0] == 1366:  # otherwise it is below the others, out of sight
         hat = canvas.locator("> .blocklyDraggable", has_text="each time")
         box = hat.locator("> .blocklyPath").first.bounding_box()
         assert box
@@ -242,7 +242,7 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
         page.mouse.down()
         page.mouse.move(560, 330, steps=8)
         page.mouse.up()
-        shown(page)
+        wait_for_blocks(page)
 
     def place() -> list[int]:
         transform = canvas.get_attribute("transform") or ""
@@ -257,7 +257,8 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
     page.click("#stop")
     in_phase(page, "ended")
     page.locator("#blocks .running").first.wait_for(state="detached")
-    assert page.locator("html[data-big]").count()  # whoever looks at the robot leaves it so
+    # The view stays for someone who looks at the robot.
+    assert page.locator("html[data-big]").count()
     page.wait_for_timeout(AFTER_RUN_MS)
     assert page.evaluate(CUT) == cut, "what was seen before the run is seen"
     page.hover("#views")
@@ -271,10 +272,10 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
     page.select_option("#world", "free")
     write(page, HATS)
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
     canvas = page.locator(PROGRAM)
     name = canvas.locator("> .blocklyDraggable", has_text="each time").get_attribute("data-id")
-    hat = page.locator(f"#blocks [data-id='{name}']")  # which leaves the others once dragged
+    hat = page.locator(f"#blocks [data-id='{name}']")  # dragging moves it away from the others
 
     def scale() -> str:
         return (canvas.get_attribute("transform") or "").rpartition("scale")[2]
@@ -289,7 +290,7 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
         page.wait_for_timeout(AFTER_RUN_MS)
         now = box_of(hat)
         page.mouse.up()
-        shown(page)
+        wait_for_blocks(page)
         return now["x"] - box["x"], now["y"] - box["y"]
 
     drag(200, 60, 1)
@@ -321,30 +322,30 @@ def test_who_scrolls_the_blocks_during_a_run_sees_what_they_chose(page: Page) ->
     page.select_option("#world", "free")
     write(page, "SI|LOOP(FOREVER)\n" + "F(0.1, 60)\n" * 30 + "END_LOOP")
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
     canvas = page.locator("#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas")
     page.click("#run")
     in_phase(page, "running")
-    before = canvas.get_attribute("transform")
-    hears(page, lambda: canvas.get_attribute("transform") != before, "it is scrolled")
+    text_before = canvas.get_attribute("transform")
+    hears(page, lambda: canvas.get_attribute("transform") != text_before, "it is scrolled")
     page.hover("#blocks")
     page.mouse.wheel(0, 40)
     page.wait_for_timeout(300)
-    chosen = canvas.get_attribute("transform")
+    chosen_text = canvas.get_attribute("transform")
     page.wait_for_timeout(2500)
-    assert canvas.get_attribute("transform") == chosen
+    assert canvas.get_attribute("transform") == chosen_text
     page.click("#stop")
     in_phase(page, "ended")
     page.wait_for_timeout(1000)
-    assert canvas.get_attribute("transform") == chosen
+    assert canvas.get_attribute("transform") == chosen_text
     page.click("#run")
-    hears(page, lambda: canvas.get_attribute("transform") != chosen, "it is scrolled again")
+    hears(page, lambda: canvas.get_attribute("transform") != chosen_text, "it is scrolled again")
     page.click("#stop")
     page.click("#view_text")
 
 
 def test_another_world_is_seen_whole_whatever_ran_before(page: Page) -> None:
-    """As a lesson's is, whose goal would be out of sight."""
+    """For example a lesson's world, whose goal would be out of sight."""
     write(page, "SI|F(0.1, 20);\n")
     page.select_option("#world", "free")
     page.click("#run")
@@ -375,7 +376,7 @@ def test_what_chooses_blocks_has_its_arrow_in_one_row_beside_a_large_robot(
 
 
 def test_full_screen_comes_with_a_key_and_goes_with_it(page: Page) -> None:
-    """And with the button; whoever types an F types it. STOP stays in reach, Escape leaves it."""
+    """The button works as well, and typing an F does not. STOP stays in reach, Escape leaves it."""
     write(page, FOREVER)
     page.locator(".cm-content").focus()
     page.keyboard.type("f")
@@ -420,12 +421,12 @@ def test_a_camera_follows_from_above_and_from_behind(page: Page) -> None:
 
 def test_what_stands_on_the_floor_has_sides_from_behind_the_robot(page: Page) -> None:
     write(page, "SI|S;\n")
-    for world, raised in (("obstacles", "156,115,70"), ("maze", "138,101,68")):
+    for world, raised_text in (("obstacles", "156,115,70"), ("maze", "138,101,68")):
         page.select_option("#world", world)
         in_phase(page, "off")
         for camera in ("whole", "above", "behind"):
             choose(page, camera)
-            assert (raised in page.evaluate(COLORS)) == (camera == "behind"), (world, camera)
+            assert (raised_text in page.evaluate(COLORS)) == (camera == "behind"), (world, camera)
     choose(page, "whole")
 
 
@@ -481,7 +482,7 @@ def test_cameras_and_the_whole_page_are_there_on_small_screens(
     assert page.evaluate(AREA) > 0.6 * size[0] * size[1]
     page.click("#stop")
     page.click("#full")
-    choose(page, "above")  # as it is where nobody has chosen
+    choose(page, "above")  # the default position
     page.click("#run")
     in_phase(page, "running")
     hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")

@@ -12,13 +12,13 @@ from tests.support.page_programs import GOOD
 from tests.support.studio import (
     SETTLED,
     Pages,
-    checked,
     hears,
     image,
     in_phase,
-    noted,
-    shown,
     speak,
+    wait_for_blocks,
+    wait_for_note,
+    wait_until_checked,
     write,
 )
 from tiniscript import compile
@@ -48,7 +48,7 @@ def start(page: Page) -> Iterator[Page]:
     page.set_viewport_size({"width": 1366, "height": 768})
     page.click("#view_blocks")
     page.click("#home")
-    page.click("[data-begin=dance]")  # what the page has brought is not kept
+    page.click("[data-begin=dance]")  # the page's own example is not kept
     in_phase(page, "running")
     page.evaluate("localStorage.clear()")
     page.click("#home")
@@ -64,7 +64,7 @@ def screen(page: Page) -> str:
 
 
 def moves(page: Page) -> bool:
-    """Whether its robot has moved."""
+    """Return whether its robot has moved."""
     trace = page.locator("#trace").text_content() or ""
     return re.search("MOTORS .*[1-9]", trace) is not None
 
@@ -74,7 +74,7 @@ def test_one_click_moves_the_robot(start: Page) -> None:
     for name in PICTURES:
         start.click(f"[data-begin={name}]")
         in_phase(start, "running")
-        if name == "drive":  # by hand
+        if name == "drive":  # driven by hand
             start.keyboard.down("ArrowUp")
         hears(start, lambda: moves(start), "it moves")
         start.keyboard.up("ArrowUp")
@@ -91,26 +91,26 @@ def test_what_comes_late_leaves_a_run_alone(pages: Pages) -> None:
     page = pages.blank()
     fetched: list[str] = []
     page.on("request", lambda request: fetched.append(request.url))
-    held: list[Route] = []
+    held_routes: list[Route] = []
     for name in ("tiniscript.zip", "lessons.zip"):
-        page.route(f"**/{name}", lambda route: held.append(route))
+        page.route(f"**/{name}", lambda route: held_routes.append(route))
     page.goto(pages.address)
     page.click("[data-begin=dance]")
     page.locator("#doing", has_text="The compiler is still working").wait_for()
-    hears(page, lambda: held, "the compiler is asked for")
+    hears(page, lambda: held_routes, "the compiler is asked for")
     assert not any("/blocks-" in url for url in fetched)
-    held.pop().continue_()
+    held_routes.pop().continue_()
     in_phase(page, "running")
-    shown(page)
+    wait_for_blocks(page)
     assert any("/blocks-" in url for url in fetched)
     page.click("#home")
     page.click("#start_lessons")
-    hears(page, lambda: held, "the lessons are asked for")
+    hears(page, lambda: held_routes, "the lessons are asked for")
     assert not page.locator("#lesson_hint").is_visible()
     page.click("#home")
     page.click("[data-begin=obstacle]")
     in_phase(page, "running")
-    held.pop().continue_()
+    held_routes.pop().continue_()
     page.locator("#lesson_page[data-lesson]").wait_for(state="attached")
     assert page.get_attribute("html", "data-phase") == "running"
     assert page.input_value("#world") == "obstacles"
@@ -119,16 +119,16 @@ def test_what_comes_late_leaves_a_run_alone(pages: Pages) -> None:
 
 
 def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> None:
-    """Not before the texts come; and who gets no compiler is told so beside the robot."""
+    """Nothing is shown before the texts arrive; a missing compiler is reported beside the robot."""
     page = pages.blank()
-    held: list[Route] = []
-    page.route("**/texts.*.json", lambda route: held.append(route))
+    held_routes: list[Route] = []
+    page.route("**/texts.*.json", lambda route: held_routes.append(route))
     page.route("**/tiniscript.zip", lambda route: route.abort())
     page.goto(pages.address, wait_until="domcontentloaded")
-    hears(page, lambda: held, "the texts are asked for")
+    hears(page, lambda: held_routes, "the texts are asked for")
     locator = page.locator("header :is(button, select):visible")
     assert locator.all_inner_texts() == ["STOP"]
-    held[0].continue_()
+    held_routes[0].continue_()
     page.locator(START).wait_for(state="attached")
     assert locator.count() > 3
     page.click("[data-begin=dance]")
@@ -165,12 +165,12 @@ def test_the_address_says_which_screen_is_seen(start: Page) -> None:
 @drawn
 def test_a_link_opens_its_program_and_not_the_start(pages: Pages, start: Page) -> None:
     start.goto(f"{pages.address}#program={GOOD}")
-    noted(start, "This program came from a link.")
+    wait_for_note(start, "This program came from a link.")
     assert screen(start) == "program"
-    checked(start)
+    wait_until_checked(start)
     assert image(start) == compile("SI|F(9, 90)").image
     other = pages.visit(f"{pages.address}#program={GOOD[:-8]}")
-    noted(other, "The link is incomplete")
+    wait_for_note(other, "The link is incomplete")
     assert screen(other) == "program"
 
 
@@ -183,7 +183,7 @@ NO_MARKS = """() => {
 
 
 def words_of(name: Locator) -> Any:
-    """Return where a name is, without its edge, which its picture touches, and round corners."""
+    """Return the box of a name without the rounded border that its picture touches."""
     name.scroll_into_view_if_needed()
     box = name.evaluate("e => e.getBoundingClientRect().toJSON()")
     left, top, width, height = (box[side] for side in ("x", "y", "width", "height"))
@@ -192,7 +192,7 @@ def words_of(name: Locator) -> Any:
 
 @pytest.mark.long
 def test_no_name_of_a_picture_is_covered(pages: Pages) -> None:
-    """It looks the same without the mark that plays it."""
+    """The mark for playing does not change its look."""
     page = pages.open("start", viewport={"width": 1366, "height": 768})
     names = page.locator("#pictures span")
     shots_by_size: dict[tuple[str, int, int], list[bytes]] = {}
@@ -226,7 +226,7 @@ def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:
     start.click("[data-begin=square]")
     start.click("#home")
     rows.click()
-    checked(start)
+    wait_until_checked(start)
     assert screen(start) == "program"
     assert start.evaluate("document.documentElement.dataset.phase") != "running"
     assert image(start) == compile("SI|LOOP(2)\nF(1, 80)\nBEEP(0.1, 440)\nEND_LOOP").image
@@ -270,13 +270,13 @@ def test_a_new_program_finds_the_robot_at_its_start(start: Page) -> None:
     """Neither a way on the floor nor a crash is of the program before."""
     start.click("[data-begin=obstacle]")
     start.locator("#values dd").first.filter(has_text="1.").wait_for()
-    before = start.locator("#arena").screenshot()
+    screenshot_before = start.locator("#arena").screenshot()
     start.click("#bar_new")
     start.wait_for_function("document.documentElement.dataset.phase === 'off'")
     assert set(start.locator("#values dd").all_inner_texts()) == {"–"}
     start.evaluate(SETTLED)
     fresh = start.locator("#arena").screenshot()
-    assert fresh != before
+    assert fresh != screenshot_before
     start.click("#erase_ways")
     start.evaluate(SETTLED)
     assert start.locator("#arena").screenshot() == fresh
@@ -286,14 +286,14 @@ def test_a_new_program_finds_the_robot_at_its_start(start: Page) -> None:
 def test_a_second_press_is_not_for_what_comes_to_the_place_of_the_first(start: Page) -> None:
     start.dblclick("#start_write")
     assert start.get_attribute("#side_real", "aria-pressed") == "false"
-    shown(start)
+    wait_for_blocks(start)
     start.click("#home")
     start.dblclick("[data-begin=dance]", position={"x": 40, "y": 100})
     assert screen(start) == "program"
     assert start.locator(".blocklyToolboxSelected").count() == 0
     in_phase(start, "running")
     start.click("#home")
-    start.dblclick("#start_write")  # and STOP is heard at once
+    start.dblclick("#start_write")  # STOP works immediately
     start.dblclick("#run")
     in_phase(start, "running")
     start.click("#stop")

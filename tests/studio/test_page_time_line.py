@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.page_robot import running, value
-from tests.support.studio import hears, in_phase, shown, speak, write
+from tests.support.studio import hears, in_phase, speak, wait_for_blocks, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -35,7 +35,7 @@ MARKED = """() => {
 COUNT = "SI|X = 0;\nLOOP(3);\nX = X + 1;\nSHOW(X);\nF(0.5, 60);\nEND_LOOP"
 
 
-def begun(page: Page, text: str) -> None:
+def start_run(page: Page, text: str) -> None:
     write(page, text)
     page.click("#run")
 
@@ -50,7 +50,7 @@ def seconds(page: Page) -> float:
 
 @drawn
 def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
-    begun(page, COUNT)
+    start_run(page, COUNT)
     in_phase(page, "ended")
     page.focus("#time_at")
     end_s, pose = seconds(page), page.locator("#where").text_content()
@@ -77,7 +77,7 @@ def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
 def test_what_runs_stands_still_while_somebody_looks_back_and_goes_on_from_now(
     page: Page, button: str
 ) -> None:
-    begun(page, "SI|X = 0;\nLOOP(999);\nX = X + 1;\nSHOW(X);\nF(0.3, 60);\nEND_LOOP")
+    start_run(page, "SI|X = 0;\nLOOP(999);\nX = X + 1;\nSHOW(X);\nF(0.3, 60);\nEND_LOOP")
     in_phase(page, "running")
     page.locator("#trace", has_text="SHOW 3").wait_for(state="attached")
     page.focus("#time_at")
@@ -88,13 +88,14 @@ def test_what_runs_stands_still_while_somebody_looks_back_and_goes_on_from_now(
     assert running(page) == "F(0.3, 60)"
     page.click(f"#{button}")
     page.locator("#doing", has_not_text="Looking back").wait_for()
-    assert value(page, "X") != "1" and value(page, "SHOW(X)") != "1"  # it may run meanwhile
+    # The program may run meanwhile.
+    assert value(page, "X") != "1" and value(page, "SHOW(X)") != "1"
     in_phase(page, {"pause": "running", "step": "paused", "stop": "ended"}[button])
 
 
 @drawn
 def test_with_shift_each_part_that_has_run_is_seen(page: Page) -> None:
-    begun(page, "SI|F(0.3, 60);\nW(0.3);\nB(0.3, 60)")
+    start_run(page, "SI|F(0.3, 60);\nW(0.3);\nB(0.3, 60)")
     in_phase(page, "ended")
     page.focus("#time_at")
     page.keyboard.press("Home")
@@ -107,11 +108,11 @@ def test_with_shift_each_part_that_has_run_is_seen(page: Page) -> None:
 
 @drawn
 def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
-    begun(page, COUNT)
+    start_run(page, COUNT)
     in_phase(page, "ended")
     page.focus("#time_at")
     page.keyboard.press("Home")
-    begun(page, "SI|W(0.4)")
+    start_run(page, "SI|W(0.4)")
     page.locator("#trace", has_text="DONE", has_not_text="SHOW").wait_for(state="attached")
     in_phase(page, "ended")
     assert doing(page) == "It has ended."
@@ -121,7 +122,7 @@ def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
 
 @drawn
 def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page) -> None:
-    begun(page, "SI|NEAR = 30;\nF(1, 60) UNTIL(DISTANCE < NEAR)")
+    start_run(page, "SI|NEAR = 30;\nF(1, 60) UNTIL(DISTANCE < NEAR)")
     in_phase(page, "ended")
     page.focus("#time_at")
     page.keyboard.press("Home")
@@ -130,15 +131,15 @@ def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page)
     assert values[0].startswith("DISTANCE ") and values[1:] == ["NEAR 30"]
 
 
-# What only who sees text is told: a word of the language, or a line by its number.
+# Texts for users of text only: a word of the language, or a line number.
 CODE = r"\b[A-Z]{2,}\b|\b[FWT]\(|[Ll](ine|ínea|inha) \d"
 
 
 @drawn
 def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> None:
-    """And whose motors they were. Nobody has to ask at each place."""
+    """It also names the task that had the motors. No extra click is needed at each place."""
     task = "LOOP(3);\nIF(DISTANCE > 3);\nF(0.4, 60);\nENDIF;\nW(0.1);\nEND_LOOP"
-    begun(page, f"SI|TASK;\n{task};\nEND_TASK;\nW(2)")
+    start_run(page, f"SI|TASK;\n{task};\nEND_TASK;\nW(2)")
     in_phase(page, "ended")
     assert page.locator("#why").is_hidden()
     page.focus("#time_at")
@@ -148,9 +149,9 @@ def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> Non
     page.click("#why")
     page.focus("#time_at")
     read = set()
-    asked = r"Line 3 asks DISTANCE > 3\. DISTANCE was ([\d.]+)\. The answer was yes\."
+    asked_text = r"Line 3 asks DISTANCE > 3\. DISTANCE was ([\d.]+)\. The answer was yes\."
     for _ in range(5):
-        if match := re.search(asked, doing(page)):
+        if match := re.search(asked_text, doing(page)):
             assert doing(page).endswith("The task on line 1 was driving the motors."), doing(page)
             read.add(match[1])
         page.keyboard.press("ArrowRight")
@@ -163,14 +164,16 @@ def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> Non
 @drawn
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_who_sees_blocks_is_told_of_blocks(page: Page, language: str) -> None:
-    """At each moment of a run: no code, and no line; who sees text is told of that."""
+    """At each moment of a run: no code and no line; users of text are told about text."""
     loop = "LOOP(3)\nIF(DISTANCE > 3)\nF(0.4, 60) UNTIL(DISTANCE < 2)\nENDIF\nW(0.1)\nEND_LOOP"
-    begun(page, f"SI|WHEN(DISTANCE > 3)\n{loop}\nEND_WHEN\nW(2)\nSHOW(1 / (DISTANCE - DISTANCE))")
+    start_run(
+        page, f"SI|WHEN(DISTANCE > 3)\n{loop}\nEND_WHEN\nW(2)\nSHOW(1 / (DISTANCE - DISTANCE))"
+    )
     in_phase(page, "ended")
     speak(page, language)
     assert re.search(CODE, doing(page))
     page.click("#view_blocks")
-    shown(page)
+    wait_for_blocks(page)
     page.focus("#time_at")
     page.keyboard.press("Home")
     page.click("#why")
@@ -191,7 +194,7 @@ def test_who_sees_blocks_is_told_of_blocks(page: Page, language: str) -> None:
 def test_a_when_that_begins_is_a_mark(page: Page) -> None:
     for begins_s, is_marked in ((0.5, True), (90, False)):
         body = "W(0.3);\nW(9);\nEND_WHEN;\nSHOW(1);\nW(1.5);\nSHOW(2)"
-        begun(page, f"SI|WHEN(TIME > {begins_s});\n{body}")
+        start_run(page, f"SI|WHEN(TIME > {begins_s});\n{body}")
         page.locator("#trace", has_text="SHOW 2").wait_for(state="attached")
         page.click("#stop")
         in_phase(page, "ended")

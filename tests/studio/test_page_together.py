@@ -13,7 +13,7 @@ from tests.support.class_pages import (
     enters,
     goes_to,
     has,
-    joined,
+    join_class,
     lines,
     teaches,
     types,
@@ -22,14 +22,22 @@ from tests.support.class_pages import (
 from tests.support.page_link import events
 from tests.support.page_robot import wait_for_nothing_running, wait_for_running
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import Class, Pages, checked, drives, image, noted, write
+from tests.support.studio import (
+    Class,
+    Pages,
+    drives,
+    image,
+    wait_for_note,
+    wait_until_checked,
+    write,
+)
 from tests.support.waiting import until
 from tiniscript import compile, robots
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Dialog, Page
 
-pytestmark = pytest.mark.usefixtures("unhurried")
+pytestmark = pytest.mark.usefixtures("no_page_timeouts")
 drawn = pytest.mark.sampled(of="details of groups", keep=2)
 
 PROGRAM = "F(1, 80);\nLOOP(3);\n  B(1, 40);\nEND_LOOP;\nS;\n"
@@ -49,24 +57,24 @@ NOTES_WHEN = """(part) => { const root = document.querySelector('#editor').shado
 
 
 @pytest.fixture(scope="module")
-def taught(browser: Browser) -> Iterator[Class]:
+def shared_class(browser: Browser) -> Iterator[Class]:
     with class_of_many() as taught_class:
         yield taught_class
 
 
 @pytest.fixture(scope="module")
-def pages(browser: Browser, taught: Class) -> Iterator[Pages]:
-    opened_pages = Pages(browser, taught.server.address)
+def pages(browser: Browser, shared_class: Class) -> Iterator[Pages]:
+    opened_pages = Pages(browser, shared_class.server.address)
     yield opened_pages
     opened_pages.close()
     assert {"ERR_INTERNET_DISCONNECTED" in error for error in opened_pages.wrong} <= {True}
 
 
 @pytest.fixture(scope="module")
-def two(pages: Pages, taught: Class) -> tuple[Page, Page]:
-    ana = joined(pages, taught, "Ana")
+def two(pages: Pages, shared_class: Class) -> tuple[Page, Page]:
+    ana = join_class(pages, shared_class, "Ana")
     write(ana, PROGRAM)
-    luz = joined(pages, taught, "Luz")
+    luz = join_class(pages, shared_class, "Luz")
     for page in (ana, luz):
         enters(page)
     return ana, luz
@@ -79,7 +87,7 @@ def program_of(taught: Class) -> str:
 
 
 def begins(two: tuple[Page, Page]) -> None:
-    """Let both have the program, and no caret in it."""
+    """Let both pages show the program without a caret in it."""
     ana, luz = two
     write(ana, PROGRAM)
     ana.click("#side_class")
@@ -92,7 +100,7 @@ def test_both_type_at_once_and_have_the_same_program(two: tuple[Page, Page]) -> 
     ana, luz = two
     begins(two)
     goes_to(ana, "F(1, 80)")
-    types(ana, "\nBEEP(1, 440)")  # its line is hers until she leaves it
+    types(ana, "\nBEEP(1, 440)")  # her line is locked until she leaves it
     goes_to(luz, "S;")
     types(luz, "\nw(2)\n")
     has(ana, "F(1, 80);", "BEEP(1, 440)", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(2);")
@@ -102,7 +110,7 @@ def test_both_type_at_once_and_have_the_same_program(two: tuple[Page, Page]) -> 
     for page in two:
         page.locator(".cm-content").evaluate("(it) => it.blur()")
         has(page, *both)
-        checked(page)
+        wait_until_checked(page)
         until(lambda page=page: image(page) == compile("".join(both)).image, "compiled")  # type: ignore[misc]
 
 
@@ -149,7 +157,7 @@ def test_undo_leaves_what_another_one_has_changed_since(two: tuple[Page, Page]) 
         types(page, text)
         has(ana, "F(1, 80);", "LOOP(3);", f"B(1, {text[:2]});", "END_LOOP;", "S;")
     goes_to(ana, "S;")
-    types(ana, "9")  # half typed, and taken back as such
+    types(ana, "9")  # half typed, and undone as such
     ana.keyboard.press("Control+z")
     has(ana, "F(1, 80);", "LOOP(3);", "B(1, 70);", "END_LOOP;", "S;")
     ana.keyboard.press("Control+z")
@@ -185,7 +193,7 @@ def test_who_loads_the_page_again_is_in_the_group_with_all(two: tuple[Page, Page
     ana, luz = two
     begins(two)
     goes_to(luz, "F(1, 80)")
-    types(luz, "\nBEEP(1, 4")  # not finished
+    types(luz, "\nBEEP(1, 4")  # the line is unfinished
     goes_to(ana, "S;")
     types(ana, "\nW(3)\n")
     has(luz, "F(1, 80);", "BEEP(1, 4", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(3);")
@@ -212,12 +220,12 @@ def test_a_broken_network_loses_nothing(two: tuple[Page, Page]) -> None:
 
 
 def test_each_drives_and_each_stops_the_robot_of_the_group(
-    two: tuple[Page, Page], taught: Class
+    two: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = two
     begins(two)
     with PtyRobot(robots.load("tinibot").kit) as robot:
-        taught.room.teach({"do": "class_robot", "port": robot.port, "gives": True})
+        shared_class.room.teach({"do": "class_robot", "port": robot.port, "gives": True})
         for page in two:
             page.click("#side_real")
         ana.click("[data-text=class_ask]")
@@ -232,17 +240,19 @@ def test_each_drives_and_each_stops_the_robot_of_the_group(
         drives(luz, robot)
         ana.keyboard.press("Escape")
         until(lambda: not robot.moves, "the robot stands")
-        taught.room.teach({"do": "class_robot", "port": robot.port, "gives": False})
+        shared_class.room.teach({"do": "class_robot", "port": robot.port, "gives": False})
         for page in two:
             page.locator("html:not([data-robot=connected])").wait_for(state="attached")
 
 
-def test_all_of_a_group_see_what_its_robot_does(two: tuple[Page, Page], taught: Class) -> None:
+def test_all_of_a_group_see_what_its_robot_does(
+    two: tuple[Page, Page], shared_class: Class
+) -> None:
     ana, luz = two
     begins(two)
     rows = ("SPEED = 5;", "SHOW(SPEED);", "F(3, 80);", "SHOW(SPEED + 1);", "R(3, 60);")
     with PtyRobot(robots.load("tinibot").kit) as robot:
-        taught.room.teach({"do": "class_robot", "port": robot.port, "gives": True})
+        shared_class.room.teach({"do": "class_robot", "port": robot.port, "gives": True})
         for page in two:
             page.click("#side_real")
         ana.click("[data-text=class_ask]")
@@ -251,7 +261,7 @@ def test_all_of_a_group_see_what_its_robot_does(two: tuple[Page, Page], taught: 
         ana.locator(".cm-content").evaluate("(it) => it.blur()")
         for page in two:
             has(page, *rows)
-            checked(page)
+            wait_until_checked(page)
         ana.click("#link_upload")
         for row in ("F(3, 80)", "R(3, 60)"):
             for page in two:
@@ -272,7 +282,7 @@ def test_all_of_a_group_see_what_its_robot_does(two: tuple[Page, Page], taught: 
         ana.click("#link_upload")
         wait_for_running(luz, "F(3, 80)")
         assert "7" not in luz.locator("#link_shown").inner_text()
-        taught.room.teach({"do": "class_robot", "port": robot.port, "gives": False})
+        shared_class.room.teach({"do": "class_robot", "port": robot.port, "gives": False})
         for page in two:
             wait_for_nothing_running(page)
 
@@ -282,23 +292,23 @@ def test_another_program_is_the_group_s_only_if_somebody_wants_that(
 ) -> None:
     ana, luz = two
     begins(two)
-    asked: list[str] = []
+    questions: list[str] = []
 
     def answers(dialog: Dialog) -> None:
-        asked.append(dialog.message)
-        if len(asked) == 1:
+        questions.append(dialog.message)
+        if len(questions) == 1:
             dialog.dismiss()
         else:
             dialog.accept()
 
     ana.on("dialog", answers)
     ana.click("#bar_new")
-    until(lambda: len(asked) == 1, "it asks")
+    until(lambda: len(questions) == 1, "it asks")
     has(ana, *ROWS)
     ana.click("#bar_new")
     has(luz)
     has(ana)
-    assert asked == ["This replaces the program for your whole group. Replace it?"] * 2
+    assert questions == ["This replaces the program for your whole group. Replace it?"] * 2
     ana.remove_listener("dialog", answers)
     ana.locator(".cm-content").focus()
     ana.keyboard.press("Control+z")
@@ -307,27 +317,29 @@ def test_another_program_is_the_group_s_only_if_somebody_wants_that(
 
 
 def test_work_that_is_given_back_waits_for_who_does_not_want_it_in_the_group(
-    two: tuple[Page, Page], taught: Class
+    two: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = two
     begins(two)
-    taught.room.teach({"do": "class_bring", "name": "Lia", "text": "F(1, 77)", "robot": "",
+    shared_class.room.teach({"do": "class_bring", "name": "Lia", "text": "F(1, 77)", "robot": "",
                        "lessons": []})  # fmt: skip
-    state = taught.room.teach({"do": "class"})
+    state = shared_class.room.teach({"do": "class"})
     [kept] = state["kept"]
     number = next(pupil["number"] for pupil in state["pupils"] if pupil["name"] == "Luz")
-    with luz.expect_event("dialog") as asked:
+    with luz.expect_event("dialog") as asked_event_info:
         luz.once("dialog", lambda dialog: dialog.dismiss())
-        taught.room.teach({"do": "class_give_back", "key": kept["key"], "pupil": number})
-    assert "whole group" in asked.value.message
-    luz.evaluate(HEARD_TWICE)  # and is asked no more
+        shared_class.room.teach({"do": "class_give_back", "key": kept["key"], "pupil": number})
+    assert "whole group" in asked_event_info.value.message
+    luz.evaluate(HEARD_TWICE)  # the page gets no second question
     for page in two:
         has(page, *ROWS)
-    assert [work["key"] for work in taught.room.teach({"do": "class"})["kept"]] == [kept["key"]]
+    assert [work["key"] for work in shared_class.room.teach({"do": "class"})["kept"]] == [
+        kept["key"]
+    ]
     luz.click("#side_class")
     luz.click("[data-text=group_leave]")
     has(luz, "F(1, 77)")
-    until(lambda: not taught.room.teach({"do": "class"})["kept"], "the class has heard of it")
+    until(lambda: not shared_class.room.teach({"do": "class"})["kept"], "the class has heard of it")
     has(ana, *ROWS)
     luz.locator("#class_group button", has_text="Red (Ana)").click()
     luz.locator("html[data-group=in]").wait_for(state="attached")
@@ -335,7 +347,7 @@ def test_work_that_is_given_back_waits_for_who_does_not_want_it_in_the_group(
 
 
 def test_a_change_that_cannot_be_made_any_more_is_told_in_a_sentence(
-    two: tuple[Page, Page], taught: Class
+    two: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = two
     begins(two)
@@ -348,15 +360,15 @@ def test_a_change_that_cannot_be_made_any_more_is_told_in_a_sentence(
     goes_to(luz, "B(1, 40)")
     types(luz, "\nBEEP(1, 440)\n")
     luz.locator(".cm-content").evaluate("(it) => it.blur()")
-    until(lambda: "BEEP" in program_of(taught), "the class has hers")
+    until(lambda: "BEEP" in program_of(shared_class), "the class has hers")
     ana.context.set_offline(False)
-    noted(ana, "Somebody else changed that part first, so your last change is not there.")
+    wait_for_note(ana, "Somebody else changed that part first, so your last change is not there.")
     for page in two:
         has(page, "F(1, 80);", "LOOP(3);", "B(1, 40);", "BEEP(1, 440);", "END_LOOP;", "S;")
 
 
 def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_seconds(
-    two: tuple[Page, Page], taught: Class
+    two: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = two
     begins(two)
@@ -368,7 +380,7 @@ def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_secon
     goes_to(luz, "S;")
     types(luz, "\nW(6)")
     luz.keyboard.press("Enter")
-    until(lambda: "W(6)" in program_of(taught), "the class has it")
+    until(lambda: "W(6)" in program_of(shared_class), "the class has it")
     there_ms = 1000 * time.time()
     until(lambda: ana.evaluate("window.seen_ms !== undefined"), "it comes")
     assert ana.evaluate("window.seen_ms") - there_ms >= 500
@@ -382,14 +394,14 @@ def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_secon
 def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) -> None:
     ana, luz = two
     begins(two)
-    luz.click("#side_class")  # it was loaded again
+    luz.click("#side_class")  # the page was reloaded
     luz.click("[data-text=group_leave]")
     luz.locator("[data-text=group_join]").wait_for()
     goes_to(ana, "S;")
     types(ana, "\nW(8)\n")
     luz.locator("#class_group button", has_text="Red (Ana)").wait_for()
     assert "W(8)" not in "".join(lines(luz))
-    luz.reload()  # nobody is in a group again unasked
+    luz.reload()  # pages do not rejoin a group by themselves
     luz.click("#side_class")
     luz.locator("#class_group button", has_text="Red (Ana)").wait_for()
     assert luz.locator("html[data-group=in]").count() == 0
@@ -400,12 +412,12 @@ def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) 
 
 @drawn
 def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
-    two: tuple[Page, Page], taught: Class, browser: Browser
+    two: tuple[Page, Page], shared_class: Class, browser: Browser
 ) -> None:
     ana, luz = two
     begins(two)
-    teacher_pages = Pages(browser, taught.server.address)
-    teacher = teaches(teacher_pages, taught)
+    teacher_pages = Pages(browser, shared_class.server.address)
+    teacher = teaches(teacher_pages, shared_class)
     tile = teacher.locator("#wall li").filter(has_text="Red")
     tile.filter(has_text="Ana, Luz").wait_for()
     assert teacher.locator("#wall li").filter(has_text="Ana").count() == 1
@@ -419,17 +431,17 @@ def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
     luz.keyboard.press("ArrowDown")
     program.filter(has_text="B(1, 66)").wait_for()
     teacher.locator("#big_pupil pre").last.filter(has_text="Luz: → B(1, 66)").wait_for()
-    assert ana.locator("#class_mates").inner_text() == "Luz"  # who looks is not seen
+    assert ana.locator("#class_mates").inner_text() == "Luz"  # watching teachers are not listed
     teacher_pages.close()
 
 
 def test_the_teacher_takes_part_and_leaves(
-    two: tuple[Page, Page], taught: Class, browser: Browser
+    two: tuple[Page, Page], shared_class: Class, browser: Browser
 ) -> None:
     ana, luz = two
     begins(two)
-    teacher_pages = Pages(browser, taught.server.address)
-    teacher = teaches(teacher_pages, taught)
+    teacher_pages = Pages(browser, shared_class.server.address)
+    teacher = teaches(teacher_pages, shared_class)
     tile = teacher.locator("#wall li").filter(has_text="Red")
     tile.hover()
     tile.locator("button.join").click()

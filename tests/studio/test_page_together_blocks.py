@@ -1,5 +1,5 @@
-"""Pupils of a group in browsers, one of them with blocks: what is done to blocks is a change of
-these blocks alone.
+"""Pupils of a group in browsers, one of them with blocks: an action on blocks changes these blocks
+alone.
 
 `python -m tests.studio.test_page_together_blocks 200` lets four make so many changes, two with
 blocks and two with text; a folder after it gets a picture of each page.
@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support import studio
-from tests.support.class_pages import class_of_many, enters, goes_to, has, joined, lines, types
+from tests.support.class_pages import class_of_many, enters, goes_to, has, join_class, lines, types
 from tests.support.page_blocks import PROGRAM as PROGRAM_BLOCKS
 from tests.support.page_blocks import block, box_of, drag
-from tests.support.studio import Class, Pages, image, shown, write
+from tests.support.studio import Class, Pages, image, wait_for_blocks, write
 from tests.support.waiting import until
 from tiniscript import compile
 
@@ -38,29 +38,29 @@ ROWS = [row.strip() for row in PROGRAM.splitlines()]
 
 
 @pytest.fixture(scope="module")
-def taught(browser: Browser) -> Iterator[Class]:
+def shared_class(browser: Browser) -> Iterator[Class]:
     with class_of_many() as taught_class:
         yield taught_class
 
 
 @pytest.fixture(scope="module")
-def pages(browser: Browser, taught: Class) -> Iterator[Pages]:
-    opened_pages = Pages(browser, taught.server.address)
+def pages(browser: Browser, shared_class: Class) -> Iterator[Pages]:
+    opened_pages = Pages(browser, shared_class.server.address)
     yield opened_pages
     opened_pages.close()
     assert not opened_pages.wrong
 
 
 @pytest.fixture(scope="module")
-def both(pages: Pages, taught: Class) -> tuple[Page, Page]:
-    return group_of(pages, taught)
+def both(pages: Pages, shared_class: Class) -> tuple[Page, Page]:
+    return group_of(pages, shared_class)
 
 
 def group_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
     """Ana has blocks, Luz has the text."""
-    ana = joined(pages, taught, "Ana")
+    ana = join_class(pages, taught, "Ana")
     write(ana, PROGRAM)
-    luz = joined(pages, taught, "Luz")
+    luz = join_class(pages, taught, "Luz")
     for page in (ana, luz):
         enters(page)
     ana.set_viewport_size({"width": 1366, "height": 768})
@@ -70,12 +70,12 @@ def group_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
 
 def others_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
     """Two more of the group: Teo has blocks, Eva the text. It is full."""
-    teo, eva = (joined(pages, taught, name) for name in ("Teo", "Eva"))
+    teo, eva = (join_class(pages, taught, name) for name in ("Teo", "Eva"))
     for page in (teo, eva):
         enters(page)
     teo.set_viewport_size({"width": 1366, "height": 768})
     teo.click("#view_blocks")
-    shown(teo)
+    wait_for_blocks(teo)
     return teo, eva
 
 
@@ -87,7 +87,7 @@ def two(both: tuple[Page, Page]) -> tuple[Page, Page]:
     luz.locator(".cm-content").evaluate("(it) => it.blur()")
     has(luz, *ROWS)
     until(lambda: text_of(ana) == PROGRAM, "Ana has the program")
-    shown(ana)
+    wait_for_blocks(ana)
     return both
 
 
@@ -110,7 +110,7 @@ def ends(two: tuple[Page, Page], *rows: str) -> None:
     luz.locator(".cm-content").evaluate("(it) => it.blur()")
     has(luz, *rows)
     until(lambda: text_of(ana) == text_of(luz), "both have the same")
-    shown(ana)
+    wait_for_blocks(ana)
     for page in two:
         page.locator("html[data-state=checked]").wait_for(state="attached")
         until(lambda page=page: image(page) == compile(text_of(luz)).image, "compiled")  # type: ignore[misc]
@@ -125,7 +125,7 @@ def changes_power(page: Page, row: str) -> None:
     page.keyboard.press("ArrowDown")
 
 
-def changed(*pairs: tuple[str, str]) -> list[str]:
+def change_rows(*pairs: tuple[str, str]) -> list[str]:
     return [dict(pairs).get(row, row) for row in ROWS]
 
 
@@ -133,7 +133,7 @@ def test_a_changed_field_is_a_change_of_its_line_alone(two: tuple[Page, Page]) -
     ana, _ = two
     field(ana, "back")
     types(ana, "7\n")
-    ends(two, *changed(("B(1, 40);", "B(7, 40);")))
+    ends(two, *change_rows(("B(1, 40);", "B(7, 40);")))
 
 
 @drawn
@@ -148,7 +148,7 @@ def test_a_half_typed_field_is_none_and_stays_open(two: tuple[Page, Page]) -> No
     types(ana, "5")  # the field is where it was
     assert "B(1, 40);" in text_of(luz)
     ana.keyboard.press("Enter")
-    ends(two, *changed(("B(1, 40);", "B(65, 40);")), "W(2);")
+    ends(two, *change_rows(("B(1, 40);", "B(65, 40);")), "W(2);")
     block(ana, "wait").wait_for()
 
 
@@ -176,7 +176,7 @@ def test_of_two_of_one_block_the_later_one_wins_whole(two: tuple[Page, Page]) ->
     changes_power(luz, "B(1, 40)")
     until(lambda: "B(1, 95);" in text_of(ana), "the others' value arrives")
     ana.keyboard.press("Enter")
-    ends(two, *changed(("B(1, 40);", "B(6, 40);")))
+    ends(two, *change_rows(("B(1, 40);", "B(6, 40);")))
 
 
 @drawn
@@ -186,7 +186,7 @@ def test_what_hangs_on_nothing_is_on_the_own_page_alone(two: tuple[Page, Page]) 
     goes_to(luz, "S;")
     types(luz, "\nw(2)\n")
     until(lambda: "W(2);" in text_of(ana), "the others' line arrives")
-    shown(ana)
+    wait_for_blocks(ana)
     assert block(ana, "left").count() == 1
     assert "///" in text_of(ana)
     assert "///" not in text_of(luz)
@@ -207,21 +207,21 @@ def test_undo_in_blocks_takes_back_the_own_change(two: tuple[Page, Page]) -> Non
     ana, luz = two
     field(ana, "back")
     types(ana, "7\n")
-    has(luz, *changed(("B(1, 40);", "B(7, 40);")))
+    has(luz, *change_rows(("B(1, 40);", "B(7, 40);")))
     goes_to(luz, "S;")
     types(luz, "\nw(2)\n")
     until(lambda: "W(2);" in text_of(ana), "the others' line arrives")
-    shown(ana)
+    wait_for_blocks(ana)
     ana.locator("#speed").focus()
     ana.keyboard.press("Control+z")
     ends(two, *ROWS, "W(2);")
     ana.click("#redo")
-    ends(two, *changed(("B(1, 40);", "B(7, 40);")), "W(2);")
+    ends(two, *change_rows(("B(1, 40);", "B(7, 40);")), "W(2);")
     changes_power(luz, "B(7, 40)")
     until(lambda: "B(7, 95);" in text_of(ana), "the others' value arrives")
-    shown(ana)
-    ana.click("#undo")  # what was his is another one's now
-    ends(two, *changed(("B(1, 40);", "B(7, 95);")), "W(2);")
+    wait_for_blocks(ana)
+    ana.click("#undo")  # his block has a new owner
+    ends(two, *change_rows(("B(1, 40);", "B(7, 95);")), "W(2);")
 
 
 @drawn
@@ -273,12 +273,13 @@ def random_change(page: Page, has_blocks: bool, rng: Random) -> bool:
 
 
 def race(members: Sequence[Page], count: int, seed: int) -> None:
-    """Let all make so many changes of the program, and look at the end whether it is one; every
-    other one has blocks."""
+    """Let all members make changes, and check that they end with one program; every other one uses
+    blocks.
+    """
     with_blocks, with_text = members[::2], members[1::2]
     rng = Random(seed)
     change_count = tries = 0
-    while change_count < count:  # a click may come too late: others have changed what it was for
+    while change_count < count:  # a click may be late, after others have changed its target
         assert tries < 10 * count
         tries += 1
         page = rng.choice(members)
@@ -291,7 +292,7 @@ def race(members: Sequence[Page], count: int, seed: int) -> None:
         page.locator("html[data-state=checked]").wait_for(state="attached")
         until(lambda page=page: image(page) == compile(text).image, "compiled")  # type: ignore[misc]
     for page in with_blocks:
-        shown(page)
+        wait_for_blocks(page)
         block_count = page.locator(f"{PROGRAM_BLOCKS} .blocklyBlock").count()
         assert block_count >= len([row for row in text.splitlines() if row and "END_" not in row])
 
@@ -302,9 +303,9 @@ def test_both_end_with_the_same_program(two: tuple[Page, Page]) -> None:
 
 @pytest.mark.long
 def test_four_end_with_the_same_program(
-    two: tuple[Page, Page], pages: Pages, taught: Class
+    two: tuple[Page, Page], pages: Pages, shared_class: Class
 ) -> None:
-    more = others_of(pages, taught)
+    more = others_of(pages, shared_class)
     race((*two, *more), 16, 2)
     for page in more:
         page.click("[data-text=group_leave]")

@@ -6,15 +6,23 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.page_worlds import NO_BORDER, drag, draw_wall, put, saved, wait_for_status
-from tests.support.studio import Pages, checked, hears, image, in_phase, noted, write
+from tests.support.page_worlds import NO_BORDER, drag, draw_wall, put, save_world, wait_for_status
+from tests.support.studio import (
+    Pages,
+    hears,
+    image,
+    in_phase,
+    wait_for_note,
+    wait_until_checked,
+    write,
+)
 from tiniscript import compile
 from tiniscript.virtual.worlds import read
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-# As a browser does it whose storage is full: what was there stays there.
+# Simulates a full storage, which keeps its old content.
 FULL = """(full) => {
   const put = Storage.prototype.setItem;
   Storage.prototype.setItem = function (place, whole) {
@@ -38,13 +46,13 @@ PASTE = """(count) => {
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
 def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
-    """They come after this tab's own worlds before, and push none of them out."""
+    """They precede this tab's own undo steps, and remove none of them."""
 
     def opens(tab: Page, width_cm: int) -> None:
         name = f"w{width_cm}.toml"
         put(tab, NO_BORDER.replace(b"120.06", b"%d" % width_cm).replace(b"118", b"20"), name)
         wait_for_status(tab, f"Opened: {name}")
-        saved(tab)
+        save_world(tab)
 
     page = pages.open()
     page.locator("#world_draw:enabled").wait_for()
@@ -60,18 +68,18 @@ def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
             tab.select_option("#world_part", label="Robot")
             tab.locator("#arena").focus()
             tab.keyboard.press("ArrowRight")
-            saved(tab)
-    kept = "(store) => JSON.parse(window[store]['tiniscript.worlds_before'])"
+            save_world(tab)
+    kept_text = "(store) => JSON.parse(window[store]['tiniscript.worlds_before'])"
     widths = {
-        store: [read(world, "before").width_cm for world in other.evaluate(kept, store)]
+        store: [read(world, "before").width_cm for world in other.evaluate(kept_text, store)]
         for store in ("localStorage", "sessionStorage")
     }
     # The next tab finds those of both; this one has its own.
     assert widths == {"localStorage": [101, 100, 101], "sessionStorage": [101, 100]}
     newest = read(other.evaluate("localStorage['tiniscript.world']"), "newest")
-    theirs = read(other.evaluate(kept, "localStorage")[-1], "theirs")
+    theirs = read(other.evaluate(kept_text, "localStorage")[-1], "theirs")
     assert (newest.width_cm, newest.start.x_cm) == (102, 45)
-    assert theirs.start.x_cm == 45  # and no earlier step
+    assert theirs.start.x_cm == 45  # without any earlier step
 
 
 def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:
@@ -83,17 +91,17 @@ def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:
     draw_wall(page)
     other.locator("#world_draw:enabled").wait_for()
     other.click("#world_draw")
-    for count in (1, 2):  # the second change does not forget what the first one has found
+    for count in (1, 2):  # the second change does not forget the first one's findings
         other.click("#world_add_walls")
         drag(other, [(150, 30), (190, 60)])
         other.locator("#world_part option", has_text=f"Wall {count}").wait_for(state="attached")
-        assert len(saved(other).walls) == count
+        assert len(save_world(other).walls) == count
     other.click("#world_done")
     with page.expect_event("close"):
         page.close(run_before_unload=True)
-    kept = "(localStorage['tiniscript.versions'] ?? '').includes('SI|F(2, 10)')"
-    hears(other, lambda: other.evaluate(kept), "the closed tab has kept its program")
-    assert "B(2, 20)" in other.evaluate("localStorage['tiniscript.work']")  # for the next tab
+    kept_text = "(localStorage['tiniscript.versions'] ?? '').includes('SI|F(2, 10)')"
+    hears(other, lambda: other.evaluate(kept_text), "the closed tab has kept its program")
+    assert "B(2, 20)" in other.evaluate("localStorage['tiniscript.work']")  # kept for the next tab
     newest, before = other.evaluate(
         "[localStorage['tiniscript.world'], JSON.parse(localStorage['tiniscript.worlds_before'])]"
     )
@@ -115,7 +123,7 @@ def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Page
     page = pages.open(is_alone=True)
     page.evaluate(FULL, ["localStorage"])
     write(page, "SI|F(2, 20)")
-    noted(page, "This browser does not save anything for this page. Save")
+    wait_for_note(page, "This browser does not save anything for this page. Save")
     page.locator("#world_draw:enabled").wait_for()
     page.click("#world_draw")
     page.click("#world_add_walls")
@@ -124,10 +132,10 @@ def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Page
     assert "F(2, 20)" in page.evaluate("sessionStorage['tiniscript.work']")  # this tab has it
     page.context.add_init_script(REFUSED)
     page.reload()
-    checked(page)
+    wait_until_checked(page)
     page.click("#view_text")
     write(page, "SI|F(0.1, 80)")
-    noted(page, "This browser does not save anything for this page. Save")
+    wait_for_note(page, "This browser does not save anything for this page. Save")
     assert image(page) == compile("SI|F(0.1, 80)").image
     page.click("#run")
     in_phase(page, "ended")
@@ -146,7 +154,7 @@ def test_a_program_that_is_too_long_to_be_kept_says_so(page: Page) -> None:
             assert page.inner_text("#note") == ""
             page.click("#my_programs")
             page.click("#programs_close")
-        noted(page, "This program is too long for the browser to save. Save")
-        kept = page.evaluate("JSON.parse(localStorage['tiniscript.work']).text.length")
-        assert (kept > 400_000) == (count == 30_000)
+        wait_for_note(page, "This program is too long for the browser to save. Save")
+        kept_state = page.evaluate("JSON.parse(localStorage['tiniscript.work']).text.length")
+        assert (kept_state > 400_000) == (count == 30_000)
     write(page, "S")

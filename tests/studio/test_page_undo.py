@@ -1,4 +1,4 @@
-"""One undo for the program's text and the places of its blocks, whichever of them was changed."""
+"""A single undo for the program's text and the places of its blocks."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.support.page_blocks import PROGRAM, becomes, block, box_of, drag, start, text_of
-from tests.support.studio import SETTLED, Pages, hears, shown, speak, write
+from tests.support.studio import SETTLED, Pages, hears, speak, wait_for_blocks, write
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from playwright.sync_api import Page
 
-# What each stack says, in any order of its parts, and where it stands, from the program on.
+# The content of each stack, with its parts in any order, and its place relative to the program.
 STACKS = """all => {
   const boxes = all.map((each) => [each.textContent, each.querySelector('.blocklyPath')
     .getBoundingClientRect()]);
@@ -88,7 +88,7 @@ ACTS: tuple[Callable[[Page, random.Random], None], ...] = (_moves, _moves, _adds
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(12))
 def test_each_undo_brings_back_the_text_and_every_place(page: Page, seed: int) -> None:
-    """And each redo those after: also where only the text or only a place had changed."""
+    """Each redo does the same, even if only the text or a place had changed."""
     dice = random.Random(seed)
     page.select_option("#robot", "tinibot32")
     start(page, dice.choice(PROGRAMS), "usual")
@@ -114,17 +114,17 @@ def test_undo_moves_a_hat_back_and_keeps_it(page: Page) -> None:
     for begins in ("dragged", "written"):
         if begins == "written":
             start(page, whole)
-        before = state_of(page)
+        state_before = state_of(page)
         move(page, "each time", (520, 560))
-        after = state_of(page)
-        assert after[0] == whole and after != before
+        state_after = state_of(page)
+        assert state_after[0] == whole and state_after != state_before
         page.click("#undo")
-        wait_for_state(page, before)
+        wait_for_state(page, state_before)
         page.click("#redo")
-        wait_for_state(page, after)
+        wait_for_state(page, state_after)
         page.click("#view_text")
         page.locator(".cm-content").focus()
         page.keyboard.press("Control+z")
         page.click("#view_blocks")
-        shown(page)
-        assert state_of(page) == before
+        wait_for_blocks(page)
+        assert state_of(page) == state_before

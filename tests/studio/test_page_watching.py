@@ -1,4 +1,4 @@
-"""What is heard and seen of a run in the page: the buzzer, a crash, and what the pen has drawn."""
+"""Sounds and sights of a run on the page: the buzzer, a crash, and the pen's drawing."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from tests.support.noted_effects import NOTE_EFFECTS
-from tests.support.studio import Pages, checked, enter, in_phase, shown, write
+from tests.support.studio import Pages, enter, in_phase, wait_for_blocks, wait_until_checked, write
 from tests.support.waiting import until
 
 if TYPE_CHECKING:
@@ -37,16 +37,16 @@ window.AudioContext = class extends AudioContext {
 }"""
 CRASH = "F(9, 100)"  # into the box to the right
 WAY, WAY_BEFORE = "2f74c0", "bcd2ea"
-NEAR = 20  # of a color that is smoothed at its edges, or under a ray
+NEAR = 20  # tolerance for a color at smooth edges or under a ray
 
 
 def count(page: Page, color: str) -> int:
-    """Return how many pixels of the picture have about a color."""
+    """Return the number of pixels near a color in the picture."""
     picture = Image.open(BytesIO(page.locator("#arena").screenshot())).convert("RGB")
-    wanted = bytes.fromhex(color)
+    wanted_bytes = bytes.fromhex(color)
     pixels = zip(*(band.tobytes() for band in picture.split()), strict=True)
     return sum(
-        all(abs(one - other) < NEAR for one, other in zip(pixel, wanted, strict=True))
+        all(abs(one - other) < NEAR for one, other in zip(pixel, wanted_bytes, strict=True))
         for pixel in pixels
     )
 
@@ -55,8 +55,8 @@ def count(page: Page, color: str) -> int:
 def listening(page: Page) -> Page:
     """A page whose sound is noted, and in which no way is drawn."""
     if not page.evaluate("'heard' in window"):
-        page.reload()  # what has sounded before is not noted
-        checked(page)
+        page.reload()  # earlier sounds are not recorded
+        wait_until_checked(page)
         page.evaluate(NOTE_EFFECTS)
     page.evaluate("window.heard = []; window.shaken = window.started = 0")
     erase(page)
@@ -86,8 +86,8 @@ def test_the_buzzer_is_heard_unless_it_is_muted_or_there_is_none(listening: Page
     run(page, "BEEP(0.1, 330)")
     assert page.evaluate("window.heard") == [440, 880]
     page.reload()
-    checked(page)
-    assert page.get_attribute("#sound", "aria-pressed") == "false"  # it is remembered
+    wait_until_checked(page)
+    assert page.get_attribute("#sound", "aria-pressed") == "false"  # the choice is remembered
     page.click("#sound")
     page.evaluate("() => { window.AudioContext = function () { throw new DOMException('no'); }; }")
     run(page, "BEEP(0.1, 440); SHOW(7)")  # a computer without sound
@@ -114,11 +114,11 @@ def test_no_sound_is_open_at_rest(pages: Pages) -> None:
     page = pages.blank(is_alone=True)
     page.context.add_init_script(OPENED)
     enter(page, pages.address)
-    shown(page)
+    wait_for_blocks(page)
     assert page.evaluate("window.opened.length") == 0
     page.click("#view_text")
     for closings, program in enumerate(("F(1, 80)", "LOOP(3);BEEP(0.1, 440);W(4);END_LOOP")):
-        run(page, program)  # which makes the sound ready, before a picture waits for it
+        run(page, program)  # prepares the sound before a picture waits for it
         until(lambda: page.evaluate("window.opened[0].state") == "running", "sound")
         assert page.evaluate("window.opened.length") == 1
         assert page.evaluate("window.closings") == closings
@@ -146,19 +146,19 @@ def test_stop_and_pause_silence_it(listening: Page) -> None:
 @drawn
 def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page) -> None:
     page = listening
-    noted = "[window.heard.length, window.started, window.shaken]"
+    noted_text = "[window.heard.length, window.started, window.shaken]"
     page.evaluate(
         "() => { window.told = []; new MutationObserver(([row]) => window.told.push("
         "row.target.textContent)).observe(document.querySelector('#where'), {childList: true}); }"
     )
     run(page, CRASH)
-    assert page.evaluate(noted) == [1, 1, 1]
+    assert page.evaluate(noted_text) == [1, 1, 1]
     assert count(page, "ffd84d") > 20  # the star where it touches the box
     first, *_, last = page.evaluate("window.told")
     assert first.startswith("The robot has bumped into something. The robot is ")
     assert last.startswith("Collisions: 1. The robot is ") and last.endswith("to the right.")
     run(page, "W(1)")
-    assert page.evaluate(noted) == [1, 1, 1]
+    assert page.evaluate(noted_text) == [1, 1, 1]
 
 
 @drawn
@@ -218,9 +218,9 @@ def test_flags_points_and_stars_are_seen_and_heard(listening: Page) -> None:
     in_phase(page, "ended")
     assert page.locator("#score").inner_text() == "⚑ 2/2   230   ★★★"
     assert count(page, "2a9d6f") > 100  # the flags that were taken
-    heard = page.locator("#where").inner_text()
-    assert "Flags: 2 of 2. Points: 230. Stars: 3 of 3." in heard
-    assert "cm from the left and 50 cm from the bottom, and is facing to the right." in heard
+    heard_text = page.locator("#where").inner_text()
+    assert "Flags: 2 of 2. Points: 230. Stars: 3 of 3." in heard_text
+    assert "cm from the left and 50 cm from the bottom, and is facing to the right." in heard_text
     page.select_option("#world", "obstacles")
     assert not page.locator("#score").is_visible()
 

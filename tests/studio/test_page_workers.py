@@ -79,7 +79,7 @@ class _Handler(BaseHTTPRequestHandler):
 
 
 @contextmanager
-def hosted(port: int = 0) -> Iterator[serving.Server]:
+def serve_robots(port: int = 0) -> Iterator[serving.Server]:
     hosting = Hosting()
     try:
         with page_server.serves(serving.Server(serving.files(), port, hosting.answer)) as server:
@@ -111,7 +111,7 @@ def version() -> str:
 def leave_worker(
     context: BrowserContext, loot: Stranger, name: str, options: dict[str, str]
 ) -> int:
-    """Let a stranger's server leave its worker; return the port, which is free then."""
+    """Install the worker of another server; return its port, which is free afterwards."""
     evil = EVIL.replace("VERSION", version())
     evil = evil.replace("LOOT", f"http://{serving.HOST}:{loot.server_port}/")
     with page_server.serves(Stranger(0, {f"/{name}": evil.encode()})) as stranger:
@@ -138,13 +138,13 @@ def test_no_worker_of_a_stranger_hears_the_code(
 ) -> None:
     """Whatever it calls itself, and however long a browser may keep it."""
     port = leave_worker(context, loot, name, options)
-    with hosted(port) as server:
+    with serve_robots(port) as server:
         page = context.new_page()
         enter(page, server.entrance())
         check_own_worker(page, server)
         page.close()
         page = context.new_page()
-        enter(page, server.entrance())  # nothing that it has kept is shown later
+        enter(page, server.entrance())  # no stored answers are shown later
         check_own_worker(page, server)
         assert page.evaluate(CONTROLLED) == f"{server.address}{serving.WORKER_FILE}"
     assert loot.taken == []
@@ -153,7 +153,7 @@ def test_no_worker_of_a_stranger_hears_the_code(
 @pytest.mark.sampled(of="pages of their own", keep=2)
 def test_the_own_worker_stays(context: BrowserContext) -> None:
     """A page with a code is loaded once where the server's own worker is, or none."""
-    with hosted() as server:
+    with serve_robots() as server:
         loads: list[str] = []
         for _ in range(2):
             page = context.new_page()
@@ -166,7 +166,7 @@ def test_the_own_worker_stays(context: BrowserContext) -> None:
 
 def test_a_worker_that_does_not_go_gets_no_code(context: BrowserContext, loot: Stranger) -> None:
     port = leave_worker(context, loot, "evil.js", {})
-    with hosted(port) as server:
+    with serve_robots(port) as server:
         page = context.new_page()
         page.add_init_script("ServiceWorkerRegistration.prototype.unregister = async () => false;")
         entrance = server.entrance()

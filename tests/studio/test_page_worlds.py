@@ -12,10 +12,19 @@ from tests.support.page_worlds import (
     on_screen,
     put,
     read_start,
-    saved,
+    save_world,
     wait_for_status,
 )
-from tests.support.studio import SETTLED, Pages, checked, finger, in_phase, speak, turn, write
+from tests.support.studio import (
+    SETTLED,
+    Pages,
+    finger,
+    in_phase,
+    speak,
+    turn,
+    wait_until_checked,
+    write,
+)
 from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
@@ -37,7 +46,7 @@ def number(page: Page, key: str) -> float:
     return float(page.input_value(f"#world_{key}"))
 
 
-def chosen(page: Page) -> str:
+def read_chosen_world(page: Page) -> str:
     return page.locator("#world_part option:checked").inner_text()
 
 
@@ -49,22 +58,22 @@ def floor(page: Page) -> Page:
 
 
 def test_a_mouse_adds_moves_and_deletes(floor: Page) -> None:
-    shipped = worlds.load("obstacles")
+    shipped_world = worlds.load("obstacles")
     floor.click("#world_add_boxes")
     assert floor.locator("#world_add_boxes").get_attribute("aria-pressed") == "true"
     drag(floor, [(140, 60), (170, 80)])
-    assert chosen(floor) == "Box 7"
+    assert read_chosen_world(floor) == "Box 7"
     drag(floor, [(155, 70), (155, 110), (145, 120)])
-    world = saved(floor)
+    world = save_world(floor)
     corners = sorted((round(x), round(y)) for x, y in world.boxes[-1])
     assert all(abs(a - b) <= 1 for (a, _), b in zip(corners, (130, 130, 160, 160), strict=True))
-    assert world.boxes[:-1] == shipped.boxes
-    assert set(world.labels.values()) == {world.name}  # that of its file
+    assert world.boxes[:-1] == shipped_world.boxes
+    assert set(world.labels.values()) == {world.name}  # the name in its file
     floor.click("#world_delete")
-    assert saved(floor).boxes == shipped.boxes
+    assert save_world(floor).boxes == shipped_world.boxes
     floor.click("#world_undo")
     floor.click("#world_undo")  # the drag, too
-    corners = sorted((round(x), round(y)) for x, y in saved(floor).boxes[-1])
+    corners = sorted((round(x), round(y)) for x, y in save_world(floor).boxes[-1])
     assert all(abs(a - b) <= 1 for (a, _), b in zip(corners, (140, 140, 170, 170), strict=True))
     floor.click("#world_redo")
     floor.select_option("#world_part", label="Box 7")
@@ -73,28 +82,29 @@ def test_a_mouse_adds_moves_and_deletes(floor: Page) -> None:
 
 @drawn
 def test_an_undo_while_a_finger_moves_a_part_puts_it_back(floor: Page) -> None:
-    shipped = worlds.load("obstacles")
+    shipped_world = worlds.load("obstacles")
     floor.click("#world_add_boxes")
     drag(floor, [(140, 60), (170, 80)])
-    wanted = saved(floor)
+    wanted_world = save_world(floor)
     for undo in ("key", "button"):
         floor.mouse.move(*on_screen(floor, (155, 70)))
         floor.mouse.down()
         floor.mouse.move(*on_screen(floor, (155, 110)), steps=4)
-        floor.keyboard.press("Delete")  # not what is moved
+        floor.keyboard.press("Delete")  # the object being dragged is not deleted
         if undo == "key":
             floor.keyboard.press("Control+z")
         else:
-            floor.evaluate("document.querySelector('#world_undo').click()")  # another finger
+            # Touched by a second finger.
+            floor.evaluate("document.querySelector('#world_undo').click()")
         floor.mouse.move(*on_screen(floor, (155, 120)), steps=2)
         floor.mouse.up()
-        assert saved(floor).boxes == wanted.boxes
+        assert save_world(floor).boxes == wanted_world.boxes
     floor.click("#world_undo")
-    assert saved(floor).boxes == shipped.boxes
+    assert save_world(floor).boxes == shipped_world.boxes
 
 
 def picture(page: Page) -> str:
-    """Return what the floor looks like once it is drawn."""
+    """Return the floor's picture once it is drawn."""
     page.evaluate(SETTLED)
     url: str = page.evaluate("document.querySelector('#arena').toDataURL()")
     return url
@@ -102,28 +112,29 @@ def picture(page: Page) -> str:
 
 @drawn
 def test_a_stroke_that_is_let_go_is_not_seen(floor: Page) -> None:
-    start = saved(floor).start
+    start = save_world(floor).start
     floor.keyboard.down("Control")
     drag(floor, [(56, 82.5), (56, 90)])  # a press with Ctrl is the menu of a Mac
     floor.keyboard.up("Control")
-    assert saved(floor).start == start
-    drag(floor, [(56, 82.5), (56, 90)])  # there is something to undo
+    assert save_world(floor).start == start
+    drag(floor, [(56, 82.5), (56, 90)])  # creates a step to undo
     for way in ("cancel", "undo"):
         if floor.get_attribute("#world_add_walls", "aria-pressed") == "false":
             floor.click("#world_add_walls")
-        wanted = picture(floor)
+        wanted_text = picture(floor)
         floor.mouse.move(*on_screen(floor, (60, 30)))
         floor.mouse.down()
         floor.mouse.move(*on_screen(floor, (100, 60)), steps=4)
-        assert picture(floor) != wanted
+        assert picture(floor) != wanted_text
         if way == "undo":
-            floor.evaluate("document.querySelector('#world_undo').click()")  # another finger
+            # Touched by a second finger.
+            floor.evaluate("document.querySelector('#world_undo').click()")
         else:
             floor.locator("#arena").dispatch_event("pointercancel")
-        shown = picture(floor)
+        shown_text = picture(floor)
         floor.mouse.up()
-        assert shown == wanted, way
-        assert saved(floor).walls == ()
+        assert shown_text == wanted_text, way
+        assert save_world(floor).walls == ()
 
 
 @drawn
@@ -134,7 +145,7 @@ def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
     drag(floor, [(150, 60), (150, 90), (120, 140), (60, 140)])
     floor.click("#world_add_lamps")
     floor.mouse.click(*on_screen(floor, (200, 180)))
-    world = saved(floor)
+    world = save_world(floor)
     assert [(round(x), round(y)) for x, y in world.walls[0]] == [(60, 30), (100, 60)]
     line = [(round(x), round(y)) for x, y in world.lines[0].points]
     assert (line[0], line[-1]) == ((150, 60), (60, 140)) and 3 <= len(line) <= 9
@@ -143,10 +154,10 @@ def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
                (110, 100): "Box 1", (10, 190): "Floor"}  # fmt: skip
     for place, name in name_at.items():
         floor.mouse.click(*on_screen(floor, place))
-        assert chosen(floor) == name
+        assert read_chosen_world(floor) == name
     floor.mouse.click(*on_screen(floor, (80, 45)))
     drag(floor, [(60, 30), (60, 50)])  # an end of the wall, by its handle
-    assert [(round(x), round(y)) for x, y in saved(floor).walls[0]] == [(60, 50), (100, 60)]
+    assert [(round(x), round(y)) for x, y in save_world(floor).walls[0]] == [(60, 50), (100, 60)]
 
 
 def test_keys_alone_are_enough(floor: Page) -> None:
@@ -156,38 +167,38 @@ def test_keys_alone_are_enough(floor: Page) -> None:
     press("Enter")
     assert floor.evaluate("document.activeElement.id") == "world_part"
     floor.locator("#world_add_walls").focus()
-    press("Enter")  # in the middle: there is no finger
-    assert chosen(floor) == "Wall 1"
+    press("Enter")  # pressed at the centre, without a finger
+    assert read_chosen_world(floor) == "Wall 1"
     floor.locator("#arena").focus()
     for key in ("ArrowUp", "Shift+ArrowLeft", "p", "p", "Shift+ArrowDown", "+", "Shift+ArrowUp"):
         press(key)
-    walls = saved(floor).walls
+    walls = save_world(floor).walls
     assert walls == (((89, 105), (129, 104), (149, 104.5)),)
     floor.locator("#arena").focus()
     press("Control+z")
     press("Control+z")
-    assert saved(floor).walls == (((89, 105), (129, 104)),)
+    assert save_world(floor).walls == (((89, 105), (129, 104)),)
     floor.locator("#arena").focus()
     press("Delete")
     wait_for_status(floor, "Deleted: Wall 1")
-    assert saved(floor).walls == ()
+    assert save_world(floor).walls == ()
     floor.select_option("#world_part", label="Robot")
     floor.locator("#arena").focus()
     press("r")
     press("ArrowRight")
-    assert saved(floor).start == (61, 82.5, 15)
+    assert save_world(floor).start == (61, 82.5, 15)
     floor.locator("#world_heading").fill("-90")
     press("Enter")
-    assert saved(floor).start.heading == -90
+    assert save_world(floor).start.heading == -90
     for wrong in ("", "1e9"):
         floor.locator("#world_x_cm").fill(wrong)
         press("Enter")
-        assert 0 <= saved(floor).start.x_cm <= 220
+        assert 0 <= save_world(floor).start.x_cm <= 220
     floor.select_option("#world_part", label="Floor")
     floor.locator("#world_width_cm").fill("100")
     press("Enter")
     floor.uncheck("#world_has_border")
-    world = saved(floor)  # the robot is still on the floor
+    world = save_world(floor)  # the robot is still on the floor
     assert (world.width_cm, world.start.x_cm, world.has_border) == (100, 100, False)
 
 
@@ -196,25 +207,25 @@ def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
     floor.click("#world_add_boxes")
     drag(floor, [(140, 60), (200, 80)])
     drag(floor, [(210, 70), (205, 105), (170, 110)])  # the handle of a part that is long
-    assert chosen(floor) == "Box 7" and abs(number(floor, "heading") - 90) <= 5
+    assert read_chosen_world(floor) == "Box 7" and abs(number(floor, "heading") - 90) <= 5
     floor.select_option("#world_part", label="Floor")
     floor.mouse.click(*on_screen(floor, (56, 82.5)))
     drag(floor, [(75, 82.5), (75, 98), (56, 103)])  # the handle in front of it
-    assert saved(floor).start == (56, 82.5, 90)
+    assert save_world(floor).start == (56, 82.5, 90)
     floor.click("#world_undo")
-    assert saved(floor).start == (56, 82.5, 0)
+    assert save_world(floor).start == (56, 82.5, 0)
     floor.click("#world_add_flags")
     floor.mouse.click(*on_screen(floor, (150, 100)))
-    assert chosen(floor) == "Flag 1"
+    assert read_chosen_world(floor) == "Flag 1"
     floor.check("#world_rests")
-    flag = saved(floor).flags[0]
+    flag = save_world(floor).flags[0]
     assert (round(flag.place.x), round(flag.place.y), flag.reach_cm, flag.needs_rest) == (
         150, 100, 12, True,
     )  # fmt: skip
     floor.select_option("#world_part", label="Floor")
     floor.locator("#world_seconds").fill("30")
     floor.keyboard.press("Enter")
-    assert saved(floor).seconds == 30
+    assert save_world(floor).seconds == 30
 
 
 @drawn
@@ -234,15 +245,15 @@ def test_no_step_of_a_world_is_made_in_another_one(floor: Page, step: str) -> No
 @drawn
 def test_nothing_leaves_the_floor(floor: Page) -> None:
     drag(floor, [(56, 82.5), (-60, 300)])
-    assert saved(floor).start[:2] == (0, 200)
+    assert save_world(floor).start[:2] == (0, 200)
     wait_for_status(floor, "does not fit there")
     floor.click("#world_undo")
-    assert saved(floor).start[:2] == (56, 82.5)
+    assert save_world(floor).start[:2] == (56, 82.5)
 
 
 def draw(page: Page, way: Sequence[Place]) -> None:
     """Go along a way on the floor with a finger."""
-    page.evaluate(SETTLED)  # what was tapped before has made the floor smaller or larger
+    page.evaluate(SETTLED)  # earlier taps may have changed the floor's size
     finger(page, [on_screen(page, place) for place in way])
 
 
@@ -253,23 +264,23 @@ def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     page.tap("#world_draw")
     page.tap("#world_add_lines")
     draw(page, [(60, 40), (100, 40), (150, 60), (160, 80)])
-    assert chosen(page) == "Línea 1"
+    assert read_chosen_world(page) == "Línea 1"
     draw(page, [(56, 82.5), (56, 97.5), (60, 110)])
-    assert chosen(page) == "Robot"
-    world = saved(page)
+    assert read_chosen_world(page) == "Robot"
+    world = save_world(page)
     assert abs(world.start.x_cm - 60) <= 1 and abs(world.start.y_cm - 110) <= 1
     assert len(world.lines) == 1 and abs(world.lines[0].points[-1].x - 160) < 1
     page.tap("#world_done")
     assert page.locator("#world option:checked").inner_text() == "mi mundo"
-    kept = page.evaluate(KEPT)
+    kept_state = page.evaluate(KEPT)
     draw(page, [(60, 110), (60, 100)])  # outside of the drawing, too
-    page.wait_for_function(f"before => ({KEPT})() !== before", arg=kept)
+    page.wait_for_function(f"before => ({KEPT})() !== before", arg=kept_state)
     page.reload()
-    checked(page)
+    wait_until_checked(page)
     assert page.locator("#world option:checked").inner_text() == "mi mundo"
     turn(page, "robot")
     page.tap("#world_draw")
-    redrawn = saved(page)
+    redrawn = save_world(page)
     assert abs(redrawn.start.y_cm - 100) <= 1 and redrawn.lines == world.lines
 
 
@@ -283,7 +294,7 @@ def test_the_floor_is_seen_where_the_curves_were(page: Page) -> None:
 
 @drawn
 def test_the_robot_begins_where_it_was_put(page: Page) -> None:
-    """In a shipped world, without drawing, and again after a run has driven it away."""
+    """In a shipped world, without drawing, and again after a run."""
     page.select_option("#world", "light")
     write(page, "SHOW(DISTANCE);\nF(1, 80)")
     page.select_option("#speed", "20")
@@ -294,15 +305,15 @@ def test_the_robot_begins_where_it_was_put(page: Page) -> None:
     assert page.locator("#world option:checked").inner_text() == "my world"
     page.click("#run")
     in_phase(page, "ended")
-    shown = (page.locator("#trace").text_content() or "").partition("SHOW ")[2].split()[0]
+    shown_text = (page.locator("#trace").text_content() or "").partition("SHOW ")[2].split()[0]
     page.click("#world_draw")
-    world = saved(page)
+    world = save_world(page)
     page.click("#world_done")
     assert abs(world.start.x_cm - 80) <= 1 and world.lamps == worlds.load("light").lamps
     simulation = Simulation("tinibot", world, compile("SHOW(DISTANCE);\nF(1, 80)").image)
     simulation.go(2000)
     events = [event.text for event in simulation.robot.take_events()]
-    assert f"SHOW {shown}" in events
+    assert f"SHOW {shown_text}" in events
     page.select_option("#world", "light")
     assert read_start(page) == (40, 40)
 
@@ -329,11 +340,15 @@ es = "aula"
 def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
     put(floor, OWN)
     wait_for_status(floor, "Opened: own.toml")
-    wanted = read(OWN.decode(), "own")
-    world = saved(floor)
-    assert (world.start, world.width_cm, world.labels) == (wanted.start, 90, wanted.labels)
+    wanted_world = read(OWN.decode(), "own")
+    world = save_world(floor)
+    assert (world.start, world.width_cm, world.labels) == (
+        wanted_world.start,
+        90,
+        wanted_world.labels,
+    )
     near = [(round(x, 2), round(y, 2)) for x, y in world.boxes[0]]
-    assert near == [(round(x, 2), round(y, 2)) for x, y in wanted.boxes[0]]
+    assert near == [(round(x, 2), round(y, 2)) for x, y in wanted_world.boxes[0]]
     assert floor.locator("img").count() == 0
     for data, why in (
         (b"\xff", "UTF-8"),
@@ -359,7 +374,7 @@ def test_a_damaged_world_does_no_harm(page: Page) -> None:
         } }"""
     )
     page.reload()
-    checked(page)
+    wait_until_checked(page)
     assert page.input_value("#world") == "obstacles"
     wait_for_status(page, "drew can no longer be read.")
     page.click("#run")

@@ -13,10 +13,10 @@ from tests.support.page_worlds import (
     on_screen,
     put,
     read_start,
-    saved,
+    save_world,
     wait_for_status,
 )
-from tests.support.studio import Pages, checked, in_phase, speak, write
+from tests.support.studio import Pages, in_phase, speak, wait_until_checked, write
 from tiniscript.virtual import worlds
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ drawn = pytest.mark.sampled(of="kept worlds", keep=2)
 OBSTACLES_START = (56, 82.5)
 
 
-def listed(page: Page) -> list[str]:
+def list_own_worlds(page: Page) -> list[str]:
     shipped = len(worlds.names())
     return page.locator("#world option").all_inner_texts()[shipped:]
 
@@ -36,7 +36,7 @@ def walls_of(page: Page, label: str) -> int:
     """Choose a world of the list; return how many walls it has."""
     page.select_option("#world", label=label)
     page.click("#world_draw")
-    count = len(saved(page).walls)
+    count = len(save_world(page).walls)
     page.click("#world_done")
     return count
 
@@ -46,37 +46,38 @@ def test_a_world_is_not_lost_to_the_next_one(pages: Pages) -> None:
     draw_wall(page)
     page.select_option("#world", "obstacles")
     drag(page, [OBSTACLES_START, (56, 90)])  # no pencil, and another world of one's own
-    assert listed(page) == ["my world", "my world (before)"]
+    assert list_own_worlds(page) == ["my world", "my world (before)"]
     assert walls_of(page, "my world") == 0
     assert walls_of(page, "my world (before)") == 1
-    assert listed(page) == ["my world", "my world (before)"]  # they have changed places
+    # The worlds have changed places.
+    assert list_own_worlds(page) == ["my world", "my world (before)"]
     assert page.locator("#world option:checked").inner_text() == "my world"
     page.reload()
-    checked(page)
-    assert listed(page) == ["my world", "my world (before)"]
+    wait_until_checked(page)
+    assert list_own_worlds(page) == ["my world", "my world (before)"]
     assert walls_of(page, "my world (before)") == 0
     assert walls_of(page, "my world (before)") == 1
     page.click("#world_draw")
     put(page, NO_BORDER, "aula.toml")  # nor to a file that is opened
     wait_for_status(page, "Opened: aula.toml")
     page.click("#world_done")
-    assert listed(page) == ["aula", "my world (before)", "my world (before 2)"]
+    assert list_own_worlds(page) == ["aula", "my world (before)", "my world (before 2)"]
     assert walls_of(page, "my world (before)") == 1
-    assert listed(page) == ["my world", "aula (before)", "my world (before 2)"]
+    assert list_own_worlds(page) == ["my world", "aula (before)", "my world (before 2)"]
     speak(page, "es")
-    assert "mi mundo (de antes 2)" in listed(page)
+    assert "mi mundo (de antes 2)" in list_own_worlds(page)
 
 
 @drawn
 def test_changes_of_one_world_make_no_other(page: Page) -> None:
     draw_wall(page)
-    count = len(listed(page))
+    count = len(list_own_worlds(page))
     drag(page, [OBSTACLES_START, (56, 90)])
     page.click("#world_draw")
     page.click("#world_undo")
     page.click("#world_redo")
-    assert abs(saved(page).start.y_cm - 90) <= 1
-    assert len(listed(page)) == count
+    assert abs(save_world(page).start.y_cm - 90) <= 1
+    assert len(list_own_worlds(page)) == count
 
 
 def test_five_worlds_before_are_kept(page: Page) -> None:
@@ -86,18 +87,18 @@ def test_five_worlds_before_are_kept(page: Page) -> None:
         wait_for_status(page, f"Opened: w{k}.toml")
     numbers = ["", " 2", " 3", " 4", " 5"]
     names = ["w7", *(f"w{6 - k} (before{number})" for k, number in enumerate(numbers))]
-    assert listed(page) == names
+    assert list_own_worlds(page) == names
     page.click("#world_done")
     page.reload()
-    checked(page)
-    assert listed(page) == names
+    wait_until_checked(page)
+    assert list_own_worlds(page) == names
 
 
 @drawn
 def test_damaged_worlds_before_do_no_harm(page: Page) -> None:
     draw_wall(page)
     page.click("#world_draw")
-    saved(page)
+    save_world(page)
     page.click("#world_done")
     page.evaluate(
         """() => {
@@ -106,8 +107,8 @@ def test_damaged_worlds_before_do_no_harm(page: Page) -> None:
         }"""
     )
     page.reload()
-    checked(page)
-    assert listed(page) == ["my world"]
+    wait_until_checked(page)
+    assert list_own_worlds(page) == ["my world"]
     assert walls_of(page, "my world") == 1
 
 
@@ -115,23 +116,23 @@ def test_damaged_worlds_before_do_no_harm(page: Page) -> None:
 def test_nothing_is_drawn_before_the_kept_world_is_there(page: Page) -> None:
     draw_wall(page)
     page.select_option("#world", "obstacles")
-    mine = listed(page)
-    held: list[Route] = []
-    page.route("**/python.zip", lambda route: held.append(route))
+    mine = list_own_worlds(page)
+    held_routes: list[Route] = []
+    page.route("**/python.zip", lambda route: held_routes.append(route))
     page.reload()
     try:
         assert page.locator("#world_draw").is_disabled()
         page.locator("#arena").wait_for()
         drag(page, [OBSTACLES_START, (56, 120)])
         assert page.input_value("#world") == "obstacles"
-        assert held
+        assert held_routes
     finally:
-        for route in held:
+        for route in held_routes:
             route.continue_()
         page.unroute("**/python.zip")
-    checked(page)
+    wait_until_checked(page)
     page.locator("#world_draw:not([disabled])").wait_for()
-    assert listed(page) == mine
+    assert list_own_worlds(page) == mine
     assert walls_of(page, "my world") == 1
 
 
@@ -155,7 +156,7 @@ def test_a_run_that_was_left_moves_nothing(page: Page) -> None:
     in_phase(page, "running")
     page.locator("#values dd").first.filter(has_text="s").wait_for()
     page.click("#world_draw")
-    saved(page)  # after the answer to stop
+    save_world(page)  # after the question about stopping is answered
     assert page.locator("#values dd").first.inner_text() == "–"
     page.click("#world_done")
     page.click("#run")
@@ -176,7 +177,7 @@ def test_the_robot_stays_on_a_floor_of_any_size(page: Page) -> None:
     page.locator("#arena").focus()
     page.keyboard.press("ArrowRight")
     page.keyboard.press("ArrowUp")
-    assert saved(page).start[:2] == (120.06, 80)
+    assert save_world(page).start[:2] == (120.06, 80)
 
 
 def test_a_world_that_cannot_be_written_is_told(page: Page) -> None:

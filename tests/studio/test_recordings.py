@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.studio.runs_again import differs, recorded
+from tests.studio.runs_again import differs, record_run
 from tiniscript import compile, robots
 from tiniscript.link.messages import UNTOLD
 from tiniscript.link.payloads import ReadingEvent
@@ -45,11 +45,11 @@ def file(*events: tuple[int, str], text: str = LOOKS, **more: Any) -> bytes:
 
 def parting(*events: tuple[int, str], text: str = LOOKS) -> Divergence:
     was_started_by_button = text.startswith("SB|")
-    played = play(
+    played_run = play(
         prepare(decode(file(*events, text=text, was_started_by_button=was_started_by_button)))
     )
-    assert played.divergence is not None
-    return played.divergence
+    assert played_run.divergence is not None
+    return played_run.divergence
 
 
 def recording_of(*events: tuple[int, str], text: str = LOOKS) -> tuple[str, int, int]:
@@ -57,7 +57,7 @@ def recording_of(*events: tuple[int, str], text: str = LOOKS) -> tuple[str, int,
 
 
 def test_readings_of_the_recording_are_those_of_the_virtual_sensors() -> None:
-    """Its world has nothing at 17.5 cm: and what is calculated of the reading is the same."""
+    """Its world has nothing at 17.5 cm: calculations from the reading agree, too."""
     assert parting(*LINES) == Divergence("same", 5)
 
 
@@ -67,14 +67,14 @@ def test_what_is_pressed_is_known_where_the_program_shows_it() -> None:
 
 @pytest.mark.parametrize("value", ["17.5", "38.7"])
 def test_after_a_reading_that_is_not_recorded_no_parting_is_marked(value: str) -> None:
-    """Whether what follows is the same or not."""
+    """Whether the rest is the same or not."""
     text = "SHOW(1);\nX = DISTANCE + 0;\nSHOW(X);\nSHOW(2)"
     lines = [(20, "SHOW 1"), (40, f"SHOW {value}"), (60, "SHOW 2"), (61, "DONE")]
     divergence = parting(*lines, text=text)
     assert (divergence.what, divergence.agreed) == ("unread", 1)
     assert (divergence.line, divergence.sensor) == (2, "DISTANCE")
     wrong = parting((20, "SHOW 7"), *lines[1:], text=text)
-    assert wrong.what == "value"  # before it
+    assert wrong.what == "value"  # the value before it
 
 
 @pytest.mark.parametrize("value", ["TRUE", "FALSE"])
@@ -113,7 +113,9 @@ def test_who_goes_on_alone_is_told() -> None:
 def test_a_recording_that_ends_early_is_compared_as_far_as_it_goes(
     end: list[tuple[int, str]],
 ) -> None:
-    """By a person, by the link, or because the robot still runs: each of them is no difference."""
+    """Ended by a person, by the link, or while the robot still runs: none of these is a
+    difference.
+    """
     assert parting(*LINES[:2], *end) == Divergence("same", 2)
     assert recording_of(LINES[0], (1020, "SHOW 36"), *end)[:2] == ("value", 1)
 
@@ -153,9 +155,9 @@ def test_a_program_of_the_button_is_pushed_and_compared_from_its_first_event(
 def test_the_virtual_robot_runs_no_longer_than_what_is_compared(
     text: str, events: tuple[tuple[int, str], ...]
 ) -> None:
-    played = play(prepare(decode(file(*events, text=text, was_started_by_button=True))))
-    assert played.divergence is not None and played.divergence.what == "same"
-    assert played.robot.now_ms < 8700
+    played_run = play(prepare(decode(file(*events, text=text, was_started_by_button=True))))
+    assert played_run.divergence is not None and played_run.divergence.what == "same"
+    assert played_run.robot.now_ms < 8700
 
 
 def test_a_number_that_no_sensor_reads_is_as_near_as_it_can() -> None:
@@ -214,9 +216,9 @@ VIRTUAL = {"of": recordings.VIRTUAL}
     ],
 )  # fmt: skip
 def test_files_of_anybody_are_refused_with_a_reason(data: bytes, reason: str, line: int) -> None:
-    with pytest.raises(BadRecording) as refused:
+    with pytest.raises(BadRecording) as exception_info:
         decode(data)
-    assert (refused.value.reason, refused.value.line) == (reason, line)
+    assert (exception_info.value.reason, exception_info.value.line) == (reason, line)
 
 
 def test_a_file_with_any_change_is_refused_or_can_be_played() -> None:
@@ -278,15 +280,15 @@ def test_a_recording_has_a_reading_where_it_changes_and_nothing_after_its_end(se
 
 
 def test_each_row_that_is_another_one_is_told() -> None:
-    data, rows = recorded(3)
+    data, rows = record_run(3)
     assert play(prepare(decode(data))).divergence == Divergence("again", len(rows))
     lines = data.decode().splitlines()
     for k, row in enumerate(rows):
         if k % max(1, len(rows) // 10):
             continue
         at = next(n for n, line in enumerate(lines) if line == recordings.encode_row(row))
-        for changed in ([recordings.encode_row(Row(row.ms, "BEEP 1 1"))], []):
-            other = "\n".join((*lines[:at], *changed, *lines[at + 1 :]))
+        for changed_lines in ([recordings.encode_row(Row(row.ms, "BEEP 1 1"))], []):
+            other = "\n".join((*lines[:at], *changed_lines, *lines[at + 1 :]))
             divergence = play(prepare(decode(other.encode()))).divergence
             assert divergence is not None
             assert divergence.what == "otherwise" and divergence.agreed <= k
@@ -299,14 +301,14 @@ def test_a_run_is_the_same_again(number: int, is_held: bool) -> None:
 
 
 def test_a_played_run_takes_nothing_of_who_looks_on() -> None:
-    data, rows = recorded(5)
-    played = PlayedRun(prepare(decode(data)))
-    while not played.is_over:
-        played.press(63, 100, 100)
-        played.push()
-        played.set_breakpoints((0, 3))
-        played.go(37)
-    assert played.divergence == Divergence("again", len(rows))
+    data, rows = record_run(5)
+    played_run = PlayedRun(prepare(decode(data)))
+    while not played_run.is_over:
+        played_run.press(63, 100, 100)
+        played_run.push()
+        played_run.set_breakpoints((0, 3))
+        played_run.go(37)
+    assert played_run.divergence == Divergence("again", len(rows))
 
 
 UNTOLD_TEXT = "SHOW(1);\nX = DISTANCE + 0;\nW(1);\nX = DISTANCE + 0;\nSHOW(X);\nSHOW(2)"
@@ -382,7 +384,7 @@ def test_readings_of_each_run_of_a_connection_are_timed_from_its_own_start(seed:
     number = 0
     for _ in range(6):
         number += 1
-        if rng.random() < 0.4:  # it has restarted, and counts its runs anew
+        if rng.random() < 0.4:  # the robot restarted, and begins its run numbers again
             connection.boot, number = connection.boot + 1, 1
         now_ms += rng.randrange(1, 300_000)
         times_ms = sorted(rng.sample(range(60_000), 4))

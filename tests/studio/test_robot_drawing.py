@@ -26,17 +26,17 @@ def after(text: str, robot: str, ms: int) -> dict[str, Any]:
 
 
 def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
-    """And such a servo has no jaws."""
+    """Such a servo has no jaws."""
     known = {robot["name"]: robot for robot in description()["robots"]}
     grabber = json.loads(json.dumps(known["grabber"]))
     grabber["places"]["DISTANCE"]["turns_with"] = "GRIPPER"
     state = after("SI|GRIPPER(45);W(9)", "grabber", 100)
     both: list[tuple[Any, dict[str, int]]] = [(known["grabber"], {}), (grabber, {"GRIPPER": -45})]
-    asked = [
+    requests = [
         {"robot": robot, "state": {**state, "turned": turned}, "seen": STANDING_STILL}
         for robot, turned in both
     ]
-    ahead, right = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(asked))[0])
+    ahead, right = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(requests))[0])
     (cone,), (turned_cone,) = (shapes(drawn, "fill", "#e0452f33") for drawn in (ahead, right))
     assert [a - b for a, b in zip(turned_cone[-2:], cone[-2:], strict=True)] == pytest.approx(
         [-math.pi / 4] * 2
@@ -51,17 +51,17 @@ def test_wheels_turn_as_far_as_they_have_rolled() -> None:
           for rolled in ([0, 0], [0.5, 0.5], [-0.5, -0.5], [1.6, 1.6], [0.5, 0]))
     )  # fmt: skip
 
-    def treads(drawn: Drawing, is_left: bool) -> list[float]:
-        """Where the treads of a wheel are, from the back to the front."""
-        rows = [shape for shape in shapes(drawn, "stroke", TREAD) if (shape[1] > 0) == is_left]
+    def treads(drawing: Drawing, is_left: bool) -> list[float]:
+        """Return the positions of a wheel's treads, from the back to the front."""
+        rows = [shape for shape in shapes(drawing, "stroke", TREAD) if (shape[1] > 0) == is_left]
         return sorted(row[0] for row in rows)
 
     for is_left in (True, False):
-        before = treads(still, is_left)
-        assert len(before) == 4
-        assert [tread - 0.5 for tread in treads(ahead, is_left)][1:] == pytest.approx(before)
-        assert treads(around, is_left) == pytest.approx(before)
-        assert treads(backward, is_left) != before
+        treads_before = treads(still, is_left)
+        assert len(treads_before) == 4
+        assert [tread - 0.5 for tread in treads(ahead, is_left)][1:] == pytest.approx(treads_before)
+        assert treads(around, is_left) == pytest.approx(treads_before)
+        assert treads(backward, is_left) != treads_before
     assert treads(turned, True) == treads(ahead, True)
     assert treads(turned, False) == treads(still, False)
 
@@ -83,8 +83,8 @@ def test_what_is_on_is_seen() -> None:
 
 
 def test_the_jaws_are_as_open_as_they_are() -> None:
-    def gap(drawn: Drawing) -> float:
-        right, left = shapes(drawn, "stroke", "#37434f")
+    def gap(drawing: Drawing) -> float:
+        right, left = shapes(drawing, "stroke", "#37434f")
         return left[-1] - right[-1]
 
     states = [after(f"GRIPPER({angle});W(1)", "grabber", 300) for angle in (0, 90, 180)]
@@ -97,9 +97,9 @@ def test_the_jaws_are_as_open_as_they_are() -> None:
 
 def test_a_cone_is_as_long_as_what_is_read() -> None:
     state = after("W(1)", "tinibot", 300)
-    [drawn] = drawings_of(("tinibot", state, STANDING_STILL))
-    [cone] = shapes(drawn, "fill", "#e0452f33")
-    assert cone[4] == state["readings"][2]["value"] > 0  # after the tip and the middle
+    [drawing] = drawings_of(("tinibot", state, STANDING_STILL))
+    [cone] = shapes(drawing, "fill", "#e0452f33")
+    assert cone[4] == state["readings"][2]["value"] > 0  # index after the tip and the middle
     far, near = json.loads(json.dumps(state)), json.loads(json.dumps(state))
     far["readings"][0]["value"], near["readings"][0]["value"] = 0, 1023
     dim, bright = (
@@ -112,7 +112,7 @@ def test_a_cone_is_as_long_as_what_is_read() -> None:
 
 
 def test_a_robot_tells_where_it_touches_something() -> None:
-    """It drives to the right into a box, whose left side is 184 cm from the left wall."""
+    """It turns right into a box, whose left side is 184 cm from the left wall."""
     assert after("F(1, 80)", "tinibot", 300)["touches"] is None
     state = after("F(9, 80)", "tinibot", 4000)
     assert state["bumps"] == 1 and state["touches"][0] == pytest.approx(184, abs=0.5)

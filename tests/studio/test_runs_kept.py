@@ -10,7 +10,7 @@ from tests.support.node import in_node
 
 SCRIPT = Path(__file__).parent / "runs_kept_in_node.mjs"
 MOST_RUNS, MOST_CHARACTERS = 10, 2_000_000
-LARGE = (9_900, 188, 0)  # almost all of what there is room for
+LARGE = (9_900, 188, 0)  # nearly as much as there is room for
 
 
 Kept = tuple[int, int, int]  # rows, characters of each, and of a file
@@ -35,15 +35,17 @@ def test_the_newest_runs_are_kept_as_far_as_there_is_room_and_the_oldest_goes_fi
     by_count = by_size = 0
     for line in in_node(SCRIPT, given=json.dumps(histories)):
         sizes: list[int] = []
-        for count, (kept, size, own) in enumerate(json.loads(line), 1):
+        for count, (kept_state, size, own) in enumerate(json.loads(line), 1):
             sizes.append(own)
-            assert kept == [*range(count, count - len(kept), -1)], "the newest ones, and no gap"
-            assert size == sum(sizes[number - 1] for number in kept)
-            assert 1 <= len(kept) <= MOST_RUNS
-            assert size <= MOST_CHARACTERS or len(kept) == 1
-            if len(kept) < count:  # one more would be too much
-                by_count += len(kept) == MOST_RUNS
-                by_size += len(kept) < MOST_RUNS
+            assert kept_state == [*range(count, count - len(kept_state), -1)], (
+                "the newest ones, and no gap"
+            )
+            assert size == sum(sizes[number - 1] for number in kept_state)
+            assert 1 <= len(kept_state) <= MOST_RUNS
+            assert size <= MOST_CHARACTERS or len(kept_state) == 1
+            if len(kept_state) < count:  # there is no room for another run
+                by_count += len(kept_state) == MOST_RUNS
+                by_size += len(kept_state) < MOST_RUNS
     assert by_count > 40 and by_size > 100
 
 
@@ -51,11 +53,11 @@ def test_no_run_goes_that_there_is_room_for() -> None:
     for line in in_node(SCRIPT, given=json.dumps(stories())):
         sizes: list[int] = []
         held = 0
-        for count, (kept, size, own) in enumerate(json.loads(line), 1):
+        for count, (kept_state, size, own) in enumerate(json.loads(line), 1):
             sizes.append(own)
-            wanted = 1
-            most = min(count, held + 1, MOST_RUNS)  # what has gone does not come again
-            while wanted < most and sum(sizes[-wanted - 1 :]) <= MOST_CHARACTERS:
-                wanted += 1
-            assert (len(kept), size) == (wanted, sum(sizes[-wanted:]))
-            held = len(kept)
+            wanted_count = 1
+            most = min(count, held + 1, MOST_RUNS)  # removed runs do not return
+            while wanted_count < most and sum(sizes[-wanted_count - 1 :]) <= MOST_CHARACTERS:
+                wanted_count += 1
+            assert (len(kept_state), size) == (wanted_count, sum(sizes[-wanted_count:]))
+            held = len(kept_state)

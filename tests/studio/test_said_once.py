@@ -1,4 +1,4 @@
-"""What names a block takes the place of words for what it does: nobody reads them twice."""
+"""A name of a block replaces the words for its effect, so that nothing is repeated."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def stem(word: str) -> str:
 
 
 def twice(parts: Parts) -> list[str]:
-    """Return what is said again at once: a word after itself, or one of a block beside it."""
+    """Return immediate repetitions: a word after itself, or one of a block beside it."""
     text = "".join(part for _, part in parts)
     repeated_words = [
         repeated
@@ -60,11 +60,11 @@ def twice(parts: Parts) -> list[str]:
         if not is_block:
             continue
         own = {stem(word) for word in words(label) if len(word) >= STEM}
-        before, after = (
+        text_before, text_after = (
             parts[k + step][1] if 0 <= k + step < len(parts) else "" for step in (-1, 1)
         )
-        near = words(re.split(r"[.?!:;]", before)[-1])[-NEAR:]
-        near += words(re.split(r"[.?!:;]", after)[0])[:NEAR]
+        near = words(re.split(r"[.?!:;]", text_before)[-1])[-NEAR:]
+        near += words(re.split(r"[.?!:;]", text_after)[0])[:NEAR]
         repeated_words += [word for word in near if stem(word) in own]
     return repeated_words
 
@@ -95,8 +95,8 @@ def found_sentences(language: str) -> Iterator[str]:
 def shown_parts(page_data: Path, language: str, rows: list[dict[str, Any]]) -> list[Parts]:
     """Return the parts of sentences as a page in a language shows them."""
     (page_data / "texts.json").write_text(json.dumps(page_texts(language)), encoding="utf-8")
-    given = "\n".join(json.dumps(row) for row in rows)
-    lines = in_node(SCRIPT, str(page_data), given=given)
+    given_text = "\n".join(json.dumps(row) for row in rows)
+    lines = in_node(SCRIPT, str(page_data), given=given_text)
     assert len(lines) == len(rows)
     return [[(bool(is_block), text) for is_block, text in json.loads(line)] for line in lines]
 
@@ -110,8 +110,8 @@ def test_no_lesson_says_beside_a_block_what_the_block_says(page_data: Path, lang
     rows = []
     for number in range(1, len(catalogue.folders()) + 1):
         robot = catalogue.load(catalogue.folder_of(str(number))).robot
-        spoken = page_lessons.spoken_blocks(number, language)
-        rows += [{"robot": robot, "sentence": sentence, "spoken": spoken}
+        spoken_blocks = page_lessons.spoken_blocks(number, language)
+        rows += [{"robot": robot, "sentence": sentence, "spoken": spoken_blocks}
                  for sentence in sentences_of(number, language, BLOCKS)]  # fmt: skip
     rows += [{"robot": "tinibot", "sentence": sentence, "spoken": spoken_in(sentence)}
              for sentence in found_sentences(language)]  # fmt: skip
@@ -124,7 +124,7 @@ def test_no_lesson_says_beside_a_block_what_the_block_says(page_data: Path, lang
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_a_warning_names_its_code_as_blocks_do(page_data: Path, language: str) -> None:
-    """Of each code the program that its explanation has: no word of the text, and no line."""
+    """For each code the program in its explanation: no word of the text, and no line."""
     learn = json.dumps({"do": "check", "robot": "tinibot", "language": language})
     warned = [code for code, about in CODES.items() if not about.is_mistake]
     programs = [texts("messages", "en").get(f"{code}/wrong", "") for code in warned]
@@ -144,15 +144,15 @@ def test_a_warning_names_its_code_as_blocks_do(page_data: Path, language: str) -
     assert [part for part in plain if re.search(r"\b[Ll](ine|ínea|inha)s? \d", part)] == []
 
 
-@pytest.mark.parametrize("sentence, marked", [
+@pytest.mark.parametrize("sentence, marked_text", [
     ("During this F (2 s)", "During this `F` (2 s)"),
     ("F(2, 80) UNTIL(DISTANCE < 5), X = X + 1.", "`F(2, 80) UNTIL(DISTANCE < 5)`, `X = X + 1`."),
     ("as in UNTIL(DISTANCE < 5)", "as in `UNTIL`(`DISTANCE < 5`)"),
     ("write f(2, 80), F(2 80 or X", "write `f(2, 80)`, `F`(2 80 or X"),
     ("A file(s) with 1 MB; the character `, F", "A file(s) with 1 MB; the character `, F"),
 ])  # fmt: skip
-def test_code_in_a_sentence_is_what_is_read_as_a_block(sentence: str, marked: str) -> None:
-    assert block_speech.mark_code(sentence, profile_of("tinibot").kit) == marked
+def test_code_in_a_sentence_is_what_is_read_as_a_block(sentence: str, marked_text: str) -> None:
+    assert block_speech.mark_code(sentence, profile_of("tinibot").kit) == marked_text
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -162,7 +162,7 @@ def test_no_text_has_a_word_twice(language: str) -> None:
             assert twice([(False, text.replace("`", ""))]) == [], text
 
 
-@pytest.mark.parametrize("parts, repeated", [
+@pytest.mark.parametrize("parts, repeated_texts", [
     ([(True, "repeat forever"), (False, " repeats forever. Which?")], ["repeats", "forever"]),
     ([(False, "The "), (True, "bumper"), (False, " is the bumper.")], []),
     ([(True, "motors: left left %, right 5 %")], ["left"]),
@@ -170,5 +170,5 @@ def test_no_text_has_a_word_twice(language: str) -> None:
     ([(True, "gira a la izquierda"), (False, " gira.")], ["gira"]),
     ([(True, "turn left"), (False, ". Turn the key.")], []),
 ])  # fmt: skip
-def test_what_is_twice_is_found(parts: Parts, repeated: list[str]) -> None:
-    assert twice(parts) == repeated
+def test_what_is_twice_is_found(parts: Parts, repeated_texts: list[str]) -> None:
+    assert twice(parts) == repeated_texts

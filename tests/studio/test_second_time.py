@@ -43,7 +43,7 @@ class Room:
     """The clock, and what robots have done."""
 
     now_ms = 0
-    actions: ClassVar[list[tuple[str, int]]] = []  # and when
+    actions: ClassVar[list[tuple[str, int]]] = []  # actions with their times
     robots: ClassVar[list[ThreadlessRobot]] = []
     not_waited_for: ClassVar[list[tuple[ThreadlessRobot, ThreadlessRobot]]] = []
 
@@ -53,7 +53,7 @@ class Room:
 
 
 class NotingLink:
-    """A robot that does what it is told at once, and runs until it is stopped."""
+    """A robot that obeys at once, and runs until it is stopped."""
 
     def __init__(self) -> None:
         self.has_run = False
@@ -82,7 +82,7 @@ class ThreadlessRobot:
 
     def __init__(
         self, port: str, robot: str, language: str, tab: str, connection: int, stops: int,
-        before: list[ThreadlessRobot],
+        robots_before: list[ThreadlessRobot],
     ) -> None:  # fmt: skip
         self.name = self.port = port
         self.tab, self.connection = tab, connection
@@ -94,7 +94,7 @@ class ThreadlessRobot:
         Room.not_waited_for += [
             (self, robot)
             for robot in Room.robots
-            if robot.port == port and robot.is_open and robot not in before
+            if robot.port == port and robot.is_open and robot not in robots_before
         ]
         Room.robots.append(self)
 
@@ -204,7 +204,7 @@ class ComingPage:
         if not self._is_there:
             if does < 0.1:
                 self._connect()
-                self._wants_run()  # at once, as it may be on its way
+                self._wants_run()  # requested at once, because a run may be under way
         elif does < 0.01:
             self._ask("leave")
             self._is_there, self.end = False, ""
@@ -233,8 +233,9 @@ class ComingPage:
 def test_nobody_starts_after_a_stop_for_all_whenever_it_has_come(
     hosting: Hosting, seed: int
 ) -> None:
-    """Neither a page that was there, nor one that connects, the first time or again; and what
-    drove stands. When the while is over, pages drive again."""
+    """Neither open pages nor new connections start anything; driving robots stop. After the latch
+    time, pages drive again.
+    """
     chance = Random(seed)
     pages = [ComingPage(hosting, f"page{k}", chance) for k in range(5)]
     latched_until_ms = stops = late_runs = 0
@@ -244,14 +245,14 @@ def test_nobody_starts_after_a_stop_for_all_whenever_it_has_come(
             hosting.answer({"do": "stop_all"})
             latched_until_ms = Room.now_ms + round(1000 * LATCH_S)
             stops += 1
-        begun = len(Room.actions)
+        action_count_before = len(Room.actions)
         for robot in Room.robots:
             robot.step()
             assert not (robot.link.has_run and Room.now_ms < latched_until_ms)
         if Room.now_ms % BEAT_MS == 0:
             for page in pages:
                 page.turn()
-        runs = [what for what, _ in Room.actions[begun:] if what == "run"]
+        runs = [what for what, _ in Room.actions[action_count_before:] if what == "run"]
         assert not (runs and Room.now_ms < latched_until_ms), (Room.now_ms, latched_until_ms)
         late_runs += len(runs) if stops else 0
     assert stops > 3 and late_runs > 10
@@ -365,7 +366,7 @@ class HeldClient:
         HeldClient.was_held = goes_on()
 
     def close(self, has_run: bool) -> None:
-        """Nothing of the page's runs."""
+        """Do nothing, because no run of the page is affected."""
 
 
 @pytest.mark.parametrize("leaves", [bits for k in (1, 2, 3) for bits in product((0, 1), repeat=k)])
@@ -394,10 +395,11 @@ BEAT = b'{"do": "beat"}'
 PAGE = {"index.html": serving.File(b"<!doctype html>", serving.TYPES[".html"]),
         "main.js": serving.File(b"0", serving.TYPES[".js"], '"tag"')}  # fmt: skip
 STRANGE = "a letter from a page of the class before"
-PADDINGS = (0, 3000, 9000, 12_000, serving.HEAD_BYTES)  # of a head; the last one is too large
+# Bytes of padding in a head; the last one is too large.
+PADDINGS = (0, 3000, 9000, 12_000, serving.HEAD_BYTES)
 
 
-def answered(request: Json) -> Json:
+def answer_beat(request: Json) -> Json:
     if request != {"do": "beat"}:
         raise BadRequest
     return {"news": []}
@@ -405,31 +407,36 @@ def answered(request: Json) -> Json:
 
 @pytest.fixture
 def server() -> Iterator[serving.Server]:
-    with serves(serving.Server(PAGE, 0, answered)) as server:
+    with serves(serving.Server(PAGE, 0, answer_beat)) as server:
         yield server
 
 
 @pytest.fixture
 def ask(server: serving.Server) -> Callable[[HTTPConnection, str, int], tuple[int, bytes, bool]]:
-    """Return how the page asks one thing; it gets the answer, and whether that ends all."""
+    """Return a function for one request of the page; it returns the answer, and whether the
+    connection ends.
+    """
     token = server.entrances.token
 
-    def asked(connection: HTTPConnection, what: str, padding: int) -> tuple[int, bytes, bool]:
-        given = {"Origin": f"http://{serving.HOST}:{server.server_port}"}
-        given["X-Padding"] = " " + "x " * (padding // 2)
+    def ask_server(connection: HTTPConnection, what: str, padding: int) -> tuple[int, bytes, bool]:
+        given_fields = {"Origin": f"http://{serving.HOST}:{server.server_port}"}
+        given_fields["X-Padding"] = " " + "x " * (padding // 2)
         if what.startswith("/"):
-            connection.request("GET", what, None, given)
+            connection.request("GET", what, None, given_fields)
         else:
             body = what.encode()
             shown_token = "" if what == STRANGE else token
             connection.request(
-                "POST", serving.ROBOTS_PATH, body, {**given, serving.TOKEN_HEADER: shown_token}
+                "POST",
+                serving.ROBOTS_PATH,
+                body,
+                {**given_fields, serving.TOKEN_HEADER: shown_token},
             )
         response = connection.getresponse()
         data = response.read()
         return response.status, data, response.will_close
 
-    return asked
+    return ask_server
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -1,4 +1,4 @@
-"""Who gets the page from `tsc studio`, and what is sent with it."""
+"""Access to the page of `tsc studio`, and the headers sent with it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tiniscript.studio.serving import POLICY
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A page of two files, and what is none of it."""
+    """A folder with a page of two files, and others that do not belong to it."""
     page = tmp_path / "page"
     (page / "inside").mkdir(parents=True)
     (page / "index.html").write_text("<!doctype html>")
@@ -63,7 +63,7 @@ def test_the_page_comes_with_its_policy(own: str) -> None:
     with socket.create_connection((serving.HOST, int(own.rpartition(":")[2])), HANGS_S) as browser:
         browser.sendall(f"HEAD /main.js HTTP/1.0\r\nHost: {own}\r\n\r\n".encode())
         reply = b"".join(iter(lambda: browser.recv(4096), b""))
-    assert b" 200 " in reply and reply.endswith(b"\r\n\r\n")  # nothing after the head
+    assert b" 200 " in reply and reply.endswith(b"\r\n\r\n")  # the answer has no body
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_its_own_page_gets_it(own: str) -> None:
 
 
 def test_nothing_can_be_sent_to_it(server: serving.Server, own: str) -> None:
-    """And it listens on this computer alone."""
+    """It listens on this computer only."""
     for method in ("PUT", "DELETE", "OPTIONS", "TRACE"):
         assert ask(own, "/", method)[0].status == 501, method
     assert server.server_address[0] == "127.0.0.1"
@@ -123,7 +123,7 @@ def test_it_goes_on_until_it_is_ended(folder: Path) -> None:
     command = Command(code=code)
     command.until("http://127.0.0.1:")
     command.signal(signal.SIGTERM)
-    assert command.ended().code == 0
+    assert command.wait_for_result().code == 0
 
 
 def test_a_port_that_is_taken_is_a_sentence(

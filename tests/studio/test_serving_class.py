@@ -26,13 +26,13 @@ from tiniscript.studio import class_keeping, serving
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
 
-HOST = "127.0.0.2"  # here it stands for an address of the network
+HOST = "127.0.0.2"  # it stands for an address of the network here
 ELSEWHERE = "127.0.0.3"
 STRANGERS = int(os.environ.get("STRANGERS", "2000"))
 
 
 @pytest.fixture
-def taught(tmp_path: Path) -> Iterator[Class]:
+def served_class(tmp_path: Path) -> Iterator[Class]:
     (tmp_path / "index.html").write_text('<!doctype html>\n<html lang="en">\n' + "x" * 5000)
     room = Classroom(Hosting(), [])
     page = serving.for_class(serving.files(tmp_path))
@@ -62,19 +62,19 @@ def joins(taught: Class) -> str:
 @pytest.mark.parametrize(
     "host", ["127.0.0.1", "localhost", "evil.example", HOST, f"{HOST}.", "PORT.127.0.0.2"]
 )
-def test_the_host_is_the_shown_address_exactly(taught: Class, host: str) -> None:
-    port = taught.server.server_port
+def test_the_host_is_the_shown_address_exactly(served_class: Class, host: str) -> None:
+    port = served_class.server.server_port
     for name in (host, f"{host}:{port}", f"{host}:1"):
-        if name == own(taught):
+        if name == own(served_class):
             continue
-        assert post(taught, {"do": "join"}, Host=name) == 403
-        assert post(taught, {"do": "join"}, Origin=f"http://{name}") == 403
-        assert ask(own(taught), headers={"Host": name})[0].status == 403
-    assert post(taught, {"do": "join", "code": "", "name": ""}) == 200
+        assert post(served_class, {"do": "join"}, Host=name) == 403
+        assert post(served_class, {"do": "join"}, Origin=f"http://{name}") == 403
+        assert ask(own(served_class), headers={"Host": name})[0].status == 403
+    assert post(served_class, {"do": "join", "code": "", "name": ""}) == 200
 
 
-def test_the_page_is_packed_marked_and_fetched_once(taught: Class) -> None:
-    connection = HTTPConnection(own(taught), timeout=HANGS_S)
+def test_the_page_is_packed_marked_and_fetched_once(served_class: Class) -> None:
+    connection = HTTPConnection(own(served_class), timeout=HANGS_S)
     connection.request("GET", "/", headers={"Accept-Encoding": "gzip, deflate"})
     answer = connection.getresponse()
     data = answer.read()
@@ -92,62 +92,63 @@ def test_the_page_is_packed_marked_and_fetched_once(taught: Class) -> None:
     connection.close()
 
 
-def test_a_token_opens_its_own_door_alone(taught: Class) -> None:
-    ana, teacher = joins(taught), taught.server.entrances.token
-    assert post(taught, {"do": "here"}, ana) == 200
-    assert post(taught, {"do": "class"}, ana) == 400
-    assert post(taught, {"do": "class"}, teacher) == 200
-    assert post(taught, {"do": "here"}, teacher) == 400
-    assert post(taught, {"do": "class"}) == 400
-    assert post(taught, {"do": "class"}, "0" * 32) == 403
-    assert post(taught, {"do": "here"}, **{serving.TOKEN_HEADER: f"{ana}, {teacher}"}) == 403
+def test_a_token_opens_its_own_door_alone(served_class: Class) -> None:
+    ana, teacher = joins(served_class), served_class.server.entrances.token
+    assert post(served_class, {"do": "here"}, ana) == 200
+    assert post(served_class, {"do": "class"}, ana) == 400
+    assert post(served_class, {"do": "class"}, teacher) == 200
+    assert post(served_class, {"do": "here"}, teacher) == 400
+    assert post(served_class, {"do": "class"}) == 400
+    assert post(served_class, {"do": "class"}, "0" * 32) == 403
+    assert post(served_class, {"do": "here"}, **{serving.TOKEN_HEADER: f"{ana}, {teacher}"}) == 403
 
 
-def test_who_has_no_token_sends_little(taught: Class) -> None:
+def test_who_has_no_token_sends_little(served_class: Class) -> None:
     request = {"do": "join", "code": "", "name": "x" * 2000}
-    assert post(taught, request) == 400
-    ana = joins(taught)
-    assert post(taught, {"do": "here", "text": "x" * 150_000}, ana) == 200
-    assert post(taught, {"do": "here", "text": "x" * 300_000}, ana) == 400
+    assert post(served_class, request) == 400
+    ana = joins(served_class)
+    assert post(served_class, {"do": "here", "text": "x" * 150_000}, ana) == 200
+    assert post(served_class, {"do": "here", "text": "x" * 300_000}, ana) == 400
 
 
 @pytest.mark.parametrize("is_same", [False, True], ids=["another computer", "the same"])
-def test_many_connections_keep_nobody_out(taught: Class, is_same: bool) -> None:
-    """They come from one computer, a pupil's or another, say nothing or half a request. The pupil's
-    connection stays, and a new pupil is answered."""
-    token = joins(taught)
-    headers = {"Origin": f"http://{own(taught)}", serving.TOKEN_HEADER: token}
-    pupil = HTTPConnection(own(taught), timeout=HANGS_S)
+def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) -> None:
+    """They come from one computer, of a pupil or another, and send nothing or half a request. The
+    pupil's connection stays, and a new pupil is answered.
+    """
+    token = joins(served_class)
+    headers = {"Origin": f"http://{own(served_class)}", serving.TOKEN_HEADER: token}
+    pupil = HTTPConnection(own(served_class), timeout=HANGS_S)
     pupil.request("POST", serving.ROBOTS_PATH, '{"do": "here"}', headers)
     assert pupil.getresponse().read()
-    kept, before = pupil.sock, active_count()
-    source = kept.getsockname()[0] if is_same else ELSEWHERE
+    kept_socket, before = pupil.sock, active_count()
+    source = kept_socket.getsockname()[0] if is_same else ELSEWHERE
     with ExitStack() as strangers:
         for _ in range(0, STRANGERS, 500):
             some = crowd(
-                taught.server.server_port, count=500, says=(b"", HALF_A_REQUEST), host=HOST,
+                served_class.server.server_port, count=500, says=(b"", HALF_A_REQUEST), host=HOST,
                 source=source,
             )  # fmt: skip
             strangers.enter_context(some)
             pupil.request("POST", serving.ROBOTS_PATH, '{"do": "here"}', headers)
             assert pupil.getresponse().read()
-            assert ask(own(taught))[0].status == 200
-        assert pupil.sock is kept
+            assert ask(own(served_class))[0].status == 200
+        assert pupil.sock is kept_socket
         assert active_count() - before <= serving.MOST_CLASS_CONNECTIONS + 30
     pupil.close()
 
 
-def test_a_slow_stranger_does_not_close_who_loads_the_page(taught: Class) -> None:
+def test_a_slow_stranger_does_not_close_who_loads_the_page(served_class: Class) -> None:
     """The address that has most connections loses one, not the one that asked first."""
-    early = HTTPConnection(own(taught), timeout=HANGS_S)
+    early = HTTPConnection(own(served_class), timeout=HANGS_S)
     early.connect()
     with crowd(
-        taught.server.server_port,
+        served_class.server.server_port,
         count=serving.MOST_CLASS_CONNECTIONS + 50,
         host=HOST,
         source=ELSEWHERE,
     ):
-        assert ask(own(taught))[0].status == 200  # so all of them have come
+        assert ask(own(served_class))[0].status == 200  # therefore all of them have arrived
         early.request("GET", "/")
         assert early.getresponse().status == 200
     early.close()
@@ -189,12 +190,12 @@ def test_the_second_class_of_a_user_is_refused_and_touches_nothing(
         room = Classroom(Hosting(), [])
         room.answer("", ELSEWHERE, {"do": "join", "code": room.code, "name": "Ana"})
         first.keep(room.state_to_keep())
-        kept = class_keeping.path().read_bytes()
+        kept_bytes = class_keeping.path().read_bytes()
         result = tsc(*words)
         assert result.code == 3 and "another tsc studio." in result.err
-        assert class_keeping.path().read_bytes() == kept
-    # The first one has ended, and leaves no lock behind; nor does one that cannot begin.
+        assert class_keeping.path().read_bytes() == kept_bytes
+    # The first one has ended without a lock; one that cannot start leaves none either.
     for _ in range(2):
         result = tsc(*words, "--listen", "1", "--address", "203.0.113.5")
         assert result.code == 3 and "203.0.113.5" in result.err
-    assert class_keeping.path().read_bytes() == kept
+    assert class_keeping.path().read_bytes() == kept_bytes

@@ -1,4 +1,4 @@
-"""Who may ask `tsc studio` for the robots of this computer: its own page alone."""
+"""Access to the robots of this computer through `tsc studio`: only for its own page."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def test_a_server_without_robots_has_none(tmp_path: Path) -> None:
 
 
 def test_a_thousand_connections_keep_nobody_out(server: serving.Server, own: str) -> None:
-    """They say nothing, or half a request; the page's own connection stays."""
+    """They send nothing, or half a request; the page's own connection stays."""
     headers = {"Origin": f"http://{own}", serving.TOKEN_HEADER: server.entrances.token}
     page = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
 
@@ -150,15 +150,15 @@ def test_a_thousand_connections_keep_nobody_out(server: serving.Server, own: str
         return response.status
 
     assert ask() == 200
-    kept = page.sock
-    before = active_count()
+    kept_socket = page.sock
+    active_count_before = active_count()
     with ExitStack() as strangers:
         for _ in range(10):
             some = crowd(server.server_port, count=100, says=(b"", HALF_A_REQUEST))
             strangers.enter_context(some)
             assert ask() == 200
-        assert page.sock is kept
-        assert active_count() - before <= serving.MOST_CONNECTIONS + 30
+        assert page.sock is kept_socket
+        assert active_count() - active_count_before <= serving.MOST_CONNECTIONS + 30
     page.close()
 
 
@@ -185,18 +185,19 @@ def test_a_head_ends_at_16_kilobytes(server: serving.Server, own: str, line: byt
     """However its bytes are divided into lines, and whether it ends or not."""
     with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
         client.sendall(b"GET / HTTP/1.1\r\n")
-        sent, heard = 0, b""
-        while not heard and sent < 20 * serving.HEAD_BYTES:
+        sent, heard_bytes = 0, b""
+        while not heard_bytes and sent < 20 * serving.HEAD_BYTES:
             try:
                 client.sendall(line)
                 sent += len(line)
                 client.settimeout(0.01 if sent < serving.HEAD_BYTES else HANGS_S)
-                heard = client.recv(100)
+                heard_bytes = client.recv(100)
             except TimeoutError:
                 continue
             except ConnectionError:
                 break
-        assert heard[:12] in (b"HTTP/1.1 431", b""), heard  # nothing: it was reset
+        # Empty if the connection was reset.
+        assert heard_bytes[:12] in (b"HTTP/1.1 431", b""), heard_bytes
         assert sent <= serving.HEAD_BYTES + len(line)
     assert post(own, server.entrances.token, PORTS)[0] == 200
 
@@ -204,8 +205,8 @@ def test_a_head_ends_at_16_kilobytes(server: serving.Server, own: str, line: byt
 def test_the_page_that_has_asked_last_is_kept(
     server: serving.Server, own: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where all have shown the token, the one is closed that has asked nothing for longest."""
-    monkeypatch.setattr(serving._Handler, "timeout", 10 * HANGS_S)  # none is left as silent
+    """If all have shown the token, the one idle for longest is closed."""
+    monkeypatch.setattr(serving._Handler, "timeout", 10 * HANGS_S)  # none is dropped as silent
     server.most_connections = 2
     headers = {"Origin": f"http://{own}", serving.TOKEN_HEADER: server.entrances.token}
     pages = [HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S) for _ in range(3)]

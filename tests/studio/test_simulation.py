@@ -73,7 +73,7 @@ def test_it_is_told_where_each_task_is() -> None:
     simulation = started_simulation(TASKS, robot="tinibot32")
     places = check(TASKS.encode(), "tinibot32", "en").places
 
-    def lit() -> set[int]:
+    def marked_lines() -> set[int]:
         """The lines of the text that are marked."""
         lines = set()
         for at in simulation.state()["places"]:
@@ -81,11 +81,11 @@ def test_it_is_told_where_each_task_is() -> None:
         return lines
 
     simulation.go(100)
-    assert lit() == {1, 2, 8}
+    assert marked_lines() == {1, 2, 8}
     simulation.go(130)
-    assert lit() == {1, 3, 8}
+    assert marked_lines() == {1, 3, 8}
     simulation.go(500)
-    assert lit() == {1, 2}
+    assert marked_lines() == {1, 2}
     simulation.stop()
     assert simulation.state()["places"] == []
     plain = started_simulation("W(1)")
@@ -113,11 +113,11 @@ def test_a_stop_is_confirmed_and_the_motors_are_off() -> None:
     )
     simulation.go(500)
     assert simulation.state()["motors"] == [80, 80]
-    before = simulation.robot.now_ms
+    now_ms_before = simulation.robot.now_ms
     simulation.stop()
     state = simulation.state()
     assert state["motors"] == [0, 0] and not state["is_running"]
-    assert state["events"][-1][1] == "STOP" and simulation.robot.now_ms - before < 200
+    assert state["events"][-1][1] == "STOP" and simulation.robot.now_ms - now_ms_before < 200
     simulation.go(1000)
     assert simulation.state()["events"] == []
 
@@ -174,7 +174,7 @@ def test_a_fault_is_named() -> None:
     result = check(b"W(1); X = 0; SHOW(1 / X)", "tinibot", "en")
     place = max(place for place in result.places if place.offset <= state["fault_at"])
     assert (place.line, place.column) == (1, 14)
-    state = started_simulation("X = 0; SHOW(1 / X)").state()  # at once
+    state = started_simulation("X = 0; SHOW(1 / X)").state()  # fails immediately
     assert state["fault"] == "DIVIDE_BY_ZERO" and state["fault_at"] is not None
 
 
@@ -204,7 +204,7 @@ def test_what_is_held_while_it_is_held_or_stopped_counts_when_it_goes_on() -> No
     assert simulation.held_at is not None
     for _ in range(3):
         simulation.press(0, 0, 60)
-        simulation.go(400)  # no time goes on
+        simulation.go(400)  # time does not advance
     assert round(simulation.robot.driving.left) == 0
     simulation.set_breakpoints(())
     simulation.press(0, 0, 30)

@@ -22,7 +22,7 @@ from tiniscript.studio.robot_link import RobotLink
 from tiniscript.virtual.worlds import read
 
 BEAT_MS = 100
-LOOK_MS = 20  # as often as a thread attends to its robot
+LOOK_MS = 20  # interval at which a thread attends to its robot
 PROGRAMS = [compile(f"SI|LOOP(FOREVER);{'R(0.1, 40);' * k}END_LOOP").image.hex() for k in (1, 40)]
 
 
@@ -42,14 +42,15 @@ class Meeting:
         self._number = 0
         self._beat_ms = 0
         self._look_ms = 0
-        self._under_way: list[tuple[int, dict[str, Any]]] = []  # with when they arrive
+        # Answers under way, with their arrival times.
+        self._under_way: list[tuple[int, dict[str, Any]]] = []
         self.is_cut = False
 
     def go(self, milliseconds: int, step_ms: int = 1) -> None:
         for _ in range(0, milliseconds, step_ms):
             now_ms = self.robot.now_ms + step_ms
-            heard = self.robot.step(now_ms, b"" if self.is_cut else self._sent)
-            self._sent = self.line.go(b"" if self.is_cut else heard, now_ms)
+            heard_bytes = self.robot.step(now_ms, b"" if self.is_cut else self._sent)
+            self._sent = self.line.go(b"" if self.is_cut else heard_bytes, now_ms)
             arrived = [answer for at_ms, answer in self._under_way if at_ms <= now_ms]
             self._under_way = [pair for pair in self._under_way if pair[0] > now_ms]
             if arrived or now_ms >= self._beat_ms:
@@ -85,12 +86,12 @@ class Meeting:
         self.attending.latch()
         self.go(500)
         assert self.attending.last_stop == CONFIRMED
-        stood = self.robot.driving.pose_at(self.robot.now_ms)
+        stood_pose = self.robot.driving.pose_at(self.robot.now_ms)
         for _ in range(7):
             self.go(max(1, late_ms // 5), 10)
             assert not self.robot.is_running
-            assert self.robot.driving.pose_at(self.robot.now_ms) == stood
-        assert self.answer(numbers[-1])  # an older one that comes later is a lost one
+            assert self.robot.driving.pose_at(self.robot.now_ms) == stood_pose
+        assert self.answer(numbers[-1])  # an older one that arrives later counts as lost
 
 
 def race(count: int, seed: int) -> None:
@@ -168,19 +169,21 @@ class LateLink:
 def test_no_stop_of_before_confirms_the_newest_one(
     monkeypatch: pytest.MonkeyPatch, seed: int, end: str
 ) -> None:
-    """However many there were, whoever has pressed them, and whether they were confirmed."""
+    """Whatever their number, their source, and whether they were confirmed."""
     chance = Random(seed)
     link = LateLink(chance)
     attending = Attending(lambda: link.now_ms / 1000)
     monkeypatch.setattr(hosted_robot, "monotonic", lambda: link.now_ms / 1000)
-    hosted = SimpleNamespace(attending=attending, is_unconfirmed=False)
+    hosted_simple_namespace = SimpleNamespace(attending=attending, is_unconfirmed=False)
     for _ in range(5):
         link.tells()
         late_ms = chance.choice((0, 40, 1000, float("inf")))
         link.hears(late_ms)
         if end == "part":
-            HostedRobot._part_from_robot(cast(HostedRobot, hosted), cast(RobotLink, link))
-            is_confirmed = not hosted.is_unconfirmed
+            HostedRobot._part_from_robot(
+                cast(HostedRobot, hosted_simple_namespace), cast(RobotLink, link)
+            )
+            is_confirmed = not hosted_simple_namespace.is_unconfirmed
         else:
             attending.latch()
             for _ in range(200):
@@ -209,7 +212,7 @@ def test_what_is_known_of_a_stop_is_final_once_its_connection_has_ended(seed: in
 
 
 if __name__ == "__main__":
-    wanted = int(sys.argv[1])
-    for start in range(0, wanted, 100):
-        race(min(100, wanted - start), start)
-        print(f"{min(wanted, start + 100)} races, none drives", flush=True)
+    wanted_count = int(sys.argv[1])
+    for start in range(0, wanted_count, 100):
+        race(min(100, wanted_count - start), start)
+        print(f"{min(wanted_count, start + 100)} races, none drives", flush=True)

@@ -1,4 +1,4 @@
-"""What is kept of a run of the virtual robot, so that a person can look back.
+"""The record of a virtual robot's run, for looking back.
 
 Each moment that is kept is what it was, with all that had been shown until then; no event is
 forgotten, but for the oldest ones of a run that is too long; the second run knows nothing of the

@@ -22,24 +22,26 @@ ONE, TWO = [1, "DISTANCE < 10", [DISTANCE]], [3, "N > 3", [N]]
 
 
 def explanations(*cases: tuple[str, str]) -> list[Any]:
-    """Return what is said about programs, each at the first instruction with a text."""
+    """Return the explanations of programs, each at the first instruction with a text."""
     rows = []
-    for text, wanted in cases:
+    for text, wanted_text in cases:
         program = check(text.encode(), "tinibot", "en")
         assert program.image, text
         lines = text.split("\n")
         places = [list(place) for place in program.places]
         at = next(
-            place[0] for place in places if lines[place[1] - 1][place[2] - 1 :].startswith(wanted)
+            place[0]
+            for place in places
+            if lines[place[1] - 1][place[2] - 1 :].startswith(wanted_text)
         )
         rows.append({"text": text, "places": places, "at": at, "values": VALUES})
     return [json.loads(row) for row in in_node(SCRIPT, json.dumps(rows))]
 
 
 @pytest.mark.parametrize(
-    ("text", "wanted", "values"),
+    ("text", "wanted_text", "values"),
     [
-        (ARMS, "B(1, 10)", [[1, "DISTANCE < 10", [], True]]),  # it has been read again
+        (ARMS, "B(1, 10)", [[1, "DISTANCE < 10", [], True]]),  # the sensor was read again
         (ARMS, "F(1, 20)", [[*ONE, False], [*TWO, True]]),
         (ARMS, "F(1, 30)", [[*ONE, False], [3, "N > 3", [], False]]),
         (ARMS, "IF", [[*ONE, False]]),
@@ -58,27 +60,27 @@ def explanations(*cases: tuple[str, str]) -> list[Any]:
     ],
 )  # fmt: skip
 def test_the_conditions_around_an_instruction_are_told_with_their_values(
-    text: str, wanted: str, values: list[Any]
+    text: str, wanted_text: str, values: list[Any]
 ) -> None:
-    assert explanations((f"N = 0;{text}", wanted))[0]["told"] == values
+    assert explanations((f"N = 0;{text}", wanted_text))[0]["told"] == values
 
 
 def test_any_nesting_is_told_from_the_outside() -> None:
     for seed in range(12):
         rng = random.Random(seed)
-        text, wanted = "W(0.5)", list[Any]()
+        text, wanted_texts = "W(0.5)", list[Any]()
         for depth in range(rng.randint(1, 5)):
             head, end = rng.choice((("IF", "ENDIF"), ("WHILE", "END_WHILE")))
-            before = rng.choice(
+            choice_before = rng.choice(
                 ("", "IF(DISTANCE > 1);S;ENDIF\n", "WHILE(DISTANCE > 2);S;END_WHILE\n")
             )
             is_else = head == "IF" and rng.random() < 0.5
             body = f"S\nELSE\n{text}" if is_else else text
-            text = f"{before}{head}(DISTANCE < {depth})\n{body}\n{end}"
-            wanted.insert(0, [f"DISTANCE < {depth}", not is_else])
-        assert [[row[1], row[3]] for row in explanations((text, "W(0.5)"))[0]["told"]] == wanted, (
-            text
-        )
+            text = f"{choice_before}{head}(DISTANCE < {depth})\n{body}\n{end}"
+            wanted_texts.insert(0, [f"DISTANCE < {depth}", not is_else])
+        assert [
+            [row[1], row[3]] for row in explanations((text, "W(0.5)"))[0]["told"]
+        ] == wanted_texts, text
 
 
 def expression(rng: random.Random, depth: int, *, is_question: bool) -> str:

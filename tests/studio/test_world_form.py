@@ -20,7 +20,7 @@ from tiniscript.virtual.worlds import read
 
 
 def is_near(one: Any, other: Any) -> bool:
-    """The same but for the last digits of what was calculated."""
+    """Return whether two values are equal, except for rounding."""
     if isinstance(one, float | int) and not isinstance(one, bool):
         return isinstance(other, float | int) and abs(one - other) < 0.002
     if isinstance(one, tuple):
@@ -28,13 +28,13 @@ def is_near(one: Any, other: Any) -> bool:
     return bool(one == other)
 
 
-def shipped() -> list[World]:
+def list_shipped_worlds() -> list[World]:
     lessons = [catalogue.load(folder) for folder in catalogue.folders()]
     return [*map(worlds.load, worlds.names()), *(vary(lesson, 3) for lesson in lessons)]
 
 
 def test_the_text_of_a_form_is_the_same_world() -> None:
-    worlds = shipped()
+    worlds = list_shipped_worlds()
     assert len(worlds) > 10 and any(world.lamps for world in worlds)
     for world in worlds:
         round_tripped = read(toml_of(form_of(world)), world.name)
@@ -89,7 +89,7 @@ def as_tuples(value: Any) -> Any:
     return tuple(map(as_tuples, value)) if isinstance(value, list) else value
 
 
-def opened(data: bytes, name: str = "own.toml", language: str = "en") -> dict[str, Any]:
+def open_world(data: bytes, name: str = "own.toml", language: str = "en") -> dict[str, Any]:
     request = {"do": "open_world", "name": name, "language": language}
     answer: dict[str, Any] = json.loads(worker.answer(json.dumps(request), data))
     return answer
@@ -114,7 +114,7 @@ HOSTILE = {
 def test_a_file_that_is_no_world_says_why(name: str) -> None:
     data, message = HOSTILE[name]
     for language in ("en", "es"):
-        answer = opened(data, language=language)
+        answer = open_world(data, language=language)
         assert set(answer) == {"refused"} and answer["refused"]
         assert all(len(sentence) < 400 and sentence.isprintable() for sentence in answer["refused"])
         assert language == "es" or message in " ".join(answer["refused"])
@@ -122,7 +122,7 @@ def test_a_file_that_is_no_world_says_why(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["a.toml", ".toml", "", "x" * 5000 + ".toml", "\x1b[31m\n.toml"])
 def test_any_name_of_a_file_can_be_opened_and_written(name: str) -> None:
-    opened_world = opened(GOOD, name)
+    opened_world = open_world(GOOD, name)
     request = {
         "do": "write_world",
         "form": opened_world["world"],
@@ -135,7 +135,7 @@ def test_any_name_of_a_file_can_be_opened_and_written(name: str) -> None:
 
 
 def test_a_robot_that_does_not_fit_or_is_off_its_floor_is_told() -> None:
-    world = opened(GOOD.replace(b"x_cm = 30", b"x_cm = 3"))["world"]
+    world = open_world(GOOD.replace(b"x_cm = 30", b"x_cm = 3"))["world"]
     request = {"do": "write_world", "form": world, "robot": "tinibot", "language": "en"}
     assert json.loads(worker.answer(json.dumps(request)))["is_blocked"]
     start = {"do": "power_on", "robot": "tinibot", "world": {"form": world}, "language": "en"}
@@ -150,7 +150,7 @@ def test_a_robot_that_does_not_fit_or_is_off_its_floor_is_told() -> None:
 
 
 def test_a_robot_begins_where_it_is_to_if_it_has_room_there() -> None:
-    world = opened(GOOD)["world"]
+    world = open_world(GOOD)["world"]
     start = {"do": "power_on", "robot": "tinibot", "world": {"form": world}, "language": "en"}
     image = compile("SI|S").image
     at = (world["start"]["x_cm"], world["start"]["y_cm"], world["start"]["heading"])
@@ -161,6 +161,6 @@ def test_a_robot_begins_where_it_is_to_if_it_has_room_there() -> None:
 
 def test_the_limits_are_those_of_the_reader() -> None:
     parts, points = limits()["parts"], limits()["points"]
-    form = opened(GOOD)["world"]
+    form = open_world(GOOD)["world"]
     form["walls"] = [{"points": [[1, 1]] * points}] * parts
     assert len(read(toml_of(form), "").walls) == parts

@@ -18,16 +18,16 @@ BOARDS = {"uno": "uno", "mega": "mega:cpu=atmega2560"}
 
 class Built(NamedTuple):
     hex: Path
-    log: str  # what the builder printed, warnings included
+    log: str  # output of the builder, including warnings
 
 
-def firmware(board: str, own: Path, shared: Path) -> Built:
+def firmware(board: str, own: Path, shared_path: Path) -> Built:
     """Return the sketch for a board, built once for all workers of a session."""
-    built = Built(shared / f"builder-{board}.hex", "")
+    built = Built(shared_path / f"builder-{board}.hex", "")
     log = built.hex.with_suffix(".log")
     if not log.exists():
         build = _build(board, own)
-        mine = shared / f"builder-{board}.{os.getpid()}"
+        mine = shared_path / f"builder-{board}.{os.getpid()}"
         for text, target in ((build.hex.read_text(), built.hex), (build.log, log)):
             mine.write_text(text, encoding="utf-8")
             mine.replace(target)

@@ -13,7 +13,7 @@ Json = dict[str, Any]
 
 
 class AskingPage:
-    """A page of `tsc studio`, or a pupil's, with a robot behind a pty."""
+    """A page of `tsc studio`, or a pupil's, with a robot on a pty."""
 
     def __init__(self, answer: Callable[[Json], Json], port: str) -> None:
         self.answer = answer

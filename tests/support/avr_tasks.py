@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tests.support.cpp_checks import FAR
 
-WRAP = 2**32  # of the clock
+WRAP = 2**32  # period of the clock
 SOON = 600
 
 

@@ -1,4 +1,4 @@
-"""Bluetooth LE modules for `fake_bluez`, and a robot behind one: the host firmware on a pty.
+"""Bluetooth LE modules for `fake_bluez`, and a robot on one: the host firmware on a pty.
 
 Every byte goes through the radio module, the pseudo-terminal and the robot's UART, both ways.
 """
@@ -24,7 +24,7 @@ CHARACTERISTICS = {
     LAMP: [("0000fff1-0000-1000-8000-00805f9b34fb", BOTH)],
 }  # fmt: skip
 ADDRESS = "AA:BB:CC:DD:EE:01"
-NAME, PLACE = "ble://Tini 1", f"ble://{ADDRESS}"  # its ports
+NAME, PLACE = "ble://Tini 1", f"ble://{ADDRESS}"  # ports of the robot
 DRIVE = "SI|F(0.2, 80)"
 DROVE = ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
@@ -55,12 +55,12 @@ class Peripheral:
         self.written: list[tuple[str, bytes]] = []  # kind and bytes of each write
 
     @property
-    def heard(self) -> bytes:
+    def received_data(self) -> bytes:
         return b"".join(data for _, data in self.written)
 
     @property
     def is_over(self) -> bool:
-        return self.parts_after is not None and len(self.heard) >= self.parts_after
+        return self.parts_after is not None and len(self.received_data) >= self.parts_after
 
     def take(self, data: bytes, kind: str) -> None:
         self.written.append((kind, data))
@@ -69,7 +69,7 @@ class Peripheral:
         """Somebody wants to hear it."""
 
     def part(self) -> None:
-        """Nobody is connected any more."""
+        """Disconnect the client."""
 
     def clear_away(self) -> None:
         pass
@@ -84,8 +84,9 @@ class Echo(Peripheral):
 
 
 class BleRobot(Peripheral):
-    """A module and the robot behind it. `late_s`: each notification comes so much later; `sent` is
-    all that the module has sent by radio."""
+    """A module with its robot. `late_s`: delay of each notification; `sent` is everything that the
+    module has sent by radio.
+    """
 
     def __init__(
         self, robot: PtyRobot, name: str = "Tini 1", address: str = ADDRESS, service: str = HM10,
@@ -114,7 +115,7 @@ class BleRobot(Peripheral):
         self.loop.remove_reader(self._uart)
         if self.service == HM10:
             with suppress(OSError):  # the robot is gone already
-                os.write(self._uart, b"OK+LOST")  # as such modules do
+                os.write(self._uart, b"OK+LOST")  # the message of such modules
 
     def clear_away(self) -> None:
         self.loop.remove_reader(self._uart)

@@ -1,4 +1,4 @@
-"""How a program and its blocks are compared: neither loses anything of the other."""
+"""Compares a program with its blocks: neither loses any part of the other."""
 
 from __future__ import annotations
 
@@ -22,30 +22,30 @@ def comment_words(text: str) -> list[str]:
 
 def check_blocks(text: str, kit: Kit) -> None:
     """A right program keeps its image and its comments, has no grey block, and is laid out."""
-    before = compile_text(text, kit)
+    text_before = compile_text(text, kit)
     for form in (read_blocks(text, kit), touched_form(read_blocks(text, kit))):
-        check_form(form, text, kit, before.image)
+        check_form(form, text, kit, text_before.image)
     if "///" not in text and not text.startswith("PING"):
         assert format_blocks(read_blocks(text, kit)).text == format_source(Source(text)), text
 
 
 def check_form(form: Form, text: str, kit: Kit, image: bytes) -> None:
     assert "grey" not in [block.kind for block in in_order(form.body)], text
-    printed = format_blocks(from_data(json.loads(json.dumps(data_of(form)))))
-    after = compile_text(printed.text, kit)
-    assert after.is_right and after.image == image, printed.text
-    assert format_source(Source(printed.text)) == printed.text
-    assert comment_words(printed.text) == comment_words(text), printed.text
-    round_tripped = read_blocks(printed.text, kit)
-    assert format_blocks(round_tripped).text == printed.text
-    pairs = zip(in_order(round_tripped.body), printed.places, strict=True)
+    printed_form = format_blocks(from_data(json.loads(json.dumps(data_of(form)))))
+    text_after = compile_text(printed_form.text, kit)
+    assert text_after.is_right and text_after.image == image, printed_form.text
+    assert format_source(Source(printed_form.text)) == printed_form.text
+    assert comment_words(printed_form.text) == comment_words(text), printed_form.text
+    round_tripped = read_blocks(printed_form.text, kit)
+    assert format_blocks(round_tripped).text == printed_form.text
+    pairs = zip(in_order(round_tripped.body), printed_form.places, strict=True)
     for block, place in pairs:
         if block.kind != "comment":
-            assert block.place == place, (block, place, printed.text)
+            assert block.place == place, (block, place, printed_form.text)
 
 
 def touched_form(form: Form) -> Form:
-    """Return blocks of which nothing is known but what they are now."""
+    """Return blocks without knowledge of their former state."""
 
     def of(blocks: tuple[Block, ...]) -> tuple[Block, ...]:
         return tuple(

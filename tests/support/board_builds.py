@@ -13,5 +13,5 @@ BOARDS = pytest.mark.parametrize("board", ["uno", "mega"])
 
 def each_board(test: Test) -> Test:
     """Run a test on both; a commit draws one of them for each row."""
-    marked: Test = pytest.mark.sampled("board")(BOARDS(test))
-    return marked
+    marked_test: Test = pytest.mark.sampled("board")(BOARDS(test))
+    return marked_test

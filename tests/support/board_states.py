@@ -1,4 +1,4 @@
-"""What the pins of each motor driver do for each way of driving."""
+"""The pins of each motor driver in each state of driving."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tiniscript.robots.profile import Robot
 from tiniscript.robots.reader import read
 
 STEADY = 29.8  # ms after its release a button is surely up
-PRESS, START = 100.0, 200.0  # ms: when the button goes down, and when it is surely up again
+PRESS, START = 100.0, 200.0  # ms: when the button goes down, and when it is certainly up again
 FORWARD, BACK, OFF = 50.0, 150.0, 350.0  # ms after the start of MOVES
 MOVES = "SI|F(0.1, 80);B(0.1, 40);M(50, -100);W(0.1)"
 TURN = 250.0
@@ -70,11 +70,11 @@ DRIVERS = {
 }
 
 
-def driven(name: str) -> Robot:
+def robot_with_driver(name: str) -> Robot:
     return robot_with(DRIVERS[name][0])
 
 
-def started(robot: Robot, text: str, more: str = "") -> Board:
+def start_board(robot: Robot, text: str, more: str = "") -> Board:
     board = Board(robot, text, more)
     board.press(PRESS, START - STEADY)
     return board
@@ -90,7 +90,7 @@ def on_board(name: str, chip: str, *changes: tuple[str, str]) -> Robot:
 
 
 def pulses(board: Board, pin: int) -> list[tuple[float, float]]:
-    """Return when each pulse began, in ms, and its length in us."""
+    """Return the start of each pulse in ms, and its length in us."""
     edges = board.edges(pin)
     pairs = zip(edges[::2], edges[1::2], strict=False)
     return [(up / MS, (down - up) * 1e6 / HERTZ) for up, down in pairs]

@@ -5,16 +5,16 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Iterable, Sequence
 
-from tests.machines.host import FLAGS, SOURCES, compiled
+from tests.machines.host import FLAGS, SOURCES, compile_program
 from tests.support.casefile import ROOT
 
-ButtonEvents = list[tuple[int, str]]  # when in us, and P, H or R
+ButtonEvents = list[tuple[int, str]]  # time in us, and P, H or R
 
 
 def button_events(cases: Iterable[tuple[int, int, Sequence[int]]]) -> list[ButtonEvents]:
-    """Return what the button tells in each case: the turn, the first look, and the edges."""
+    """Return the button's events in each case: the turn, the first look, and the edges."""
     button = SOURCES / "src" / "boards" / "button.cpp"
-    program = compiled([button, ROOT / "tests" / "button" / "main.cpp"], FLAGS)
+    program = compile_program([button, ROOT / "tests" / "button" / "main.cpp"], FLAGS)
     lines = "\n".join(" ".join(map(str, (turn, first, *edges))) for turn, first, edges in cases)
     completed = subprocess.run(
         [program], input=lines + "\n", capture_output=True, text=True, check=True

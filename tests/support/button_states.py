@@ -1,4 +1,4 @@
-"""What a robot holds when its button is pressed: a table of states."""
+"""States of a robot when its button is pressed: a table."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Callable
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tests.support.owners import HELD, KIT, PRESSED, RELEASED, Keys
-from tests.support.robot_on_host import computer, send, stored, switched_on
-from tests.support.text_robot import typed
+from tests.support.robot_on_host import computer, send, switched_on, wait_until_saved
+from tests.support.text_robot import type_text
 from tiniscript.link.messages import KEY_OWNER, OWNED
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -17,7 +17,7 @@ SAVED, OTHER, MEMORY, TYPED, LINE = 80, 70, 60, 40, 30  # powers: which program 
 
 
 class SmallRobot(HostFirmware):
-    """As an Uno: it reads text where the program is that it holds."""
+    """A robot that, like an Uno, reads text into the place of its program."""
 
     has_draft = False
 
@@ -28,8 +28,8 @@ class Table:
     def __init__(self, has_draft: bool = True) -> None:
         self.robot = switched_on() if has_draft else SmallRobot(KIT)
         self.session = computer()
-        self.talks: Session | None = self.session  # who goes on talking
-        self.keys: Keys | None = None  # of the one who has claimed it
+        self.talks: Session | None = self.session  # the session that continues
+        self.keys: Keys | None = None  # keys of the owner
         self.program = 0
         self.is_reset_down = False
 
@@ -39,7 +39,7 @@ class Table:
     def upload_program(self, power: int, is_saved: bool = True) -> None:
         self.send(f"SB|F(600, {power})", saves=is_saved)
         if is_saved:
-            stored(self.robot, self.session)
+            wait_until_saved(self.robot, self.session)
         self.program = power
 
     def quiet(self) -> None:
@@ -55,7 +55,7 @@ def empty(table: Table) -> None:
     assert table.robot.until(table.session, table.session.hello()) == OK
 
 
-def saved(table: Table) -> None:
+def save_program(table: Table) -> None:
     table.upload_program(SAVED)
 
 
@@ -65,19 +65,19 @@ def in_memory(table: Table) -> None:
 
 
 def types(text: str, power: int = SAVED) -> Callable[[Table], None]:
-    """Have a person type; `power` is that of the program which the button starts then."""
+    """Return a function that types; `power` is that of the program which the button then starts."""
 
     def enter(table: Table) -> None:
         table.upload_program(SAVED)
         table.quiet()
-        typed(table.robot, text)
+        type_text(table.robot, text)
         table.program = power
 
     return enter
 
 
 def runs(line: str, milliseconds: int = 0) -> Callable[[Table], None]:
-    """Have a computer send a live line, and go on."""
+    """Return a function that sends a live line from a computer, and continues."""
 
     def enter(table: Table) -> None:
         table.upload_program(SAVED)
@@ -110,7 +110,7 @@ def receives(table: Table) -> None:
     request = table.session.upload(image_of(f"SI|{f'F(1, {OTHER}); ' * 90}"))
     while request.done_bytes < 60:
         table.talk(1)
-    table.talks = None  # the rest does not come, or not in time
+    table.talks = None  # the rest never arrives, or is late
 
 
 def saves(table: Table) -> None:
@@ -160,7 +160,7 @@ def reset_down(table: Table) -> None:
 
 STATES: dict[str, Callable[[Table], None]] = {
     "holds no program": empty,
-    "holds a saved program": saved,
+    "holds a saved program": save_program,
     "holds a program in memory only": in_memory,
     "holds a program that was typed": types(f"SB|F(600, {TYPED})\n", TYPED),
     "is running a program in memory": runs_memory,

@@ -1,8 +1,8 @@
-"""What apps send before and after a line."""
+"""Bytes that apps send before and after a line."""
 
 from __future__ import annotations
 
-# What apps, terminals and modules send by themselves, and what is left of other lines.
+# Bytes that apps, terminals and modules send by themselves, and rests of other lines.
 PIECES = (
     b"\n", b"\r", b"\r\n", b"\n\n", b" ", b"\t", b";", b"\xef\xbb\xbf", b"\0", b"\0\0", b"\0\0\0",
     b"AT\r\n", b"AT", b"AT+NAMEx\r\n", b"OK+CONN", b"OK+LOST", b"+CONNECTED\r\n", b"OK\r\n",

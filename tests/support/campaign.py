@@ -10,7 +10,7 @@ from pathlib import Path
 from traceback import extract_tb
 
 
-def wanted(count: int, seed: int, *flags: str) -> Namespace:
+def make_options(count: int, seed: int, *flags: str) -> Namespace:
     """Return the `count` and the first `seed` of a command, and whether each flag was given."""
     parser = ArgumentParser()
     parser.add_argument("count", type=int, nargs="?", default=count)
@@ -20,14 +20,14 @@ def wanted(count: int, seed: int, *flags: str) -> Namespace:
     return parser.parse_args()
 
 
-def each_seed(check: Callable[[int], object], given: Namespace) -> None:
+def each_seed(check: Callable[[int], object], options: Namespace) -> None:
     """Run a check with each seed; print how many times each thing came of it, or a seed that fails.
 
-    `check` returns what came of it, or None where that is always the same.
+    `check` returns what came of it, or None if that is always the same.
     """
     counts: Counter[str] = Counter()
     begun_s = time.monotonic()
-    for seed in range(given.seed, given.seed + given.count):
+    for seed in range(options.seed, options.seed + options.count):
         try:
             came = check(seed)
         except BaseException:
@@ -35,11 +35,11 @@ def each_seed(check: Callable[[int], object], given: Namespace) -> None:
             raise
         if came is not None:
             counts[str(came)] += 1
-    print(f"{given.count}, nothing wrong: {dict(counts)}, {time.monotonic() - begun_s:.0f} s")
+    print(f"{options.count}, nothing wrong: {dict(counts)}, {time.monotonic() - begun_s:.0f} s")
 
 
 def failure_text(wrong: AssertionError) -> str:
-    """Return what an assertion says; of one that says nothing, where it is, and the assertion."""
+    """Return the message of an assertion, or its place and code if it has none."""
     frame = extract_tb(wrong.__traceback__)[-1]
     place = f"{Path(frame.filename).name}:{frame.lineno}: {frame.line}"
     return f"{place}: {wrong}" if str(wrong) else place

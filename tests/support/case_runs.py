@@ -1,4 +1,4 @@
-"""What a case of a document runs: a robot, readings and limits, and what its program becomes."""
+"""The run of a document's case: a robot, readings and limits, and the compiled program."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ from tiniscript.robots.profile import Robot
 
 
 def robot_and_senses(case: Case) -> tuple[Robot, Senses]:
-    """Return what the fence `senses` says: `robot`, `max-time`, `seed`, and a list a sensor."""
+    """Return the content of the fence `senses`: `robot`, `max-time`, `seed`, and a list per
+    sensor.
+    """
     readings: dict[str, list[int]] = {}
-    named = shipped_name_in(case.parts.get("tiniscript", "").encode())
-    options = {"robot": named or robots.DEFAULT, "max-time": "60", "seed": "1"}
+    named_text = shipped_name_in(case.parts.get("tiniscript", "").encode())
+    options = {"robot": named_text or robots.DEFAULT, "max-time": "60", "seed": "1"}
     for row in case.parts.get("senses", "").splitlines():
         name, _, values = (part.strip() for part in row.partition("="))
         if name in options:
@@ -29,6 +31,6 @@ def robot_and_senses(case: Case) -> tuple[Robot, Senses]:
     return robots.load(options["robot"]), Senses(readings, max_ms, seed=int(options["seed"]))
 
 
-def compiled(case: Case) -> Compilation:
+def compile_case(case: Case) -> Compilation:
     robot, _ = robot_and_senses(case)
     return compile_text(case.parts["tiniscript"].removesuffix("\n"), robot.kit)

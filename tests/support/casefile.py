@@ -68,7 +68,7 @@ def read(path: Path) -> list[Case]:
             if fence:
                 text = "".join(line + "\n" for line in lines)
                 if fence in ("mistake", "warning"):
-                    cases[-1:] = _said(cases[-1], fence, text, number)
+                    cases[-1:] = _split_by_message(cases[-1], fence, text, number)
                 elif fence in PARTS:
                     cases[-1].parts[fence] = text
                 fence = ""
@@ -83,19 +83,19 @@ def read(path: Path) -> list[Case]:
                         cases.append(Case(path, number, name, {}))
         elif fence == "refused":
             if LISTED.match(row):
-                cases[-1].parts["bytecode"] += "".join(f"{line}\n" for line in _unfolded(row))
+                cases[-1].parts["bytecode"] += "".join(f"{line}\n" for line in _unfold(row))
             elif not row.startswith("//"):
                 rule, name = row.split(": ", 1)
                 cases.append(Case(path, number, name, {"refused": f"{rule}\n", "bytecode": ""}))
         elif fence:
-            lines += _unfolded(row)
+            lines += _unfold(row)
         elif row.startswith("#"):
             title, count = row.lstrip("#").strip(), 0
     assert not fence, f"{path.name}: a fence is not closed"
     return cases
 
 
-def _unfolded(row: str) -> list[str]:
+def _unfold(row: str) -> list[str]:
     """Return the rows that a row stands for."""
     if match := TIMES.fullmatch(row):
         at, size = int(match[1], 16), len(bytes.fromhex(match[3]))
@@ -103,7 +103,7 @@ def _unfolded(row: str) -> list[str]:
     return [row]
 
 
-def _folded(text: str) -> str:
+def _fold(text: str) -> str:
     """Return a disassembly with one row for several that are alike."""
     lines = []
     for _, group in groupby(text.splitlines(), lambda row: row[4:] if LISTED.match(row) else row):
@@ -113,20 +113,20 @@ def _folded(text: str) -> str:
     return "".join(f"{row}\n" for row in lines)
 
 
-def _said(case: Case, fence: str, text: str, end: int) -> Iterator[Case]:
-    """Yield a case with what is said of it, and one for each row that says what it is about."""
+def _split_by_message(case: Case, fence: str, text: str, end: int) -> Iterator[Case]:
+    """Yield a case with its messages, and one for each row that names its subject."""
     before, *titled = ABOUT.split(text)
     parts = [(case, before)] if before or not titled else []
     if case.parts and titled and not before:
-        yield case  # of the heading above, which has said all
+        yield case  # the case of the heading above, whose text is complete
     line = end - sum(block.count("\n") for block in titled) - len(titled) // 2
     for title, part_text in zip(titled[::2], titled[1::2], strict=True):
         parts.append((Case(case.path, line, title, {}), part_text))
         line += 1 + part_text.count("\n")
     for example, part_text in parts:
         example.parts[fence] = part_text and part_text.rstrip("\n") + "\n"
-        if shown := SHOWN.match(part_text):
-            example.parts.setdefault("tiniscript", shown[1])
+        if shown_match := SHOWN.match(part_text):
+            example.parts.setdefault("tiniscript", shown_match[1])
         yield example
 
 
@@ -186,7 +186,7 @@ def sketch_examples() -> list[Path]:
 def accept(case: Case, part: str, actual: str) -> None:
     """Write `actual` where the case says something else; git shows what changed."""
     rows = case.path.read_text(encoding="utf-8").splitlines(keepends=True)
-    # where the case stands now: what was accepted before may have moved it
+    # The current place of the case, which earlier accepts may have moved.
     now = next(other for other in read(case.path) if other.title == case.title)
     if part == "refused":
         rows[now.line - 1] = f"{actual.rstrip()}: {now.title}\n"
@@ -196,5 +196,5 @@ def accept(case: Case, part: str, actual: str) -> None:
             start = rows.index(f"```{part}\n", start - 1) + 1
         while rows[start].startswith("//") and "refused" in now.parts:
             start += 1
-        rows[start : start + _folded(now.parts[part]).count("\n")] = [_folded(actual)]
+        rows[start : start + _fold(now.parts[part]).count("\n")] = [_fold(actual)]
     case.path.write_text("".join(rows), encoding="utf-8")

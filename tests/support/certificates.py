@@ -20,7 +20,7 @@ def der(file: Path) -> bytes:
 
 
 class Authority:
-    """Who signs certificates: `file` has its own, `der` the same as bytes."""
+    """A certificate authority: `file` has its own certificate, `der` the same as bytes."""
 
     def __init__(self, folder: Path, name: str = "Aula") -> None:
         need("" if shutil.which("openssl") else "needs openssl")
@@ -33,11 +33,11 @@ class Authority:
         return der(self.file)
 
     def rules(self, name: str, is_chain: bool = False) -> str:
-        """Return what makes Mosquitto speak TLS as a computer of a name, and of 127.0.0.1.
+        """Return Mosquitto's settings for TLS under a computer's name and 127.0.0.1.
 
         `is_chain`: it shows the authority's certificate after its own.
         """
-        key, file = self._folder / f"{name}.key", self.signed(name)
+        key, file = self._folder / f"{name}.key", self.sign(name)
         _run(*_COMMON, "-CA", self.file, "-CAkey", self._key, "-keyout", key, "-out", file,
              "-subj", f"/CN={name}", "-addext", f"subjectAltName=DNS:{name},IP:127.0.0.1",
              "-addext", "basicConstraints=critical,CA:FALSE")  # fmt: skip
@@ -46,7 +46,7 @@ class Authority:
             file.write_text(own + self.file.read_text(encoding="ascii"), encoding="ascii")
         return f"certfile {file}\nkeyfile {key}"
 
-    def signed(self, name: str) -> Path:
+    def sign(self, name: str) -> Path:
         """Return the file with what was signed for a name."""
         return self._folder / f"{name}.pem"
 

@@ -1,4 +1,4 @@
-"""How much work something is, and the check of a text."""
+"""The work of an action, and of checking a text."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ ROBOT = robots.load("tinibot")
 
 
 def count_calls(act: Callable[[], object]) -> int:
-    """Return how many calls, of Python's functions and C's, something makes."""
+    """Return the number of calls of Python and C functions in an action."""
     calls = 0
 
     def count(frame: FrameType, event: str, what: object) -> None:
         nonlocal calls
         calls += event in ("call", "c_call")
 
-    before = sys.getprofile()
+    getprofile_before = sys.getprofile()
     sys.setprofile(count)
     try:
         act()
     finally:
-        sys.setprofile(before)
+        sys.setprofile(getprofile_before)
     return calls
 
 
 def calls_of_check(text: str) -> int:
-    """Return how many calls the check of a text makes."""
+    """Return the number of calls in the check of a text."""
     return count_calls(lambda: compile_source(text.encode(), ROBOT, "prog.ts", is_strict=False))

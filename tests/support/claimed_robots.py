@@ -14,7 +14,7 @@ from tiniscript.cli.commands import set_owner
 from tiniscript.link.keys import KeyFile
 
 
-def claimed(pty_robot: PtyRobot, *options: str) -> CommandResult:
+def claim_with_button(pty_robot: PtyRobot, *options: str) -> CommandResult:
     """Claim the robot, with a hand on its button: a press before it is asked counts for nothing."""
 
     def print_and_press(words: str, file: object = None, flush: bool = False) -> None:

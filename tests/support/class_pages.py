@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 @contextmanager
 def class_of_many() -> Iterator[Class]:
     """A class without a robot, with room for all at one address."""
-    with studio.taught([]) as taught_class:
+    with studio.serve_class([]) as taught_class:
         taught_class.room.teach({"do": "class_places", "places": MOST_PUPILS})
         yield taught_class
 
@@ -28,19 +28,19 @@ def wait_for_status(page: Page, text: str) -> None:
     page.locator("#class_pupil [role=status]").filter(has_text=text).wait_for()
 
 
-def joined(pages: Pages, taught: Class, name: str) -> Page:
+def join_class(pages: Pages, class_: Class, name: str) -> Page:
     page = pages.open()
     page.click("#side_real")
-    page.locator("#class_pupil input").nth(0).fill(taught.room.code.lower())
+    page.locator("#class_pupil input").nth(0).fill(class_.room.code.lower())
     page.locator("#class_pupil input").nth(1).fill(name)
     page.dblclick("[data-text=class_join]")
     wait_for_status(page, "You are in the class, ")
-    assert f"{name} (2)" not in json.dumps(taught.room.teach({"do": "class"})["pupils"])
+    assert f"{name} (2)" not in json.dumps(class_.room.teach({"do": "class"})["pupils"])
     return page
 
 
-def teaches(pages: Pages, taught: Class) -> Page:
-    page = pages.visit(taught.server.entrance(), "wall")
+def teaches(pages: Pages, class_: Class) -> Page:
+    page = pages.visit(class_.server.entrance(), "wall")
     page.locator("[data-teacher=class_count]").wait_for(state="attached")
     return page
 

@@ -28,7 +28,7 @@ TSC = [sys.executable, "-m", "tiniscript"]
 
 
 class CommandResult:
-    """What a command did: its exit code and what it printed."""
+    """The result of a command: its exit code and its output."""
 
     def __init__(self, code: int, out: str, err: str) -> None:
         self.code, self.out, self.err = code, out, err
@@ -38,7 +38,7 @@ class CommandResult:
             assert (err + out).strip(), "an exit code without a word"
 
     def __repr__(self) -> str:
-        """What a test that fails shows."""
+        """Return the text that a failing test shows."""
         return f"exit code {self.code}, out {self.out!r}, err {self.err!r}"
 
     def gives(self, code: int, *err: str, out: str | tuple[str, ...] = ()) -> CommandResult:
@@ -112,11 +112,11 @@ class Command:
         for line in stream:
             if text in line.decode():
                 return
-        raise AssertionError(f"never printed: {text}. {self.ended().err}")
+        raise AssertionError(f"never printed: {text}. {self.wait_for_result().err}")
 
     @classmethod
     def is_any_there(cls) -> bool:
-        """Whether one goes on, which has no time but that of the wall."""
+        """Return whether a robot in real time is still running."""
         return any(command.process.poll() is None for command in cls.begun)
 
     def signal(self, number: int) -> None:
@@ -126,13 +126,13 @@ class Command:
         self.process.kill()
         self.process.communicate()
 
-    def ended(self) -> CommandResult:
+    def wait_for_result(self) -> CommandResult:
         out, err = self.process.communicate(timeout=HANGS_S)
         return CommandResult(self.process.returncode, out.decode(), err.decode())
 
 
 def rest_of(terminal: int) -> bytes:
-    """Return what a pseudo-terminal's other end has written, or nothing once it is closed."""
+    """Return the output at a pseudo-terminal, or nothing once it is closed."""
     try:
         return os.read(terminal, 65536)
     except OSError:  # Linux: the other end is closed

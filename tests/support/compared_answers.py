@@ -1,4 +1,4 @@
-"""What two robots answered, compared: without what each counts for itself."""
+"""Compares the answers of two robots without their own counters."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ COUNTS = ("run", "damaged", "dropped", "nonce", "reset", "count", "epoch")
 
 
 def answer_without_counts(request: PendingRequest[Any] | None, *but: str) -> object:
-    """Return how a request ended, and its values without some and without counts."""
+    """Return the result of a request, and its values without some fields and without counts."""
     if request is None or request.outcome is None:
         return None
     outcome = request.outcome
@@ -20,7 +20,7 @@ def answer_without_counts(request: PendingRequest[Any] | None, *but: str) -> obj
 
 
 def without_counts(values: Any, *but: str) -> object:
-    """Return values without some, and without what is counted since the robot was switched on."""
+    """Return values without some fields, and without counters since power-on."""
     if not hasattr(values, "_asdict"):
         return values
     return [

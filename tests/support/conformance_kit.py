@@ -10,7 +10,7 @@ from tests.machines.host import BUILDS, once
 from tests.support.casefile import ROOT
 from tools.builds import conformance
 
-# What they are made from.
+# Sources of these files.
 SOURCES = (
     "compiler/tiniscript/**/*.py", "compiler/tiniscript/robots/*.toml", "tests/cases/*.md",
     "tests/machines/*.py", "tests/oracle/*.py", "tests/support/*.py", "tools/generate/*_kit.py",
@@ -20,13 +20,13 @@ SOURCES = (
 
 @lru_cache(maxsize=1)
 def have_kit() -> None:
-    """Have the files of these sources, made once by whoever needs them first."""
+    """Make the files of the kit from these sources, once for all users."""
     digest = hashlib.sha256()
     for path in sorted(path for pattern in SOURCES for path in ROOT.glob(pattern)):
         digest.update(bytes(path.relative_to(ROOT)) + path.read_bytes())
     for name in conformance.FILES:
-        built = once(BUILDS / f"{digest.hexdigest()[:16]}-{name}", partial(_make, name))
-        _put(built.read_bytes(), conformance.FOLDER / name)
+        built_path = once(BUILDS / f"{digest.hexdigest()[:16]}-{name}", partial(_make, name))
+        _put(built_path.read_bytes(), conformance.FOLDER / name)
 
 
 def _make(name: str, own: Path) -> None:

@@ -9,28 +9,28 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 
-def linked(source: Path, target: Path, *ignored: str) -> Path:
+def link_copy(source: Path, target: Path, *ignored_patterns: str) -> Path:
     """Return a copy of a folder without files of these names.
 
     It is made of links to the one copy that a process has, in a thirtieth of the time. So no test
     writes into a file of it, as root could: it puts another one in its place.
     """
-    kept = Path(_kept(source, ignored).name) / source.name
-    return Path(shutil.copytree(kept, target, copy_function=_link))
+    kept_path = Path(_make_copy(source, ignored_patterns).name) / source.name
+    return Path(shutil.copytree(kept_path, target, copy_function=_link))
 
 
-def _link(kept: str, target: str) -> None:
+def _link(kept_text: str, target: str) -> None:
     try:
-        os.link(kept, target)
-    except OSError:  # another file system
-        shutil.copy2(kept, target)
+        os.link(kept_text, target)
+    except OSError:  # the target is on another file system
+        shutil.copy2(kept_text, target)
 
 
 @lru_cache
-def _kept(source: Path, ignored: tuple[str, ...]) -> TemporaryDirectory[str]:
+def _make_copy(source: Path, ignored_patterns: tuple[str, ...]) -> TemporaryDirectory[str]:
     folder = TemporaryDirectory()
     copy = Path(folder.name) / source.name
-    shutil.copytree(source, copy, ignore=shutil.ignore_patterns(*ignored))
+    shutil.copytree(source, copy, ignore=shutil.ignore_patterns(*ignored_patterns))
     for path in copy.rglob("*"):
         if path.is_file():
             path.chmod(0o444 | path.stat().st_mode & 0o111)

@@ -1,4 +1,4 @@
-"""What holds of the machine in C++: each check asks one process, and compares with Python.
+"""Properties of the machine in C++: each check asks one process, and compares with Python.
 
 `test_cpp_agreement` runs these on this computer, `test_cpp_chips` on chips. Nothing asked depends
 on time or chance: the same machine gives the same answers.
@@ -25,7 +25,7 @@ from tests.support.random_codes import (
     changed_kit,
     images_of_programs,
     likely_code,
-    mutated,
+    mutate_code,
     random_codes,
     random_images,
     simple,
@@ -56,28 +56,28 @@ from tiniscript.vm.tasks import NEVER_MS, machine_of
 
 KIT, WIDE = KITS[0][1], KITS[1][1]
 SIZES = len(WIDE.sensors), len(WIDE.actuators)
-MAX_MS, MAX_STEPS = 3000, 300  # of the random codes that are accepted
-TASK_MS = 600  # of programs with tasks
+MAX_MS, MAX_STEPS = 3000, 300  # limits for accepted random codes
+TASK_MS = 600  # limit for programs with tasks
 
 
 def python_verdict(code: bytes, sensors: int, actuators: int, needs: int = 0) -> tuple[int, int]:
-    """Return what Python says of code, in an image that says what it needs."""
+    """Return Python's verdict on code, in an image with its needs."""
     try:
         verify(code, sensors, actuators, needs)
-    except Refused as refused:
-        return refused.number, refused.offset
+    except Refused as refusal:
+        return refusal.number, refusal.offset
     return 0, 0
 
 
 def compare_verdicts(
     machine: Process, codes: Sequence[bytes], sensors: int, actuators: int, needs: int = 0
 ) -> list[bytes]:
-    """Assert that both machines say the same of each code; return those that are accepted."""
+    """Assert that both machines agree on each code; return the accepted codes."""
     theirs = machine.verdicts(codes, sensors, actuators, needs)
     accepted = []
     for code, (rule, offset) in zip(codes, theirs, strict=True):
         ours = python_verdict(code, sensors, actuators, needs)
-        # the offset of what is accepted is its length
+        # The offset of accepted code is its length.
         verdict = (rule, offset if rule else 0)
         assert ours == verdict, f"{code.hex(' ')} for {sensors}, {actuators}: {ours}, not {verdict}"
         if not rule:
@@ -97,17 +97,17 @@ def compare_runs(machine: Process, code: bytes, kit: Kit, senses: Senses) -> str
 
 
 def check_codes(machine: Process, seed: int, count: int) -> Counter[str]:
-    """Compare random codes, and run what is accepted; return how many times each thing happened."""
+    """Compare random codes, and run the accepted ones; return the number of each result."""
     rng = random.Random(seed)
     oracle_kit, kit = KITS[seed % 2]
     counts: Counter[str] = Counter()
     sizes = len(kit.readings), len(kit.actuators)
     codes = list(random_codes(seed, count))
-    accepted = compare_verdicts(machine, codes, *sizes)
-    for number, code in enumerate(accepted):
+    accepted_bytes = compare_verdicts(machine, codes, *sizes)
+    for number, code in enumerate(accepted_bytes):
         senses = Senses(programs.senses(rng, oracle_kit), MAX_MS, MAX_STEPS, number + 1)
         counts[compare_runs(machine, code, kit, senses)] += 1
-    counts["accepted"] = len(accepted)
+    counts["accepted"] = len(accepted_bytes)
     counts.update(str(rule) for rule, _ in machine.verdicts(codes, *sizes))
     return counts
 
@@ -178,7 +178,7 @@ OPERATIONS: dict[str, Callable[[int, int], int]] = {
     "NOT": lambda a, b: int(not a),
     **{name: getattr(operator, name.lower()) for name, _ in COMPARATORS},
     "RANDOM": lambda a, b: fixed_point.random_between(a, b, b % 2**32),
-    "END": lambda a, b: fixed_point.whole(a),  # of no use here: stands for `whole`
+    "END": lambda a, b: fixed_point.whole(a),  # placeholder that is not needed here
 }
 # 2^32 thousandths, after they are rounded: products and quotients
 ROUNDED_TOO_LARGE = [
@@ -214,25 +214,27 @@ def check_arithmetic(machine: Process, name: str, count: int) -> None:
 FAR = f"A = 0;N = 0;IF(N > 0);{'SHOW(8);' * 140}ENDIF;"  # more than 256 bytes
 
 
-def some_task_programs(first: int, count: int, before: str = "") -> Iterator[tuple[bytes, Senses]]:
+def some_task_programs(
+    first: int, count: int, text_before: str = ""
+) -> Iterator[tuple[bytes, Senses]]:
     """Yield images of random programs with tasks, and what their sensors read.
 
     All that a program does lies after the code of the text `before`.
     """
     for seed in range(first, first + count):
         text, readings = task_program(random.Random(seed))
-        yield compile_text(before + text, KIT).image, Senses(readings, TASK_MS, seed=seed + 1)
+        yield compile_text(text_before + text, KIT).image, Senses(readings, TASK_MS, seed=seed + 1)
 
 
 def check_task_codes(machine: Process, seed: int, count: int) -> None:
     """Code with tasks has the same verdict, in images that may have some and in others."""
     rng = random.Random(seed)
     codes = list(task_codes(seed, count))
-    codes += [mutated(rng, code, rng.choice(codes)) for code in codes]
+    codes += [mutate_code(rng, code, rng.choice(codes)) for code in codes]
     rules = set()
     for needs in (0, TASKS):
-        accepted = compare_verdicts(machine, codes, *SIZES, needs)
-        assert bool(accepted) == bool(needs) or len(accepted) < len(codes) / 4
+        accepted_bytes = compare_verdicts(machine, codes, *SIZES, needs)
+        assert bool(accepted_bytes) == bool(needs) or len(accepted_bytes) < len(codes) / 4
         rules |= {rule for rule, _ in machine.verdicts(codes, *SIZES, needs)}
     # accepted, UNKNOWN_OPCODE, STACK_NOT_EMPTY, NOT_OPEN, STILL_OPEN, BAD_DEF, INSIDE_CHECK,
     # TOO_MANY_TASKS
@@ -241,8 +243,8 @@ def check_task_codes(machine: Process, seed: int, count: int) -> None:
 
 def check_task_programs(machine: Process, first: int, count: int) -> None:
     for image, senses in some_task_programs(first, count):
-        ran = machine.run(image, KIT, senses)
-        assert machine.agrees(ran, ran_python(image, KIT, senses), senses.max_ms), first
+        run = machine.run(image, KIT, senses)
+        assert machine.agrees(run, ran_python(image, KIT, senses), senses.max_ms), first
 
 
 class SlowRobot(TracedRobot):
@@ -308,7 +310,7 @@ def way_codes(seed: int, count: int) -> list[bytes]:
         if number % 3 == 0:
             code = tasks[number] + way_code(rng)
         if number % 4 == 1:
-            code = mutated(rng, code, rng.choice(tasks))
+            code = mutate_code(rng, code, rng.choice(tasks))
         if number % 8 == 2:
             code = (
                 code[: rng.randrange(len(code))]
@@ -319,17 +321,19 @@ def way_codes(seed: int, count: int) -> list[bytes]:
 
 
 def check_way_codes(machine: Process, seed: int, count: int) -> None:
-    """The same verdicts, whatever the image needs; what is accepted and has no tasks runs alike."""
+    """Check that verdicts agree whatever the image needs; accepted code without tasks runs
+    alike.
+    """
     ends: Counter[str] = Counter()
     codes = way_codes(seed, count)
     codes += [bytes(code) for code in ((ESCAPE,), *((ESCAPE, second) for second in range(256)))]
-    pushed = simple("PUSH_NUM_2") * 2
-    codes += [pushed + bytes((ESCAPE, second)) for second in range(256)]
+    pushed_bytes = simple("PUSH_NUM_2") * 2
+    codes += [pushed_bytes + bytes((ESCAPE, second)) for second in range(256)]
     for needs in (0, TASKS, GO, ALL_NEEDS):
-        accepted = compare_verdicts(machine, codes, *SIZES, needs)
+        accepted_bytes = compare_verdicts(machine, codes, *SIZES, needs)
         if needs != GO:
             continue
-        for code in accepted:
+        for code in accepted_bytes:
             ends[compare_runs(machine, code, WIDE, Senses({}, MAX_MS, MAX_STEPS))] += 1
     assert {"DONE", "LIMIT", "NO_POWER", "OVERFLOW"} <= set(ends), ends
     assert "BAD_CODE" not in ends
@@ -339,10 +343,10 @@ def check_way_programs(machine: Process, first: int, count: int) -> None:
     """Random programs with ways, with tasks and without, run alike."""
     ends: Counter[str] = Counter()
     for image, kit, senses in some_way_programs(first, count):
-        ran = machine.run(image, kit, senses)
+        run = machine.run(image, kit, senses)
         want = ran_python(image, kit, senses)
-        assert machine.agrees(ran, want, senses.max_ms), image.hex(" ")
-        ends[ran.trace.split()[-1]] += 1
+        assert machine.agrees(run, want, senses.max_ms), image.hex(" ")
+        ends[run.trace.split()[-1]] += 1
     assert {"DONE", "LIMIT", "NO_POWER"} <= set(ends), ends
 
 
@@ -369,8 +373,8 @@ def some_way_programs(first: int, count: int) -> list[tuple[bytes, Kit, Senses]]
 def python_refusal(data: bytes) -> int:
     try:
         unpack(data)
-    except ImageRefused as refused:
-        return refused.number
+    except ImageRefused as refusal:
+        return refusal.number
     return 0
 
 
@@ -393,16 +397,16 @@ def check_images(machine: Process, seed: int, count: int) -> None:
 
 
 def refusal_of(load: Callable[[], object]) -> str:
-    """Return why an image is refused with its offset, or nothing."""
+    """Return the reason and offset of an image's refusal, or ""."""
     try:
         load()
-    except (ImageRefused, Refused) as refused:
-        return f"{refused.number} {refused}"
+    except (ImageRefused, Refused) as refusal:
+        return f"{refusal.number} {refusal}"
     return ""
 
 
 def check_whole_images(machine: Process, seed: int, count: int) -> None:
-    """Programs with a change in them, for robots of which some have other devices."""
+    """Check changed programs, for robots of which some have other devices."""
     rng = random.Random(seed)
     senses = Senses(max_ms=100, max_steps=20)
     refusals = set()

@@ -37,7 +37,7 @@ def crowd(
     *ports: int, count: int = 1000, says: Sequence[bytes] = (b"",), host: str = "127.0.0.1",
     source: str = "",
 ) -> Iterator[None]:  # fmt: skip
-    """So many connections to each port, which say one of `says` in turn."""
+    """Open so many connections to each port, which send one of `says` in turn."""
     with ExitStack() as stack:
         for port in ports:
             for begin in range(0, count, EACH):

@@ -56,7 +56,7 @@ class Debugged:
         return events
 
     def halt(self, limit_ms: int = 5000) -> Halt | None:
-        """Wait for the next halt; None where the run ends before, or the time is over."""
+        """Wait for the next halt; None if the run ends before, or the time is over."""
         event = self.until(
             lambda event: event.name in ("HALTED", "DONE", "FAULT", "STOPPED"), limit_ms
         )
@@ -75,9 +75,9 @@ class Debugged:
     def variables(self) -> list[int]:
         values: list[int] = []
         while len(values) < 32:
-            asked = self.session.read_variables(len(values))
+            request = self.session.read_variables(len(values))
             piece = [
-                v for (v,) in iter_unpack("<i", self.robot.complete(self.session, asked).values)
+                v for (v,) in iter_unpack("<i", self.robot.complete(self.session, request).values)
             ]
             if not piece:
                 break
@@ -90,7 +90,7 @@ class Debugged:
         return list(iter_unpack("<BHI", reply.tasks))
 
 
-def debugged(text: str, *places: int, robot: HostFirmware | None = None) -> Debugged:
+def debug(text: str, *places: int, robot: HostFirmware | None = None) -> Debugged:
     """Return a robot whose program has these places, and has been started."""
     session = Debugged(text, robot)
     assert session.places(*places) == OK

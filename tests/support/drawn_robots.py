@@ -15,15 +15,15 @@ Drawing = list[tuple[str, list[float], str]]
 
 
 def drawings_of(*wanted: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> list[Drawing]:
-    """Return what is drawn of robots, each with its name, its state and what else is seen."""
+    """Return the drawings of robots, each with its name, its state and other visible parts."""
     known = {robot["name"]: robot for robot in description()["robots"]}
-    asked = [
+    requests = [
         {"robot": known[name], "state": state, "seen": robot_state}
         for name, state, robot_state in wanted
     ]
-    drawings: list[Drawing] = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(asked))[0])
+    drawings: list[Drawing] = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(requests))[0])
     return drawings
 
 
-def shapes(drawn: Drawing, how: str, color: str) -> list[list[float]]:
-    return [numbers for kind, numbers, fill in drawn if (kind, fill) == (how, color)]
+def shapes(drawing: Drawing, how: str, color: str) -> list[list[float]]:
+    return [numbers for kind, numbers, fill in drawing if (kind, fill) == (how, color)]

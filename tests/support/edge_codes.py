@@ -21,15 +21,15 @@ def unverified_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
     """
     yes, show, end = simple("PUSH_TRUE"), simple("SHOW"), simple("RETURN")
     count = simple("LOOP8") + b"\x01"
-    for values, caught in ((STACK_VALUES, None), (STACK_VALUES + 1, STACK_VALUES)):
-        yield yes * values, caught
+    for values, caught_at in ((STACK_VALUES, None), (STACK_VALUES + 1, STACK_VALUES)):
+        yield yes * values, caught_at
     for name in ("TIME", "PUSH_FALSE", "PUSH_VAR_0", "PUSH_SENSOR_0", "PUSH_READ_0", "PUSH_NUM_1"):
         yield yes * STACK_VALUES + simple(name), STACK_VALUES
     for name in ("PUSH_VAR", "PUSH_SENSOR", "PUSH_READ", "PUSH8", "PUSH16", "PUSH32"):
         yield yes * STACK_VALUES + simple(name) + bytes(4), STACK_VALUES
     yield show, 0
     yield yes + simple("ADD") + show, 1
-    # nothing is on the stack
+    # Code with an empty stack.
     for name in ("ADD", "MAX", "EQ", "AND"):
         yield simple(name), 0
     for name in ("SET_VAR", "LOOP", "IF", "IF_NOT", "IF_FAR", "IF_NOT_FAR", "LOOP_FAR"):
@@ -38,28 +38,28 @@ def unverified_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
         yield simple(name) + bytes(3), 0
     yield simple("SET_VAR_0"), 0
     yield yes + simple("MOTORS"), 1
-    for variable, caught in ((VARIABLES - 1, None), (VARIABLES, 0), (255, 0)):
+    for variable, caught_at in ((VARIABLES - 1, None), (VARIABLES, 0), (255, 0)):
         number = bytes([variable])
-        yield simple("SET_VAR8") + number + b"\x01", caught
-        yield simple("ADD_VAR8") + number + b"\x01", caught
-        yield simple("ADD_VAR") + b"\x00" + number, caught
-        yield simple("ADD_VAR") + number + b"\x00", caught
-        yield simple("PUSH_VAR") + number, caught
-        yield yes + simple("SET_VAR") + number, None if caught is None else 1
-        yield simple("INC_VAR") + number, caught
-        yield simple("DEC_VAR") + number, caught
-        yield simple("IF_VAR8_NE") + number + b"\x07\x00", caught
-        yield simple("IF_VAR16_NE") + number + b"\x07\x00\x00", caught
-    for variable, caught in ((sensors - 1, None), (sensors, 0), (255, 0)):
+        yield simple("SET_VAR8") + number + b"\x01", caught_at
+        yield simple("ADD_VAR8") + number + b"\x01", caught_at
+        yield simple("ADD_VAR") + b"\x00" + number, caught_at
+        yield simple("ADD_VAR") + number + b"\x00", caught_at
+        yield simple("PUSH_VAR") + number, caught_at
+        yield yes + simple("SET_VAR") + number, None if caught_at is None else 1
+        yield simple("INC_VAR") + number, caught_at
+        yield simple("DEC_VAR") + number, caught_at
+        yield simple("IF_VAR8_NE") + number + b"\x07\x00", caught_at
+        yield simple("IF_VAR16_NE") + number + b"\x07\x00\x00", caught_at
+    for variable, caught_at in ((sensors - 1, None), (sensors, 0), (255, 0)):
         number = bytes([variable])
         for name in ("READ", "PUSH_SENSOR", "PUSH_READ"):
-            yield simple(name) + number, caught
+            yield simple(name) + number, caught_at
     # a distance that leads beyond all addresses of 16 bits, to the instruction itself
     yield jump("ELSE", True, 0xFFFD), 0
-    for op in OPS:  # instructions of one byte name what a machine has, or may have not
+    for op in OPS:  # one-byte instructions that depend on a machine's features
         if op.implied and op.implied.kind.name == "sensor":
             yield bytes([op.code]), 0 if op.implied.value >= sensors else None
-    frames = COUNTERS + CALLS  # of both, in the order in which they are opened
+    frames = COUNTERS + CALLS  # frames of both kinds, in the order in which they are opened
     yield count * frames, None
     yield count * (frames + 1), 2 * frames
     yield simple("LOOP8") + b"\xc8" + end, 200  # a loop is closed as a call
@@ -77,7 +77,7 @@ def unverified_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
         yield jump("ELSE", far, 1), len(skip) + 1
     yield jump("ELSE", True, 0x7FFF), 0x7FFF + 3
     yield jump("AGAIN", True, 4), 0xFFFF
-    # an instruction that is cut takes what lies after the code for the rest of it
+    # A cut instruction reads the bytes after the code.
     yield simple("PUSH16"), 3
     yield simple("PUSH32") + b"\x01\x02", 5
     for code in range(256):

@@ -10,7 +10,7 @@ FOLDER = Path(robots.__file__).parent
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.toml")}
 
 
-def edited(name: str, old: str, new: str) -> str:
+def edit_profile(name: str, old: str, new: str) -> str:
     """The text of a shipped profile with its first `old` replaced."""
     assert old in TEXTS[name]
     return TEXTS[name].replace(old, new, 1)

@@ -1,4 +1,4 @@
-"""What an ESP32 says of itself by multicast DNS, for real: on 127.0.0.1, by zeroconf.
+"""An ESP32's real multicast DNS announcement: on 127.0.0.1, by zeroconf.
 
 The firmware's calls of `MDNS` decide what is announced, and when: this repeats them.
 """
@@ -14,7 +14,7 @@ from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.esp32_radio import Radios, port_of, radios
 
 LOOK_S = 0.1
-PORT = 8473  # that the firmware announces; many robots are on this computer, at ports that are free
+PORT = 8473  # port that the firmware announces; robots on this computer use free ports
 
 
 class Announced:
@@ -40,7 +40,7 @@ class Announced:
     def _follow(self) -> None:
         before: Any = None
         while not self._is_over.wait(LOOK_S):
-            radios, number = self._said()
+            radios, number = self._read_radios()
             now = _info(radios, number) if radios.service else None
             if now == before:
                 continue
@@ -50,7 +50,7 @@ class Announced:
                 self._network.register_service(now)
             before = now
 
-    def _said(self) -> tuple[Radios, int]:
+    def _read_radios(self) -> tuple[Radios, int]:
         packets: list[tuple[Radios, int]] = []
 
         def look(robot: HostFirmware) -> None:

@@ -7,10 +7,10 @@ from collections.abc import Callable
 
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import talk
-from tests.support.esp32_wifi import joined
+from tests.support.esp32_wifi import join_network
 from tests.support.mosquitto import Mosquitto
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import ended
+from tests.support.robot_on_esp32 import wait_for_outcome
 from tests.support.robot_on_host import actions_of
 from tiniscript.link import wifi
 from tiniscript.link.messages import AUTHORITY_MS
@@ -25,12 +25,12 @@ def at(
     broker: Mosquitto, keys: Keys, settings: wifi.BrokerSettings | None = None
 ) -> tuple[Esp32Robot, Session]:
     """Return a robot with an owner, which is at the broker, and the owner's session by cable."""
-    robot, owner = joined(keys)
+    robot, owner = join_network(keys)
     request = owner.use_broker(settings or broker.settings())
-    assert ended(robot, [(None, owner)], request) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], request) == "OK"
     until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     talk(robot, [], AUTHORITY_MS + 100)
-    # that is less of this computer's time: a broker that had no turn was given up
+    # Shorter times would fail if the broker got no processor time.
     until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     return robot, owner
 
@@ -48,7 +48,7 @@ def until(robot: Esp32Robot, holds: Callable[[], bool], limit_ms: int = 60_000) 
 def broker_settings_of(robot: Esp32Robot, owner: Session) -> tuple[str, str, str]:
     """Return the mode, the state and the class of its broker."""
     request = owner.broker()
-    assert ended(robot, [(None, owner)], request) == "OK" and request.outcome
+    assert wait_for_outcome(robot, [(None, owner)], request) == "OK" and request.outcome
     wifi_reply = request.outcome.values
     return wifi.MODES[wifi_reply.mode], wifi.STATES[wifi_reply.state], wifi_reply.network.decode()
 

@@ -1,4 +1,4 @@
-"""What a strict compiler complains of."""
+"""Complaints of a strict compiler."""
 
 from __future__ import annotations
 
@@ -13,6 +13,6 @@ STRICT = ("-Wall", "-Wextra", "-Werror", "-fno-exceptions", "-fno-rtti", "-ffree
 
 
 def complaints(path: Path, *flags: str, standard: str = "gnu++11") -> str:
-    """Return what this computer's compiler has against a file."""
+    """Return the complaints of this computer's compiler about a file."""
     command = ["g++", f"-std={standard}", *STRICT, *flags, str(path)]
     return subprocess.run(command, capture_output=True, text=True, check=False).stderr[:3000]

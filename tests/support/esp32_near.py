@@ -22,8 +22,8 @@ def near(robot: Esp32PtyRobot, password: bytes = PASSWORD) -> None:
     robot.ask(reach)
 
 
-def drove(robot: Esp32PtyRobot) -> list[str]:
-    return [line for line in robot.did if line.startswith("MOTORS")]
+def list_motor_changes(robot: Esp32PtyRobot) -> list[str]:
+    return [line for line in robot.actions if line.startswith("MOTORS")]
 
 
 def files_with(folder: Path, words: bytes) -> list[str]:

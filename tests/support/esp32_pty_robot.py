@@ -1,4 +1,4 @@
-"""A robot with an ESP32 behind a pseudo-terminal: its sketch on a simulated chip, in real time."""
+"""A robot with an ESP32 on a pseudo-terminal: its sketch on a simulated chip, in real time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Esp32PtyRobot(PtyRobot):
         super().__init__(self.profile.kit)
 
     def hang(self, milliseconds: int) -> None:
-        """Let the main loop stand still."""
+        """Stop the main loop for a while."""
 
         def stand(robot: HostFirmware) -> None:
             assert isinstance(robot, Esp32Robot)
@@ -32,14 +32,14 @@ class Esp32PtyRobot(PtyRobot):
         """Do what the watchdog has asked for."""
         with self._lock:
             self._take_power()
-            self._robot = self._made(TASK_WATCHDOG)
+            self._robot = self._make_robot(TASK_WATCHDOG)
 
-    def _made(self, reset: int = POWER_ON, seed: int = 0) -> HostFirmware:
+    def _make_robot(self, reset: int = POWER_ON, seed: int = 0) -> HostFirmware:
         return Esp32Robot(self.profile, self._kept, reset, seed or self.seed)
 
     def _take_power(self) -> None:
         if self._robot:
             assert isinstance(self._robot, Esp32Robot)
-            self._kept = self._robot.kept()
+            self._kept = self._robot.read_kept()
             self._robot.close()
         self._robot = None

@@ -15,7 +15,7 @@ LEAST_MTU = 23
 
 
 class Client(Protocol):
-    """Somebody who is connected. `poll` says what to send, `receive` gets what has come."""
+    """A connected client. `poll` returns the bytes to send, `receive` gets the received ones."""
 
     def poll(self, now_ms: int) -> bytes: ...
 
@@ -23,7 +23,7 @@ class Client(Protocol):
 
 
 class Bytes:
-    """A client without a session: what it says, and what it has heard."""
+    """A client without a session: the bytes to send, and the received ones."""
 
     def __init__(self, line: bytes = b"") -> None:
         self.to_send = line
@@ -42,7 +42,7 @@ class End(Protocol):
 
     def send(self, data: bytes) -> None: ...
 
-    def taken(self) -> bytes: ...
+    def take(self) -> bytes: ...
 
     def leave(self) -> None: ...
 
@@ -72,7 +72,7 @@ class LowEnergy:
         for k in range(0, len(data), most):
             self.robot.radio("w", self._number + _text(data[k : k + most]))
 
-    def taken(self) -> bytes:
+    def take(self) -> bytes:
         answer = self.robot.radio("n", self._number)
         count, answer = int.from_bytes(answer[:4], "little"), answer[4:]
         for _ in range(count):
@@ -99,7 +99,7 @@ class SerialPort:
         if data:
             self.robot.radio("W", _text(data))
 
-    def taken(self) -> bytes:
+    def take(self) -> bytes:
         return _next(self.robot.radio("S"))[0]
 
     def leave(self) -> None:
@@ -124,7 +124,7 @@ class Network:
         except OSError:
             self.has_ended = True
 
-    def taken(self) -> bytes:
+    def take(self) -> bytes:
         try:
             data = self.socket.recv(65536)
         except BlockingIOError:
@@ -139,7 +139,7 @@ class Network:
 
 
 class Radios(NamedTuple):
-    """What the firmware has asked of the radios."""
+    """The firmware's requests to the radios."""
 
     advertised: str
     serial_port: str
@@ -158,8 +158,8 @@ def radios(robot: Esp32Robot) -> Radios:
     for _ in range(7):
         text, answer = _next(answer)
         texts.append(text.decode())
-    advertised, serial_port, host, instance, service, network, password = texts
-    return Radios(advertised, serial_port, host, instance, service, network, password,
+    advertised_text, serial_port, host, instance, service, network, password = texts
+    return Radios(advertised_text, serial_port, host, instance, service, network, password,
                   bool(answer[0]), int.from_bytes(answer[1:5], "little"))  # fmt: skip
 
 
@@ -168,17 +168,17 @@ def port_of(robot: Esp32Robot) -> int:
 
 
 def in_reach(robot: Esp32Robot, name: str, password: str) -> None:
-    """Let a network be in reach; none where its name is empty."""
+    """Put a network in reach; an empty name removes it."""
     robot.radio("R", _text(name.encode()) + _text(password.encode()))
 
 
 def takes(robot: Esp32Robot, most: int) -> None:
-    """Let a client in a network take so many bytes of what is sent at once; of 0 none, for now."""
+    """Limit the bytes that a client in a network accepts at once; 0 accepts none for now."""
     robot.radio("t", pack("<H", most))
 
 
-def known(robot: Esp32Robot, name: str, address: str, wait_ms: int = 0) -> None:
-    """Let the network know a computer's name, which it takes some time to look up."""
+def announce_computer(robot: Esp32Robot, name: str, address: str, wait_ms: int = 0) -> None:
+    """Announce a computer's name to the network, whose lookup takes some time."""
     words = _text(name.encode()) + _text(address.encode())
     robot.radio("N", words + wait_ms.to_bytes(2, "little"))
 
@@ -195,10 +195,10 @@ def talk(
                 cable += data
             elif data:
                 end.send(data)
-        heard = robot.step(cable, flags, TICKS)
+        heard_bytes = robot.step(cable, flags, TICKS)
         flags = 0
         for end, client in ends:
-            client.receive(heard if end is None else end.taken(), robot.now_ms)
+            client.receive(heard_bytes if end is None else end.take(), robot.now_ms)
 
 
 def session(nonce: int, robot: Esp32Robot) -> Session:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Network, in_reach, talk
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import Ends, booted, claimed, ended
+from tests.support.robot_on_esp32 import Ends, boot, claim_robot, wait_for_outcome
 from tiniscript.link import wifi
 from tiniscript.link.messages import AUTHORITY_MS
 from tiniscript.link.payloads import WifiReply
@@ -16,17 +16,17 @@ HOTSPOT = wifi.Network(b"Tini", b"12345678", True)
 WIFI_KEY = b"wifi"
 
 
-def owned(keys: Keys, robot: Esp32Robot | None = None) -> tuple[Esp32Robot, Session]:
+def make_owned_robot(keys: Keys, robot: Esp32Robot | None = None) -> tuple[Esp32Robot, Session]:
     """Return a robot with an owner, and the owner's session over the cable."""
-    robot = robot or booted()
+    robot = robot or boot()
     owner = Session(7, 115200, robot.robot.kit.fingerprint, keys=keys)
-    claimed(robot, [(None, owner)], owner)
+    claim_robot(robot, [(None, owner)], owner)
     return robot, owner
 
 
 def far_owner(keys: Keys) -> tuple[Esp32Robot, Network, Session]:
     """Return a robot in a network, and its owner's session over TCP."""
-    robot, _ = joined(keys)
+    robot, _ = join_network(keys)
     talk(robot, [], AUTHORITY_MS + 100)
     return robot, Network(robot), remote(robot, keys)
 
@@ -35,18 +35,18 @@ def school_in_reach(robot: Esp32Robot) -> None:
     in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
 
 
-def joined(keys: Keys, network: wifi.Network = SCHOOL) -> tuple[Esp32Robot, Session]:
-    """Return the same with a network, which is in reach."""
-    robot, owner = owned(keys)
+def join_network(keys: Keys, network: wifi.Network = SCHOOL) -> tuple[Esp32Robot, Session]:
+    """Return a robot with a network in reach, and its session."""
+    robot, owner = make_owned_robot(keys)
     school_in_reach(robot)
-    assert ended(robot, [(None, owner)], owner.join(network)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], owner.join(network)) == "OK"
     talk(robot, [(None, owner)], 50)
     return robot, owner
 
 
 def wifi_reply_of(robot: Esp32Robot, ends: Ends, who: Session) -> WifiReply:
     request = who.wifi()
-    assert ended(robot, ends, request) == "OK"
+    assert wait_for_outcome(robot, ends, request) == "OK"
     assert request.outcome
     return request.outcome.values
 

@@ -27,7 +27,7 @@ from tests.support.casefile import ROOT
 
 LIMIT_S = 60  # processor time
 TROUBLE = 2  # exit code of a child whose test was not run
-SKIPPED = 3  # that of one whose test lacks something on this computer
+SKIPPED = 3  # outcome if a test lacks something on this computer
 PASSES, FAILS, SKIPS = "passes", "fails", "skips"
 Pair = tuple[CodeType, CodeType]
 
@@ -41,11 +41,11 @@ class Try(NamedTuple):
 
 
 class Elsewhere(Exception):
-    """What differs is in no function that can be found."""
+    """Raised if the difference is in no function that can be found."""
 
 
 def answers(tries: Sequence[Try], folder: Path) -> list[str]:
-    """Say of each that its test FAILS, PASSES or SKIPS, or why that cannot be said here.
+    """Return for each whether its test FAILS, PASSES or SKIPS, or the reason why that is unknown.
 
     `folder` is a copy of the repository. There the tests of Python, which are quick, must pass
     without a mistake.
@@ -75,11 +75,11 @@ class Plugin:
         quick = [item for tried_test, row in zip(self.tries, items_by_test, strict=True)
                  for item in row if tried_test.file.endswith(".py")]  # fmt: skip
         assert _in_child(quick, lambda: None) != FAILS, "they fail without a mutant, too"
-        self.answers += map(_tried, self.tries, items_by_test)
+        self.answers += map(_run_try, self.tries, items_by_test)
         return True
 
 
-def _tried(tried_test: Try, items: Sequence[pytest.Item]) -> str:
+def _run_try(tried_test: Try, items: Sequence[pytest.Item]) -> str:
     path = ROOT / tried_test.file
     if path.suffix == ".py":
         try:
@@ -112,14 +112,14 @@ def _in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> str:
             os._exit(code)
     _, status = os.waitpid(child, 0)
     with suppress(ProcessLookupError):
-        os.killpg(child, signal.SIGKILL)  # what its tests have started
+        os.killpg(child, signal.SIGKILL)  # also ends the processes of its tests
     code = os.waitstatus_to_exitcode(status)
     assert code != TROUBLE
     return {0: PASSES, SKIPPED: SKIPS}.get(code, FAILS)
 
 
 def _exchange(tried_test: Try) -> Callable[[], None]:
-    """Return what makes the mutant of the module that is imported."""
+    """Return a function that installs the mutant in the imported module."""
     name = tried_test.file.removeprefix("compiler/").removesuffix(".py").replace("/", ".")
     module = importlib.import_module(name.removesuffix(".__init__"))
     right = (ROOT / tried_test.file).read_text(encoding="utf-8")
@@ -170,7 +170,7 @@ def _functions(owner: ModuleType | type, module: ModuleType) -> Iterator[Functio
 def main() -> int:
     plugin = Plugin([Try(*values) for values in json.load(sys.stdin)])
     answers = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # what pytest says
+    os.dup2(2, 1)  # pytest's output goes to standard error
     tests = dict.fromkeys(tried_test.test for tried_test in plugin.tries)
     code = pytest.main(["-q", "-p", "no:cacheprovider", "-s", "--whole", *tests], [plugin])
     json.dump(plugin.answers, answers)

@@ -63,7 +63,7 @@ class Adapter(ServiceInterface):
         if not self.is_powered:
             raise DBusError("org.bluez.Error.NotReady", "Resource Not Ready")
         self.is_scanning = True
-        self.rounds = 0  # of advertisements in this scan
+        self.rounds = 0  # number of advertisements in this scan
         self.bluez.advertise()
 
     @dbus_method()
@@ -203,14 +203,14 @@ class Characteristic(ServiceInterface):
 
 
 class Root(ServiceInterface):
-    """So that `/` lists all objects."""
+    """The root object, through which `/` lists all objects."""
 
     def __init__(self) -> None:
         super().__init__("org.tiniscript.Root")
 
 
 class FakeBluez:
-    """The bus and what is on it, in a thread of its own; `address` is the bus's."""
+    """The bus with its objects, in a thread of its own; `address` is the bus's."""
 
     bus: MessageBus
     has_ended = False
@@ -276,7 +276,7 @@ class FakeBluez:
         self.do(lambda: self.bus.export(device.path, device))
 
     def advertise(self) -> None:
-        """Let peripherals be seen, as long as a program scans."""
+        """Advertise peripherals while a program scans."""
         if not self.adapter.is_scanning:
             return
         self.adapter.rounds += 1
@@ -287,7 +287,7 @@ class FakeBluez:
         self.loop.call_later(ADVERTISED_S, self.advertise)
 
     def part(self, peripheral: Peripheral) -> None:
-        """End a peripheral's connection, as where it is out of reach."""
+        """End a peripheral's connection, as if it were out of reach."""
         self.do(self.devices[peripheral.address].part)
 
     def power(self, is_on: bool) -> None:

@@ -9,10 +9,10 @@ import sys
 from pathlib import Path
 
 from tests.machines.bootloaders import Bootloader
-from tests.machines.uno import built
+from tests.machines.uno import build_uno
 from tests.support.casefile import ROOT
 from tests.support.command import CommandResult
-from tests.support.copies import linked
+from tests.support.copies import link_copy
 from tests.support.waiting import HANGS_S
 from tools.uno import Uno
 
@@ -24,17 +24,17 @@ ENDS = (
 )
 
 
-def copied(folder: Path) -> Path:
-    """Return a copy of the package, without what is built for it, in a folder."""
-    return linked(ROOT / "compiler", folder / "compiler", "ready", "page")
+def copy_package(folder: Path) -> Path:
+    """Return a copy of the package in a folder, without its build results."""
+    return link_copy(ROOT / "compiler", folder / "compiler", "ready", "page")
 
 
 def to_hex(elf: Path, file: Path) -> None:
     subprocess.run(["avr-objcopy", "-O", "ihex", "-R", ".eeprom", elf, file], check=True)
 
 
-# An avrdude has a session of its own: killed tests leave it behind, reading for ever from a port
-# that is gone. So each process gets so many seconds of a processor.
+# An avrdude has its own session: killed tests leave it reading forever from a vanished port.
+# Therefore each process has a limit of processor seconds.
 LIMITED = ("/bin/sh", "-c", 'ulimit -t 60; exec "$@"', "sh")
 
 
@@ -54,8 +54,8 @@ def tsc(package: Path, *words: str, **variables: str) -> CommandResult:
     return CommandResult(result.returncode, result.stdout, result.stderr)
 
 
-def interrupted(ready_file: Path, *words: str, **variables: str) -> CommandResult:
-    """Return what it did where Ctrl-C comes as soon as something is in a file."""
+def run_interrupted(ready_file: Path, *words: str, **variables: str) -> CommandResult:
+    """Run a command, and press Ctrl-C as soon as a file has content; return the result."""
     running = subprocess.Popen(
         command(*words), env={**os.environ, **variables}, stderr=subprocess.PIPE, text=True
     )
@@ -68,6 +68,8 @@ def interrupted(ready_file: Path, *words: str, **variables: str) -> CommandResul
 
 def new_board(of: Bootloader) -> Uno:
     """Return a board as it comes: a bootloader, and no sketch worth the name."""
-    uno = Uno(built("nothing"), board=of.board, bootloader=of.file, baud=of.baud, tells_sleep=False)
+    uno = Uno(
+        build_uno("nothing"), board=of.board, bootloader=of.file, baud=of.baud, tells_sleep=False
+    )
     uno.go(speed=1.5 if of.board == "mega" else 1.0)  # a Mega is given its time to begin
     return uno

@@ -1,4 +1,4 @@
-"""What boards that are not ours send: recordings, and stand-ins that play them.
+"""Output of foreign boards: recordings, and stand-ins that replay them.
 
 A recording is put together from the sources and documents that `link/foreign.py` names.
 """
@@ -56,7 +56,7 @@ MBOT_VERSION = b"\xff\x55\x01\x04\x0906.01.009\r\n"
 
 
 class Recording(NamedTuple):
-    """What a board has sent, and which row of `link/foreign.py` and which line are told."""
+    """The output of a board, with the expected row of `link/foreign.py` and the line."""
 
     name: str
     data: bytes
@@ -138,14 +138,14 @@ class Board(Nobody):
         return b"".join(self.take(byte) for byte in data)
 
     def take(self, byte: int) -> bytes:
-        """Return what a byte provokes."""
+        """Return the answer to a byte."""
         return b""
 
 
 class FirmataBoard(Board):
     """Answers 0xF9, and the question for its name, outside of a sysex or as one."""
 
-    starts, boot_ms = FIRMATA, 2200  # its lamp blinks its version first
+    starts, boot_ms = FIRMATA, 2200  # its lamp first blinks the version
     _sysex: bytes | None = None
 
     def take(self, byte: int) -> bytes:
@@ -153,8 +153,8 @@ class FirmataBoard(Board):
             if byte != 0xF7:
                 self._sysex += bytes([byte])
                 return b""
-            asked, self._sysex = self._sysex, None
-            return FIRMATA_NAME if asked == b"\x79" else b""
+            asked_bytes, self._sysex = self._sysex, None
+            return FIRMATA_NAME if asked_bytes == b"\x79" else b""
         if byte == 0xF0:
             self._sysex = b""
         return FIRMATA_VERSION if byte == 0xF9 else b""
@@ -219,7 +219,7 @@ class PythonBoard(Board):
 
 
 class SilentPython(PythonBoard):
-    """One whose program runs: it answers nothing."""
+    """A Python board whose program runs: it answers nothing."""
 
     def take(self, byte: int) -> bytes:
         return b""
@@ -254,7 +254,7 @@ class DownloadBoard(Board):
 
 
 class EmptyBoard(Board):
-    """One without a program: its watchdog starts it again and again."""
+    """A board without a program, which its watchdog restarts repeatedly."""
 
     starts, boot_ms, again_ms = EMPTY, 20, 300
 
@@ -269,7 +269,7 @@ class EchoSketch(Board):
 
 
 class LineEchoSketch(Board):
-    """Says what has come when nothing more has come for a second: `You said: …`."""
+    """Prints the received text after a second of silence: `You said: …`."""
 
     starts, boot_ms = b"Ready\r\n", 100
     _quiet_ms = 0

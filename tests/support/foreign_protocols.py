@@ -1,4 +1,4 @@
-"""What a client of another protocol says first: HTTP, TLS, STUN."""
+"""The first bytes of clients of other protocols: HTTP, TLS, STUN."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import ssl
 
 
 def tls_hello() -> bytes:
-    """What a browser says first for https."""
+    """Return the first bytes of a browser for https."""
     incoming, outgoing = ssl.MemoryBIO(), ssl.MemoryBIO()
     tls = ssl.create_default_context().wrap_bio(incoming, outgoing, server_hostname="localhost")
     with contextlib.suppress(ssl.SSLWantReadError):
@@ -15,7 +15,7 @@ def tls_hello() -> bytes:
     return outgoing.read()
 
 
-STUN = bytes.fromhex("2112a442") + bytes(range(1, 13))  # its cookie and a transaction
+STUN = bytes.fromhex("2112a442") + bytes(range(1, 13))  # magic cookie and transaction id
 FOREIGN_GREETINGS = {
     "get": b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n",
     "get of old": b"GET /\r\n",

@@ -16,13 +16,13 @@ TINIBOT = robots.load("tinibot").kit
 
 def image_of(text: str, kit: Kit = TINIBOT) -> Image:
     """Return the image of a text, which must be right."""
-    compiled = compile_text(text, kit)
-    assert compiled.image, text
-    return unpack(compiled.image)
+    compilation = compile_text(text, kit)
+    assert compilation.image, text
+    return unpack(compilation.image)
 
 
 def needs_of(code: bytes) -> int:
-    """Return what the instructions of code need that not every machine has."""
+    """Return the optional features that the instructions of code need."""
     return reduce(or_, (row.op.needs for row in rows(code) if row.op is not None), 0)
 
 

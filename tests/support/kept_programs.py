@@ -11,24 +11,24 @@ from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 DRIVES = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
-FIRST, SECOND, EACH = 128, 576, 31  # where the slots of the program lie, and bytes of a record's
+FIRST, SECOND, EACH = 128, 576, 31  # offsets of the program's slots, and bytes of a record
 
 
-def saved(robot: HostFirmware, session: Session) -> str:
+def read_saved_state(robot: HostFirmware, session: Session) -> str:
     return SAVED[robot.complete(session, session.status()).saved][0]
 
 
 def name_after_power_off(robot: HostFirmware) -> str:
-    restarted, session = switched_on(robot.memory()), computer(77)
-    assert restarted.until(session, session.hello()) == OK
+    restarted_robot, session = switched_on(robot.memory()), computer(77)
+    assert restarted_robot.until(session, session.hello()) == OK
     assert session.robot is not None
     return session.robot.name
 
 
 def program_after_power_off(robot: HostFirmware) -> bytes:
-    restarted, session = switched_on(robot.memory()), computer(78)
+    restarted_robot, session = switched_on(robot.memory()), computer(78)
     request = session.fetch()
-    if restarted.until(session, request) != OK:
+    if restarted_robot.until(session, request) != OK:
         return b""
     return outcome(request).values.image
 

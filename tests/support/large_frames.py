@@ -23,10 +23,10 @@ HELLO, DATA = (BY_NAME[name].number for name in ("HELLO", "DATA"))
 
 
 class AnsweringRobot:
-    """A robot as a computer sees it: says what it is in HELLO, and takes DATA as `takes` says.
+    """A robot as a computer sees it: describes itself in HELLO, and accepts DATA as `takes` says.
 
     `takes` gets each DATA that is answered: the number of it, its offset and its bytes. It returns
-    the status and what is wanted next, or None where the frame or its answer is lost.
+    the status and what is wanted next, or None if the frame or its answer is lost.
     """
 
     def __init__(
@@ -36,7 +36,7 @@ class AnsweringRobot:
         self.takes = takes
         self.session = Session(3, baud, KIT)
         self.largest, self.window = largest, window
-        self.waiting: list[Frame] = []  # that are not answered yet
+        self.waiting: list[Frame] = []  # frames not answered yet
         self.data: list[tuple[int, int, int]] = []  # numbers, offsets, bytes of DATA that came
         self.most_waiting = self.longest = 0
         self.has_commit = False
@@ -84,8 +84,10 @@ class AnsweringRobot:
 class InOrderReceiver:
     """Takes what begins at `next`, but for DATA that are lost before it or whose answers are."""
 
-    def __init__(self, lost: tuple[int, ...] = (), unanswered: tuple[int, ...] = ()) -> None:
-        self.lost, self.unanswered = lost, unanswered
+    def __init__(
+        self, lost_numbers: tuple[int, ...] = (), unanswered_numbers: tuple[int, ...] = ()
+    ) -> None:
+        self.lost, self.unanswered = lost_numbers, unanswered_numbers
         self.received = b""
 
     def __call__(self, number: int, offset: int, data: bytes) -> tuple[int, int] | None:

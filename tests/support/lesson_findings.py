@@ -1,4 +1,4 @@
-"""What a lesson's check finds."""
+"""Findings of a lesson's check."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tiniscript.library.compiling import image_maker
 
 
 def findings_of(text: str, lesson: Lesson, seeds: Sequence[int]) -> list[Finding]:
-    """Return what is missing in the first world where something is, or in the text."""
+    """Return the findings in the first world that has some, or in the text."""
     from tiniscript.lessons.marking import Marking
 
     robot = robots.load(lesson.robot)

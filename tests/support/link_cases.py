@@ -49,14 +49,14 @@ from tiniscript.link.statuses import name_of
 
 STEP_MS = 10
 KIT = 0x231B
-SHOWN_BYTES = 24  # of a longer packet, the first ones are written
+SHOWN_BYTES = 24  # bytes shown of a longer packet
 OF_PACKETS = re.compile("[>=]|wait |held ")
 KINDS = ("link", "packets", "computer packets", "robot packets")
 
 
 class LinkCase(NamedTuple):
     path: Path
-    line: int  # of the fence
+    line: int  # line of the fence
     kind: str
     title: str
     rows: list[str]
@@ -86,7 +86,7 @@ def _read(path: Path) -> list[LinkCase]:
                 cases.append(LinkCase(path, number, fence, title, []))
         elif fence in KINDS[1:] and not OF_PACKETS.match(row):
             if not cases[-1].rows:
-                cases.pop()  # of the heading above, which has none of its own
+                cases.pop()  # the case of the heading above, which has no code
             cases.append(LinkCase(path, number, fence, row, []))
         elif fence in KINDS:
             time, _, name = row.lstrip().partition(" ")
@@ -104,21 +104,21 @@ def names_of(path: Path) -> dict[str, list[str]]:
 
 
 def accept(case: LinkCase, rows: list[str]) -> None:
-    """Write what was found where the case says something else; git shows what changed."""
+    """Write the results into the case if they differ; git shows the changes."""
     now = next(link_case for link_case in _read(case.path) if link_case[2:] == case[2:])
     old = case.path.read_text(encoding="utf-8").splitlines()
     is_over = re.compile(r"```" if case.kind == "link" else rf"(?!{OF_PACKETS.pattern})").match
     end = next(k for k in range(now.line, len(old)) if is_over(old[k]))
-    old[now.line : end] = shortened(rows, names_of(case.path))
+    old[now.line : end] = shorten(rows, names_of(case.path))
     case.path.write_text("\n".join(old) + "\n", encoding="utf-8")
 
 
-def shortened(rows: list[str], named: Mapping[str, list[str]]) -> list[str]:
+def shorten(rows: list[str], named_mapping: Mapping[str, list[str]]) -> list[str]:
     """Return rows with names for those that have one."""
     shortened_rows = []
     while rows:
         time = rows[0][:7]
-        for name, value in named.items():
+        for name, value in named_mapping.items():
             if rows[: len(value)] == [time + row for row in value]:
                 shortened_rows.append(time + name)
                 rows = rows[len(value) :]
@@ -133,7 +133,7 @@ def shortened(rows: list[str], named: Mapping[str, list[str]]) -> list[str]:
 
 
 class Computer(Protocol):
-    def asked(self, words: list[str]) -> None: ...
+    def ask(self, words: list[str]) -> None: ...
     def poll(self, now_ms: int) -> bytes: ...
     def receive(self, data: bytes, now_ms: int) -> None: ...
     def outcome_rows(self) -> list[str]: ...
@@ -145,7 +145,7 @@ class Robot(Protocol):
 
 
 def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
-    """Return the rows of a conversation: what is wanted, and what comes of it."""
+    """Return the rows of a conversation: the requests, and their results."""
     played_rows = []
     now_ms = 0
     is_late = False
@@ -157,7 +157,7 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
         played_rows.append(row)
         steps = 1
         if words[0] == "host":
-            computer.asked(words[1:])
+            computer.ask(words[1:])
         elif words[0] == "robot":
             robot.happens(words[1:])
         elif words[0] == "lose":
@@ -203,7 +203,7 @@ def wire_rows(now_ms: int, mark: str, data: bytes) -> list[str]:
 
 
 def meaning(packet: bytes) -> str:
-    """Return what the bytes of a packet mean, in words."""
+    """Return the meaning of a packet's bytes in words."""
     body = packet.rstrip(b"\0")
     if not body:
         return ""
@@ -234,10 +234,10 @@ def frame_text(frame: Frame) -> str:
         values = decode_payload(fields, payload)
     except Malformed:
         return " ".join([*words, "with a payload that does not fit"])
-    return " ".join([*words, *(f"{name}={shown(value)}" for name, value in values.items())])
+    return " ".join([*words, *(f"{name}={format_value(value)}" for name, value in values.items())])
 
 
-def shown(value: int | bytes) -> str:
+def format_value(value: int | bytes) -> str:
     if isinstance(value, int):
         return str(value)
     short = value[:SHOWN_BYTES].hex() + ("..." if len(value) > SHOWN_BYTES else "")
@@ -252,7 +252,7 @@ class SessionSide:
         self.pending: list[PendingRequest[Any]] = []
         self.now_ms = 0
 
-    def asked(self, words: list[str]) -> None:
+    def ask(self, words: list[str]) -> None:
         session, rest = self.session, words[1:]
         data = bytes.fromhex(" ".join(word for word in rest if "=" not in word))
         flags = dict(word.split("=") for word in rest if "=" in word)
@@ -300,7 +300,7 @@ class SessionSide:
 
 
 def _row(head: str, values: Mapping[str, int | bytes]) -> str:
-    return " ".join([head, *(f"{name}={shown(value)}" for name, value in values.items())])
+    return " ".join([head, *(f"{name}={format_value(value)}" for name, value in values.items())])
 
 
 class HandSender:
@@ -311,7 +311,7 @@ class HandSender:
         self.data = b""
         self.is_frame = self.is_hello = False
 
-    def asked(self, words: list[str]) -> None:
+    def ask(self, words: list[str]) -> None:
         self.is_frame = words[0] == "sends"
         if words[0] == "bytes":
             self.data = bytes.fromhex(" ".join(words[1:]))
@@ -392,8 +392,8 @@ class Written:
         rows = [row for row in self.rows if int(row[0]) == now_ms and row[1] in kinds]
         return [" ".join(row[1:]) for row in rows]
 
-    # as a computer
-    def asked(self, words: list[str]) -> None: ...
+    # Frames from the computer.
+    def ask(self, words: list[str]) -> None: ...
     def poll(self, now_ms: int) -> bytes:
         self.now_ms = now_ms
         return self._data(now_ms, ">")
@@ -402,11 +402,11 @@ class Written:
     def outcome_rows(self) -> list[str]:
         return self._rows(self.now_ms, "tells", "outcome")
 
-    # as a robot
+    # Frames from the robot.
     def happens(self, words: list[str]) -> None: ...
     def step(self, now_ms: int, data: bytes, is_late: bool) -> Step:
-        did = [row.removeprefix("did ") for row in self._rows(now_ms, "did")]
-        return Step(self._data(now_ms, "<"), did)
+        actions = [row.removeprefix("did ") for row in self._rows(now_ms, "did")]
+        return Step(self._data(now_ms, "<"), actions)
 
 
 # -- a receiver alone -----------------------------------------------------------------------------
@@ -432,7 +432,7 @@ def stream_of(case: LinkCase) -> tuple[list[tuple[int, int]], int]:
 def packets_of(
     stream: Iterable[tuple[int, int]], held: int = 0, is_large: bool = False
 ) -> list[str]:
-    """Return what the receiver in Python finds: the same rows as the one in C++.
+    """Return the packets that the receiver in Python finds: the same rows as the one in C++.
 
     A large one holds several large frames.
     """

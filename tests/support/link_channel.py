@@ -17,29 +17,29 @@ from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.session import Session
 from tiniscript.link.statuses import name_of
 
-PIECE_BYTES = 20  # as Bluetooth Low Energy sends them,
+PIECE_BYTES = 20  # piece size of Bluetooth Low Energy
 PAUSES_MS = (5, 5, 5, 5, 5, 30, 30, 30, 100, 300, 1500)  # the last is a silence for the receiver
-LARGE_COUNTS = (80, 81, 160, 400, 1000, 2700)  # of moves, for a robot that is large
+LARGE_COUNTS = (80, 81, 160, 400, 1000, 2700)  # numbers of moves for a large robot
 OUTCOMES = {LOST: "lost", CANCELLED: "cancelled"}
 
 
-def lost(data: bytes, at: int, draw: random.Random) -> bytes:
+def lose_byte(data: bytes, at: int, draw: random.Random) -> bytes:
     return data[:at] + data[at + 1 :]
 
 
-def changed(data: bytes, at: int, draw: random.Random) -> bytes:
+def change_byte(data: bytes, at: int, draw: random.Random) -> bytes:
     return data[:at] + bytes([data[at] ^ draw.randrange(1, 256)]) + data[at + 1 :]
 
 
-def doubled(data: bytes, at: int, draw: random.Random) -> bytes:
+def double_byte(data: bytes, at: int, draw: random.Random) -> bytes:
     return data[: at + 1] + data[at:]
 
 
-def swapped(data: bytes, at: int, draw: random.Random) -> bytes:
+def swap_bytes(data: bytes, at: int, draw: random.Random) -> bytes:
     return data[:at] + data[at : at + 2][::-1] + data[at + 2 :]
 
 
-def inserted(data: bytes, at: int, draw: random.Random) -> bytes:
+def insert_byte(data: bytes, at: int, draw: random.Random) -> bytes:
     return data[:at] + bytes([draw.randrange(256)]) + data[at:]
 
 
@@ -48,16 +48,16 @@ def cut(data: bytes, at: int, draw: random.Random) -> bytes:
 
 
 def talked_over(data: bytes, at: int, draw: random.Random) -> bytes:
-    """What radio modules write into the stream."""
+    """Return the data with text inserted by radio modules."""
     return data[:at] + draw.choice((b"OK+LOST", b"OK+LOST\r\n", b"+DISC:SUCCESS\r\n")) + data[at:]
 
 
 DAMAGES: tuple[Callable[[bytes, int, random.Random], bytes], ...] = (
-    lost, changed, doubled, swapped, inserted, cut, talked_over,
+    lose_byte, change_byte, double_byte, swap_bytes, insert_byte, cut, talked_over,
 )  # fmt: skip
 
 
-def damaged(data: bytes, draw: random.Random) -> bytes:
+def damage_frame(data: bytes, draw: random.Random) -> bytes:
     """Return the bytes of a frame with one to three damages."""
     for _ in range(draw.choice((1, 1, 2, 3))):
         if data:
@@ -66,11 +66,11 @@ def damaged(data: bytes, draw: random.Random) -> bytes:
 
 
 class Radio:
-    """One direction: bytes arrive later, in order, and not all of them as they were sent."""
+    """One direction of a radio: bytes arrive later, in order, with losses and damage."""
 
     def __init__(self, draw: random.Random, baud: int, faults: float) -> None:
         self.draw, self.byte_ms, self.faults = draw, 10_000 / baud, faults
-        self.shuffles = 0.0  # how often a frame comes twice, or before the one that it follows
+        self.shuffles = 0.0  # probability that a frame is doubled or overtakes the previous one
         self.is_split = False  # into pieces of PIECE_BYTES, with a pause before some of them
         self.is_out = False
         self._queue: deque[tuple[float, int]] = deque()
@@ -80,7 +80,7 @@ class Radio:
         if self.is_out:
             return
         if self.shuffles:
-            data = self.shuffled(data)
+            data = self.shuffle(data)
         at = 0
         while at < len(data):
             if self.draw.random() < self.faults:
@@ -96,7 +96,7 @@ class Radio:
             self._last_ms += self.byte_ms
             self._queue.append((self._last_ms, byte))
 
-    def shuffled(self, data: bytes) -> bytes:
+    def shuffle(self, data: bytes) -> bytes:
         frames = re.findall(rb"\0*[^\0]*\0?", data)
         for at in range(len(frames) - 1, -1, -1):
             if self.draw.random() >= self.shuffles:
@@ -107,7 +107,7 @@ class Radio:
                 frames[at : at + 2] = frames[at : at + 2][::-1]
         return b"".join(frames)
 
-    def arrived(self, now_ms: int) -> bytes:
+    def take_arrived(self, now_ms: int) -> bytes:
         data = bytearray()
         while self._queue and self._queue[0][0] <= now_ms:
             data.append(self._queue.popleft()[1])
@@ -148,21 +148,21 @@ class World:
             if data:
                 self.overhear(data)
                 self.to_robot.send(data, self.now_ms)
-            came = self.to_robot.arrived(self.now_ms)
-            if came or self.now_ms % 50 == 0:
-                step = self.cpp.step(self.now_ms, came)
+            came_bytes = self.to_robot.take_arrived(self.now_ms)
+            if came_bytes or self.now_ms % 50 == 0:
+                step = self.cpp.step(self.now_ms, came_bytes)
                 self.did += step.did
                 if step.sent:
                     self.overhear(step.sent)
                     self.to_computer.send(step.sent, self.now_ms)
-            self.session.receive(self.to_computer.arrived(self.now_ms), self.now_ms)
+            self.session.receive(self.to_computer.take_arrived(self.now_ms), self.now_ms)
             self.now_ms += self.STEP_MS
 
     def disturb(self) -> None:
-        """What others do at this time."""
+        """Let others act at this time."""
 
     def overhear(self, data: bytes) -> None:
-        """What others hear."""
+        """Let others hear the data."""
 
 
 def program(draw: random.Random, is_large: bool = False) -> bytes:
@@ -182,7 +182,7 @@ def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) 
     drops, world.drops = world.drops, 0
     first = world.session.upload(unpack(old), runs=False)
     world.run(first)
-    assert first.outcome and first.outcome.status == 0 and cpp.held() == old
+    assert first.outcome and first.outcome.status == 0 and cpp.fetch_image() == old
     world.to_robot.faults = world.to_computer.faults = faults
     world.to_robot.is_split = world.to_computer.is_split = world.is_split
     world.drops = drops
@@ -197,14 +197,16 @@ def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) 
     status = request.outcome.status
     is_done = status == 0
     if is_done:
-        assert cpp.held() == new, f"seed {seed}: the upload says done, the robot has another one"
-    assert cpp.held() in (old, new), f"seed {seed}: neither the old program nor the new one"
+        assert cpp.fetch_image() == new, (
+            f"seed {seed}: the upload says done, the robot has another one"
+        )
+    assert cpp.fetch_image() in (old, new), f"seed {seed}: neither the old program nor the new one"
     names = [f"TAKE {unpack(image).checksum:08x}" for image in (new, old)]
     assert {row for row in world.did if row.startswith("TAKE")} <= set(names)
     starts = sum(row.startswith("START") for row in world.did)
     assert starts == 1 if is_done else starts <= 1, f"seed {seed}: started {starts} times"
 
-    # each line runs once or not at all, and once if the computer says so
+    # Each line runs at most once, and exactly once if the computer confirms it.
     lines = []
     for _ in range(4):
         code = program(draw, cpp.is_large)[: world.line]
@@ -218,13 +220,13 @@ def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) 
     for row, answer in lines:
         assert times[row] == 1 if answer == 0 else times[row] <= 1, f"seed {seed}: {row}"
 
-    # after a stop nothing begins, whatever is still under way
+    # After a stop nothing starts, whatever is still under way.
     request = world.session.live(program(draw)[: world.line])
     world.run(None, draw.randrange(0, 200))
-    before = len(world.did)
+    count_before = len(world.did)
     world.session.stop(world.now_ms)
     world.run(None, 300)
-    since = world.did[before:]
+    since = world.did[count_before:]
     if "PINS OFF" in since:
         rest = since[since.index("PINS OFF") :]
         assert not any(row.startswith("START") for row in rest), f"seed {seed}: {rest}"

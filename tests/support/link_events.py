@@ -1,4 +1,4 @@
-"""Events of a robot, for tests that need one of a kind and not what is in it."""
+"""Events of a robot, for tests that do not depend on their values."""
 
 from __future__ import annotations
 

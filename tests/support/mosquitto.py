@@ -19,7 +19,7 @@ from tiniscript.link.transports.broker import Access, Broker, BrokerPort
 
 PROGRAM = shutil.which("mosquitto") or next(iter(Path("/usr/sbin").glob("mosquitto")), None)
 LOCAL = bytes((127, 0, 0, 1))
-STEP_S = 0.0005  # for a millisecond of the chip: the broker lives in this computer's time
+STEP_S = 0.0005  # one millisecond of the chip; the broker runs in real time
 
 
 class Mosquitto:
@@ -38,7 +38,7 @@ class Mosquitto:
             lines += ["allow_anonymous false", f"password_file {passwords}"]
         else:
             lines.append("allow_anonymous true")
-        for _ in range(5):  # between the two somebody else may take the port
+        for _ in range(5):  # another process may take the port in between
             self.port = free_port()
             self._rules = folder / f"mosquitto-{self.port}.conf"
             rows = [f"listener {self.port} 127.0.0.1", *lines, ""]
@@ -49,7 +49,7 @@ class Mosquitto:
         raise AssertionError("the broker does not begin")
 
     def start(self) -> None:
-        """Raises OSError where it ends instead, as where the port is another one's."""
+        """Start the broker. Raises OSError if it ends, for example because the port is in use."""
         self.process = subprocess.Popen(
             [str(PROGRAM), "-c", str(self._rules)],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
@@ -61,7 +61,7 @@ class Mosquitto:
             raise OSError(f"mosquitto ends: {self.process.returncode}")
         with suppress(OSError):
             socket.create_connection(("127.0.0.1", self.port), 1).close()
-            return self.process.poll() is None  # else it was another one's
+            return self.process.poll() is None  # otherwise the port belongs to another process
         return False
 
     def stall(self, is_stalled: bool = True) -> None:
@@ -77,7 +77,7 @@ class Mosquitto:
     ) -> wifi.BrokerSettings:
         return wifi.BrokerSettings(LOCAL, self.port, group, user.encode(), password.encode())
 
-    def connected(self, access: Access | None = None) -> Broker:
+    def connect_client(self, access: Access | None = None) -> Broker:
         """Return a connection of its own, until `part`."""
         self.clients.append(Broker("127.0.0.1", self.port, access or Access()))
         return self.clients[-1]
@@ -101,7 +101,7 @@ class AtBroker:
         except OSError:
             self.has_ended = True
 
-    def taken(self) -> bytes:
+    def take(self) -> bytes:
         time.sleep(STEP_S)
         self.port.cancel_read()  # this does not wait
         try:
@@ -114,7 +114,7 @@ class AtBroker:
         self.port.close()
 
 
-ID = 0x12345678  # that a simulated chip has: its first random number
+ID = 0x12345678  # id of a simulated chip: its first random number
 
 
 def free_port() -> int:

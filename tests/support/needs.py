@@ -1,4 +1,4 @@
-"""What a test needs on this computer: the stand-in that needs it asks for it."""
+"""Prerequisites of tests on this computer, which the stand-ins check."""
 
 from __future__ import annotations
 
@@ -11,6 +11,6 @@ def need(why: str) -> None:
     """Skip a test where something is missing; in CI that is a failure."""
     if why:
         assert not IS_CI, why
-        import pytest  # what tests are made with asks, too, where there is none
+        import pytest  # imported late, because the tools that build the tests also ask
 
         pytest.skip(why.strip().replace("\n", "; "))

@@ -10,7 +10,7 @@ import time
 from collections.abc import Sequence
 from itertools import count
 
-RESENT_S = 0.2  # for which TCP waits before it sends a packet again
+RESENT_S = 0.2  # time before TCP resends a packet
 
 
 class Network:
@@ -25,8 +25,10 @@ class Network:
         self.port: int = self._listener.getsockname()[1]
         threading.Thread(target=self._accept, daemon=True).start()
 
-    def passed(self, data: bytes, is_back: bool, number: int) -> bytes | None:
-        """Return what goes on of a piece of a connection, from 0 on; None: it ends."""
+    def pass_on(self, data: bytes, is_back: bool, number: int) -> bytes | None:
+        """Return the part of a piece to pass on; None ends the connection. `number` counts from
+        0.
+        """
         return data
 
     def cut(self) -> None:
@@ -54,7 +56,7 @@ class Network:
     def _pass(self, source: socket.socket, sink: socket.socket, is_back: bool, number: int) -> None:
         with contextlib.suppress(OSError):
             while data := source.recv(self.most):
-                going_on = self.passed(data, is_back, number)
+                going_on = self.pass_on(data, is_back, number)
                 if going_on is None:
                     break
                 sink.sendall(going_on)
@@ -73,14 +75,15 @@ class BadNetwork(Network):
         self._chance = random.Random(1)
         super().__init__(target)
 
-    def passed(self, data: bytes, is_back: bool, number: int) -> bytes:
+    def pass_on(self, data: bytes, is_back: bool, number: int) -> bytes:
         time.sleep(self.late_s + RESENT_S * (self._chance.randrange(self.every) == 0))
         return b"" if self._chance.random() < self.lost else data
 
 
 class CuttingNetwork(Network):
-    """What a server says comes in small pieces. The first connection ends after `bytes_left[0]`
-    bytes of it, the second after `bytes_left[1]`; later ones stay."""
+    """A network that delivers a server's data in small pieces. The first connection ends after
+    `bytes_left[0]` bytes of it, the second after `bytes_left[1]`; later ones stay.
+    """
 
     most = 7
 
@@ -88,7 +91,7 @@ class CuttingNetwork(Network):
         self.bytes_left = list(left)
         super().__init__(target)
 
-    def passed(self, data: bytes, is_back: bool, number: int) -> bytes | None:
+    def pass_on(self, data: bytes, is_back: bool, number: int) -> bytes | None:
         if not is_back or number >= len(self.bytes_left):
             return data
         data = data[: self.bytes_left[number]]

@@ -16,7 +16,7 @@ HORN = Word("HORN", ROLES["fixed"], stands_for="BEEP(0.5, 440)")
 SAID = {"en": "honks", "es": "toca la bocina"}
 TIMES = Argument("n", "", 1000, 9000, "3")
 WIGGLE = Word("WIGGLE", ROLES["fixed"], (TIMES,), "LOOP(N);L(0.2, 60);R(0.2, 60);END_LOOP")
-# Values of a kind of its own, of which one is needed twice: it goes into a variable first.
+# Values of its own kind, one of which is needed twice, so that it goes into a variable.
 SHAKE = Word(
     "SHAKE", ROLES["fixed"], (Argument("beats", "beats", 1000, 20_000, "4"), POWER),
     "SHAKE_POWER = POWER;LOOP(BEATS);L(0.2, SHAKE_POWER);R(0.2, SHAKE_POWER);END_LOOP",

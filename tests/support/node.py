@@ -36,7 +36,7 @@ def in_node(script: Path, *words: str, given: str = "") -> list[str]:
 
 @pytest.fixture(scope="module")
 def page_data(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What the build makes for the page's sources."""
+    """The generated data for the page's sources."""
     folder = tmp_path_factory.mktemp("page_data")
     content = {"languages": [(code, language_info(code).name) for code in languages()], "lock": {},
                "description": description(), "blocks": block_kinds.table_data(),

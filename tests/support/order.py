@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import pytest
 
 PAGES = "tests/studio/test_page"
-# What takes the longest beside pages: builds, emulated chips, processes and real clocks.
+# The slowest tests apart from pages: builds, emulated chips, processes and real clocks.
 LONG = (
     "tests/flash/test_platformio.py",
     "tests/lessons/test_other_shapes.py",

@@ -1,4 +1,4 @@
-"""What tests of owners share: keys in memory, and a robot with its computer."""
+"""Shared parts of tests about owners: keys in memory, and a robot with its computer."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ from tiniscript.link.session import Session
 KIT = robots.load("tinibot").kit
 PRESSED, RELEASED, HELD = 1, 2, 32
 FOREVER = "SI|F(200, 40)"
-OPEN_TO_ALL = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}  # of a robot with an owner
+# Requests that anyone may send to a claimed robot.
+OPEN_TO_ALL = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}
 
 
 class Keys(KeyRing):
@@ -104,13 +105,13 @@ class Owned:
         ]
 
     def answer(self, frame: Frame | bytes) -> Frame | None:
-        """Return what the robot answers a frame, or bytes of one."""
+        """Return the robot's answer to a frame, or to its bytes."""
         data = frame + b"\0" if isinstance(frame, bytes) else encode_frame(frame)
         frames = [part for part in self.robot.wait(20, b"\0" + data).split(b"\0") if part]
         return decode_frame(frames[0]) if frames else None
 
-    def asked(self, session: Session, name: str, payload: bytes) -> bytes:
-        """Return what the robot answers the next frame of a session, which needs no seal."""
+    def ask_unsealed(self, session: Session, name: str, payload: bytes) -> bytes:
+        """Return the robot's answer to the next frame of a session, without a seal."""
         session._seq = (session._seq + 1) & 0xFF
         answer = self.answer(Frame(BY_NAME[name].number, session._seq, session._epoch, payload))
         assert answer, name
@@ -132,13 +133,13 @@ class Owned:
         self.hold(session, 2200)
         return self.outcome(session, request)
 
-    def claimed(self, keys: Keys, which: int = 0) -> Session:
+    def claim_session(self, keys: Keys, which: int = 0) -> Session:
         session = self.session(keys)
         assert self.claim(session, which) == "OK"
         return session
 
     def tries(self, session: Session) -> str:
-        """Return how the robot answers who wants to drive."""
+        """Return the robot's answer to a client that wants to drive."""
         return self.outcome(session, session.upload(image_of(FOREVER), saves=False))
 
 
@@ -152,9 +153,9 @@ def state_of(table: Owned, session: Session) -> int:
     return table.robot.complete(session, session.status()).state
 
 
-def grants_key_request(sent: bytes) -> bool:
+def grants_key_request(sent_bytes: bytes) -> bool:
     """Return whether an answer says that something was done for which it takes a key."""
-    frame = decode_frame(sent)
+    frame = decode_frame(sent_bytes)
     if frame is None or frame.number not in BY_NUMBER or not frame.payload:
         return False
     message = BY_NUMBER[frame.number]

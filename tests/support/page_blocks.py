@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tests.support.studio import hears, shown, write
+from tests.support.studio import hears, wait_for_blocks, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
@@ -20,14 +20,14 @@ def start(page: Page, text: str, level: str = "few") -> None:
     write(page, text)
     page.click("#view_blocks")
     page.select_option("#level", level)
-    shown(page)
+    wait_for_blocks(page)
 
 
 def text_of(page: Page) -> str:
-    """Return the program's text, which is beside the blocks or behind them."""
-    shown(page)
-    kept: str = page.evaluate("JSON.parse(sessionStorage['tiniscript.work']).text")
-    return kept
+    """Return the program's text, which is beside or below the blocks."""
+    wait_for_blocks(page)
+    kept_text: str = page.evaluate("JSON.parse(sessionStorage['tiniscript.work']).text")
+    return kept_text
 
 
 def becomes(page: Page, text: str) -> None:
@@ -50,8 +50,9 @@ def block(page: Page, words: str) -> Locator:
 
 
 def box_of(block: Locator) -> Any:
-    """Return the box of a block without those that hang below it, as the page has it: what
-    Playwright says of a path is beside it."""
+    """Return the box of a block without those that hang below it, from the page: Playwright's box
+    of a path is inaccurate.
+    """
     return path_of(block).evaluate("e => e.getBoundingClientRect().toJSON()")
 
 
@@ -79,7 +80,7 @@ def drag(
 
 
 def meet(a: dict[str, float], b: dict[str, float]) -> bool:
-    """Whether two boxes lie over each other, by more than a notch."""
+    """Return whether two boxes overlap by more than a notch."""
     beside = a["left"] > b["right"] - 1 or b["left"] > a["right"] - 1
     return not (beside or a["top"] > b["bottom"] - 8 or b["top"] > a["bottom"] - 8)
 
@@ -98,6 +99,6 @@ OFFERED = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].fla
 })"""
 
 
-def offered(page: Page) -> set[str]:
-    shown(page)
+def list_offered_blocks(page: Page) -> set[str]:
+    wait_for_blocks(page)
     return set(page.evaluate(OFFERED))

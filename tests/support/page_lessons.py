@@ -22,7 +22,7 @@ def choose_lesson(page: Page, number: int) -> None:
 
 
 def check_answer(page: Page, program: str) -> tuple[str, list[str]]:
-    """Let the page check a program; return its verdict and its sentences."""
+    """Check a program on the page; return its verdict and its sentences."""
     write(page, program)
     page.click("#lesson_check")
     page.locator("#lesson_said[data-verdict]").wait_for(timeout=PATIENCE_MS)

@@ -1,4 +1,4 @@
-"""The page and its robot: connected, and what is said of it."""
+"""The page and its robot: the connection, and its messages."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def first_robot() -> Iterator[PtyRobot]:
 def robot(first_robot: PtyRobot) -> PtyRobot:
     """A robot that many tests share: each has it as new."""
     first_robot.begin_anew()
-    known_ports.remember(first_robot.port, "TINI")  # so that it is listed, and first
+    known_ports.remember(first_robot.port, "TINI")  # makes the robot listed, and listed first
     return first_robot
 
 
@@ -59,7 +59,8 @@ def connect(page: Page, robot: PtyRobot) -> None:
     page.click("#side_real")
     page.click("#link_look")  # the list from before the robot was known has other ports first
     page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
-    for _ in range(10):  # a page that was closed may not have said so: it has left after a while
+    # A closed page may not have reported that, but counts as gone after a while.
+    for _ in range(10):
         page.click("#link_connect")
         wait_for_message(page, re.compile("Connected: |Another tab"))
         if "Connected" in page.locator("#link_said").inner_text():
@@ -103,11 +104,11 @@ def upload_until_it_runs(page: Page) -> None:
 
 
 def events(page: Page) -> list[str]:
-    """Return what the page saves of the last run."""
+    """Return the events in the page's file of the last run."""
     page.click("#side_virtual")
     page.click("#runs_open")
-    with page.expect_download() as saved:
+    with page.expect_download() as download_info:
         page.locator("#runs_list li button", has_text="Save run").first.click()
     page.click("#runs_close")
     page.click("#side_real")
-    return [row.event for row in decode(saved.value.path().read_bytes()).rows]
+    return [row.event for row in decode(download_info.value.path().read_bytes()).rows]

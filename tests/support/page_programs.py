@@ -32,19 +32,19 @@ def share(page: Page, how: str = "link") -> str:
     return str(page.input_value("#shared"))
 
 
-def opened(page: Page) -> list[str]:
-    """Return what earlier programs are called."""
+def list_programs(page: Page) -> list[str]:
+    """Return the names of earlier programs."""
     return page.locator("#versions li:not(:has(#new)) strong").all_inner_texts()
 
 
-def packed(content: bytes) -> str:
+def pack(content: bytes) -> str:
     compress = zlib.compressobj(9, zlib.DEFLATED, -15)
     whole = compress.compress(content) + compress.flush()
     return base64.urlsafe_b64encode(whole).decode().rstrip("=")
 
 
 def as_json(content: Any) -> str:
-    return packed(json.dumps(content).encode())
+    return pack(json.dumps(content).encode())
 
 
 GOOD = as_json({"text": "SI|F(9, 90)", "robot": "tinibot"})

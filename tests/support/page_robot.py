@@ -1,4 +1,4 @@
-"""What the page shows of a running robot."""
+"""The page's view of a running robot."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-# A highlight's range is static: what it holds is read by one that is not.
+# A highlight's range is static, so its content is read through a live one.
 RUNNING_SCRIPT = """() => [...CSS.highlights.get('running')].map((mark) => {
   const range = document.createRange();
   range.setStart(mark.startContainer, mark.startOffset);
@@ -26,7 +26,7 @@ def value(page: Page, name: str) -> str:
 
 
 def running(page: Page) -> str:
-    """Return which part of the text is marked."""
+    """Return the marked part of the text."""
     return " ".join(page.evaluate(RUNNING_SCRIPT))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 SCREENS = ((1366, 768), (1024, 600), (390, 844), (844, 390))
-# What can be pressed or chosen, and whether another such thing or the edge of the screen cuts it.
+# Clickable elements, and whether another one or the edge of the screen cuts them.
 LOOK = """() => {
   const found = [];
   const boxes = [...document.querySelectorAll('header button, header select, h1, main section > :not(div), #sides > *, #views_of_run > *, #controls > *, #editor, #link_ways > *, #link_drive > *, #lesson_controls > *, #lesson_said, #lesson_page, #arena, #world_tools > :not(span), #world_numbers > *')]

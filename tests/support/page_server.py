@@ -47,6 +47,11 @@ def post(
     headers: Mapping[str, str | None] | None = None,
 ) -> tuple[int, bytes]:  # fmt: skip
     """Post as the page at `own` does, but for some headers; return the status and the answer."""
-    given = {"Host": own, "Origin": f"http://{own}", serving.TOKEN_HEADER: token, **(headers or {})}
-    response, data = ask(own, path, "POST", body, given)
+    given_fields = {
+        "Host": own,
+        "Origin": f"http://{own}",
+        serving.TOKEN_HEADER: token,
+        **(headers or {}),
+    }
+    response, data = ask(own, path, "POST", body, given_fields)
     return response.status, data

@@ -26,7 +26,7 @@ y_cm = 78
 
 
 def on_screen(page: Page, place: Place, floor: Place = (220, 200)) -> Place:
-    """Return where a place on the floor, in centimetres, is on the screen."""
+    """Return the screen position of a place on the floor, in centimetres."""
     box = page.locator("#arena").bounding_box()
     assert box is not None
     scale = min(box["width"] / (floor[0] + 8), box["height"] / (floor[1] + 8))
@@ -49,20 +49,20 @@ def wait_for_status(page: Page, text: str) -> None:
     page.locator("#doing").filter(has_text=text).wait_for()
 
 
-def saved(page: Page) -> World:
+def save_world(page: Page) -> World:
     """Save the world as a person does, and read it as `tsc robot --world` does."""
     with page.expect_download() as download:
         page.click("#world_save")
     path = Path(download.value.path())
-    named = path.with_suffix(".toml")
-    path.rename(named)
+    named_path = path.with_suffix(".toml")
+    path.rename(named_path)
     assert download.value.suggested_filename in ("world.toml", "mundo.toml")
-    return worlds.load(str(named))
+    return worlds.load(str(named_path))
 
 
 def read_start(page: Page) -> Place:
     page.click("#world_draw")
-    start = saved(page).start
+    start = save_world(page).start
     page.click("#world_done")
     return start.x_cm, start.y_cm
 
@@ -79,5 +79,5 @@ def draw_wall(page: Page) -> None:
     page.click("#world_draw")
     page.click("#world_add_walls")
     drag(page, [(60, 30), (100, 60)])
-    assert len(saved(page).walls) == 1
+    assert len(save_world(page).walls) == 1
     page.click("#world_done")

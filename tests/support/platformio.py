@@ -16,7 +16,7 @@ import pytest
 from tests.machines.host import once
 from tests.support.casefile import ROOT
 from tests.support.command import CommandResult
-from tests.support.copies import linked
+from tests.support.copies import link_copy
 from tests.support.needs import need
 
 OFFLINE = [sys.executable, "-m", "tools.builds.platformio_offline"]
@@ -24,7 +24,7 @@ SKETCH = ROOT / "vm_arduino"
 
 
 @lru_cache(maxsize=1)
-def prepared() -> tuple[dict[str, str], str]:
+def prepare() -> tuple[dict[str, str], str]:
     """Return the variables that `pio` needs, none where it is online, and why it cannot run."""
     if importlib.util.find_spec("platformio") is None:
         return {}, "PlatformIO is not installed"
@@ -33,10 +33,10 @@ def prepared() -> tuple[dict[str, str], str]:
     return dict(exports), completed.stderr if completed.returncode else ""
 
 
-def copied(folder: Path) -> Path:
+def copy_sketch(folder: Path) -> Path:
     """Return a copy of the sketch in a folder, to build and to break."""
-    need(prepared()[1])
-    return linked(SKETCH, folder / "vm_arduino", ".pio", "__pycache__", "own.h")
+    need(prepare()[1])
+    return link_copy(SKETCH, folder / "vm_arduino", ".pio", "__pycache__", "own.h")
 
 
 def pio(project: Path, *words: str) -> CommandResult:
@@ -44,7 +44,7 @@ def pio(project: Path, *words: str) -> CommandResult:
     completed = subprocess.run(
         [sys.executable, "-m", "platformio", *words],
         cwd=project,
-        env={**os.environ, **prepared()[0]},
+        env={**os.environ, **prepare()[0]},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -53,15 +53,17 @@ def pio(project: Path, *words: str) -> CommandResult:
     return CommandResult(completed.returncode, completed.stdout, "")
 
 
-def shared(factory: pytest.TempPathFactory) -> Path:
+def shared_folder(factory: pytest.TempPathFactory) -> Path:
     """Return the folder that all workers of a session have."""
     base = factory.getbasetemp()
     return base.parent if base.name.startswith("popen-") else base
 
 
-def changed(folder: Path, name: str, old: str, new: str, environment: str = "uno") -> Path:
+def build_changed_sketch(
+    folder: Path, name: str, old: str, new: str, environment: str = "uno"
+) -> Path:
     """Return the sketch with a change in a file of `src/`, built in a folder."""
-    project = copied(folder)
+    project = copy_sketch(folder)
     file = project / "src" / name
     text = file.read_text(encoding="utf-8")
     assert text.count(old) == 1, f"{name} has another {old!r} now"
@@ -71,12 +73,12 @@ def changed(folder: Path, name: str, old: str, new: str, environment: str = "uno
     return project / ".pio" / "build" / environment / "firmware.elf"
 
 
-def firmware(board: str, own: Path, shared: Path) -> Path:
+def firmware(board: str, own: Path, shared_path: Path) -> Path:
     """Return the sketch for a board, an ELF file, built once for all workers of a session."""
 
     def make(path: Path) -> None:
-        project = copied(own)
+        project = copy_sketch(own)
         pio(project, "run", "-e", board).gives(0)
         shutil.copy(project / ".pio" / "build" / board / "firmware.elf", path)
 
-    return once(shared / f"{board}.elf", make)
+    return once(shared_path / f"{board}.elf", make)

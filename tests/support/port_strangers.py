@@ -43,7 +43,7 @@ STRANGE = (
 )
 
 
-def mutated(chance: Random) -> bytes:
+def mutate_data(chance: Random) -> bytes:
     """Return something strange that is a little otherwise."""
     data = bytearray(chance.choice(STRANGE)[:1200] or b"{")
     for _ in range(chance.randrange(1, 6)):
@@ -77,9 +77,9 @@ def say(registration: Registration, data: bytes, chance: Random) -> None:
 
 
 def say_all(port: str, seed: int, count: int) -> None:
-    """Say everything strange, and so much that is a little otherwise."""
+    """Send everything strange, and so many variations."""
     chance, registration = Random(seed), registration_of(port)
-    for data in (*STRANGE, *(mutated(chance) for _ in range(count))):
+    for data in (*STRANGE, *(mutate_data(chance) for _ in range(count))):
         say(registration, data, chance)
 
 
@@ -106,7 +106,7 @@ def few(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
 
 
 @contextmanager
-def driven() -> Iterator[tuple[subprocess.Popen[bytes], str, subprocess.Popen[bytes], bytes]]:
+def drive_robot() -> Iterator[tuple[subprocess.Popen[bytes], str, subprocess.Popen[bytes], bytes]]:
     """A virtual robot, its port, and the command that drives it with what that has said."""
     with few("robot") as robot:
         assert robot.stdout

@@ -1,4 +1,4 @@
-"""Something simulated behind a pseudo-terminal: what `tsc` opens is `port`.
+"""A simulated device on a pseudo-terminal: `tsc` opens `port`.
 
 Time is the wall's, or, if this process opens the port, that of the simulation behind it.
 
@@ -15,14 +15,14 @@ import threading
 import time
 from contextlib import ExitStack
 
-from tests.support.simulated_port import PtyPort, simulated
-from tests.support.simulated_wire import OtherEnd, garbled
+from tests.support.simulated_port import PtyPort, simulate
+from tests.support.simulated_wire import OtherEnd, garble
 
 _SPEEDS = {
     getattr(termios, name): int(name[1:])
     for name in ("B9600", "B19200", "B38400", "B57600", "B115200")
 }
-BEHIND_S = 1.0  # more than that behind, its clock goes slower
+BEHIND_S = 1.0  # largest lag before its clock slows down
 
 
 class PtyEnd(PtyPort):
@@ -35,7 +35,7 @@ class PtyEnd(PtyPort):
         self._thread.start()
 
     def __enter__(self) -> PtyEnd:
-        self._in_here.enter_context(simulated(self))
+        self._in_here.enter_context(simulate(self))
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -60,8 +60,8 @@ class PtyEnd(PtyPort):
             self.heard += data
             for _ in range(milliseconds):
                 speed = self.end.baud  # an answer has the speed of before the command
-                answer = self.end.step(garbled(data, self._baud(), speed))
-                reply += garbled(answer, speed, self._baud())
+                answer = self.end.step(garble(data, self._baud(), speed))
+                reply += garble(answer, speed, self._baud())
                 data = b""
         return reply
 

@@ -1,4 +1,4 @@
-"""A robot behind a pseudo-terminal: the whole firmware in C++, in real time.
+"""A robot on a pseudo-terminal: the whole firmware in C++, in real time.
 
 What a computer opens as a port is `port`; in between is the terminal driver of this system, as
 with a cable. Time goes by on the robot as on the wall, or slower where this computer is busy. Only
@@ -18,17 +18,17 @@ from pathlib import Path
 from tests.machines.host_firmware import EMPTY, POWER_ON, HostFirmware
 from tests.support import waiting
 from tests.support.command import FOREVER, Command, CommandResult, inside
-from tests.support.simulated_port import STRIDE_MS, PtyPort, simulated
+from tests.support.simulated_port import STRIDE_MS, PtyPort, simulate
 from tiniscript.base.kit import Kit
 
 PUSHED, RELEASED, HELD = 1, 2, 32  # flags of a step
-BEHIND_MS = 50  # more than that behind, the robot's clock goes slower
+BEHIND_MS = 50  # largest lag before the robot's clock slows down
 
 
-def drives_now(did: Sequence[str]) -> bool:
-    """Whether the motors turn after what a robot has done."""
-    driven = [line for line in did if line.startswith("MOTORS")]
-    return bool(driven) and driven[-1] != "MOTORS 0 0"
+def drives_now(actions: Sequence[str]) -> bool:
+    """Return whether the motors turn after these actions."""
+    motor_lines = [line for line in actions if line.startswith("MOTORS")]
+    return bool(motor_lines) and motor_lines[-1] != "MOTORS 0 0"
 
 
 class PtyRobot(PtyPort):
@@ -38,10 +38,10 @@ class PtyRobot(PtyPort):
         super().__init__()
         self.kit = kit
         self.bytes_per_ms = bytes_per_ms
-        self.off_after: int | None = None  # so many bytes more, and its battery is empty
+        self.off_after: int | None = None  # bytes after which its battery is empty
         self._new = self._memory = memory
-        self._robot: HostFirmware | None = self._made()
-        self._flags: list[int] = []  # what happens to the button, for each of the next steps
+        self._robot: HostFirmware | None = self._make_robot()
+        self._flags: list[int] = []  # button events, one for each of the next steps
         self._there, self._back = b"", b""  # bytes on their way
         self._is_over = False
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -54,19 +54,19 @@ class PtyRobot(PtyPort):
         self.clear_away()
 
     @property
-    def did(self) -> list[str]:
-        """What the robot has done since it was switched on, without the times."""
-        return [line.split(" ", 1)[1] for line in self.timed]
+    def actions(self) -> list[str]:
+        """The robot's actions since power-on, without the times."""
+        return [line.split(" ", 1)[1] for line in self.timed_actions]
 
     @property
-    def timed(self) -> list[str]:
+    def timed_actions(self) -> list[str]:
         with self._lock:  # an ESP32 answers over its network before its step is over
             assert self._robot
             return list(self._robot.did)
 
     @property
     def moves(self) -> bool:
-        return drives_now(self.did)
+        return drives_now(self.actions)
 
     @property
     def robot_ms(self) -> int:
@@ -74,7 +74,7 @@ class PtyRobot(PtyPort):
         return self._robot.now_ms
 
     def say(self, data: bytes) -> None:
-        """Let something else than the robot write to the port."""
+        """Write data to the port in the robot's place."""
         os.write(self.ours, data)
 
     def ask(self, what: Callable[[HostFirmware], object]) -> None:
@@ -96,14 +96,14 @@ class PtyRobot(PtyPort):
             self._flags = [RELEASED]
 
     def switch_off(self) -> None:
-        """Only what is in its memory is kept."""
+        """Switch the robot off: only its memory is kept."""
         with self._lock:
             self._take_power()
 
     def switch_on(self) -> None:
         with self._lock:
             self.off_after = None
-            self._robot = self._made(seed=0x9ABCDEF1)
+            self._robot = self._make_robot(seed=0x9ABCDEF1)
 
     def switch_off_and_on(self) -> None:
         self.switch_off()
@@ -114,7 +114,7 @@ class PtyRobot(PtyPort):
         with self._lock:
             self._take_power()
             self.off_after, self._memory = None, self._new
-            self._robot = self._made()
+            self._robot = self._make_robot()
 
     def pull(self) -> None:
         """Pull the cable out: the port is not there any more."""
@@ -138,10 +138,10 @@ class PtyRobot(PtyPort):
         It goes on like the time of the wall, and no further than this computer has come.
         """
         self.until(lambda: not self.moves, "it stands")
-        off = [line for line in self.timed if line.split(" ", 1)[1] == "MOTORS 0 0"]
+        off = [line for line in self.timed_actions if line.split(" ", 1)[1] == "MOTORS 0 0"]
         return int(off[-1].split()[0]) - began_ms
 
-    def _made(self, reset: int = POWER_ON, seed: int = 0x12345678) -> HostFirmware:
+    def _make_robot(self, reset: int = POWER_ON, seed: int = 0x12345678) -> HostFirmware:
         """Return a robot that starts with what its memory has kept."""
         return HostFirmware(self.kit, self._memory, reset, seed)
 
@@ -171,8 +171,8 @@ class PtyRobot(PtyPort):
                     self._back += self._robot.wait(stride)
                 elif self._robot:
                     self._back += self._robot.step(data, flags)
-            sent, self._back = self._back[:most], self._back[most:]
-            return self._through_noise(sent)
+            sent_bytes, self._back = self._back[:most], self._back[most:]
+            return self._through_noise(sent_bytes)
 
     def _run(self) -> None:
         last_s = time.monotonic()
@@ -185,10 +185,10 @@ class PtyRobot(PtyPort):
                 last_s = time.monotonic() if self.simulated else last_s
                 continue
             last_s += passed_ms / 1000
-            sent = self.pass_ms(min(passed_ms, BEHIND_MS) - 1)
-            sent += self.pass_ms(1, os.read(self.ours, 4096) if ready else b"")
-            if sent:
-                os.write(self.ours, sent)
+            sent_bytes = self.pass_ms(min(passed_ms, BEHIND_MS) - 1)
+            sent_bytes += self.pass_ms(1, os.read(self.ours, 4096) if ready else b"")
+            if sent_bytes:
+                os.write(self.ours, sent_bytes)
 
 
 def on(pty_robot: PtyRobot, *arguments: str | Path, data: bytes = b"") -> CommandResult:
@@ -196,7 +196,7 @@ def on(pty_robot: PtyRobot, *arguments: str | Path, data: bytes = b"") -> Comman
 
     Beside a command that stays it is the time of the wall: the robot must not miss what that sends.
     """
-    with nullcontext() if Command.is_any_there() else simulated(pty_robot):
+    with nullcontext() if Command.is_any_there() else simulate(pty_robot):
         return inside(*arguments, "--port", pty_robot.port, data=data)
 
 

@@ -42,7 +42,7 @@ OWN = "its own"
 
 
 class Losses(NamedTuple):
-    """How much of what the one and the other is told."""
+    """Loss rates of both directions."""
 
     to_robot: float
     to_session: float
@@ -52,8 +52,8 @@ NOTHING = Losses(0, 0)
 
 
 class Wire:
-    """What goes between both: at times it loses what the one or the other says, and some carry
-    what the robot shall hear late: a frame is under way while somebody else stops it.
+    """A connection that sometimes loses either side's frames and delivers others late: a frame may
+    be under way while somebody else stops the robot.
     """
 
     def __init__(self, rng: random.Random) -> None:
@@ -63,15 +63,15 @@ class Wire:
         self.late_ms = rng.choice((0, 0, 4, 20))
         self.under_way: deque[bytes] = deque()
 
-    def turn(self, sent: bytes = b"") -> None:
+    def turn(self, sent_bytes: bytes = b"") -> None:
         data = self.session.poll(self.robot.now_ms)
         if self.rng.random() < self.loses.to_robot:
             data = b""
         self.under_way.append(data)
         is_late = len(self.under_way) <= self.late_ms
-        sent += self.robot.step(b"" if is_late else self.under_way.popleft())
+        sent_bytes += self.robot.step(b"" if is_late else self.under_way.popleft())
         if self.rng.random() >= self.loses.to_session:
-            self.session.receive(sent, self.robot.now_ms)
+            self.session.receive(sent_bytes, self.robot.now_ms)
 
     def turns(self, count: int) -> None:
         for _ in range(count):

@@ -91,8 +91,8 @@ def nested_code(rng: random.Random, levels: int) -> bytes:
         elif kind == 1:
             close = jump("NEXT", far, len(inner) + (3 if far else 2) + slip)
             times = bytes((BY_NAME["PUSH8"].code, rng.randrange(3)))
-            counted = times + jump("LOOP", rng.random() < 0.5, len(inner + close) + slip)
-            code += rng.choice((simple("LOOP8") + b"\x02", counted)) + inner + close
+            counted_bytes = times + jump("LOOP", rng.random() < 0.5, len(inner + close) + slip)
+            code += rng.choice((simple("LOOP8") + b"\x02", counted_bytes)) + inner + close
         elif kind == 2:
             body = inner + jump("BREAK_LOOP", far, slip + 3 if far else slip + 2)
             close = jump("NEXT", far, len(body) + (3 if far else 2))
@@ -110,8 +110,8 @@ def nested_code(rng: random.Random, levels: int) -> bytes:
             code += jump("CALL", far, len(end) + (3 if far else 2) + rng.choice((0, 0, slip)))
         elif kind == 6:
             code += simple("WATCH_FOREVER_WAIT") + bytes((BY_NAME["PUSH_READ"].code, 0))
-            compared = bytes((BY_NAME["PUSH8"].code, 5)) + simple("LT") + simple("UNTIL")
-            code += rng.choice((compared, simple("UNTIL8_LT") + b"\x05"))
+            compared_bytes = bytes((BY_NAME["PUSH8"].code, 5)) + simple("LT") + simple("UNTIL")
+            code += rng.choice((compared_bytes, simple("UNTIL8_LT") + b"\x05"))
             code += simple("UNTIL") if slip == 1 else b""
         else:
             inner = jump("BREAK", far, len(inner) + (3 if far else 2)) + inner
@@ -148,7 +148,7 @@ def deep_code(rng: random.Random) -> bytes:
         for _ in range(often):
             code = yes + jump(join, rng.random() < 0.5, len(code)) + code
         code += simple("SHOW_YES_NO")
-    elif kind == 5:  # each procedure calls the one before it
+    elif kind == 5:  # each procedure calls the previous one
         code = jump("DEF", False, 2) + simple("STOP") + simple("RETURN")
         for _ in range(often):
             inner = jump("CALL", False, 6 if len(code) == 4 else 7) + simple("RETURN")
@@ -230,15 +230,19 @@ def branches(rng: random.Random) -> bytes:
         op = rng.choice([op for op in UNO_OPS if op.control_role == "if"])
         near = rng.choice((0, 1, 2, 9, 200))
         code += simple("PUSH16") + near.to_bytes(2, "little") + simple("SET_VAR") + b"\x01"
-        *variable, compared, _ = [None, None, *(operand.kind for operand in op.operands)][-3:]
-        if compared is None:
+        *variable, compared_operand_kind, _ = [
+            None,
+            None,
+            *(operand.kind for operand in op.operands),
+        ][-3:]
+        if compared_operand_kind is None:
             code += simple(rng.choice(("PUSH_TRUE", "PUSH_FALSE"))) + bytes([op.code])
         else:
             is_variable = variable != [None]
             code += b"" if is_variable else simple("PUSH_VAR_1")
             code += bytes([op.code, 1] if is_variable else [op.code])
             number = near + rng.choice((-1, 0, 0, 1))
-            size = compared.size
+            size = compared_operand_kind.size
             code += (number & ((1 << 8 * size) - 1)).to_bytes(size, "little")
         code += len(body).to_bytes(op.operands[-1].kind.size, "little") + body
     return code
@@ -257,7 +261,7 @@ def jump(name: str, far: bool, distance: int) -> bytes:
     return simple(name + "_FAR" * far) + (distance & ((1 << 8 * size) - 1)).to_bytes(size, "little")
 
 
-def mutated(rng: random.Random, code: bytes, other: bytes) -> bytes:
+def mutate_code(rng: random.Random, code: bytes, other: bytes) -> bytes:
     data = bytearray(code)
     for _ in range(rng.choice((1, 1, 1, 2, 3))):
         at = rng.randrange(len(data) + 1)
@@ -300,9 +304,9 @@ def random_codes(seed: int, count: int) -> Iterator[bytes]:
         elif kind == 3:
             yield nested_code(rng, rng.randrange(4))
         elif kind == 4:
-            yield mutated(rng, nested_code(rng, rng.randrange(3)), likely_code(rng))
+            yield mutate_code(rng, nested_code(rng, rng.randrange(3)), likely_code(rng))
         else:
-            yield mutated(rng, rng.choice(bases), rng.choice(bases))
+            yield mutate_code(rng, rng.choice(bases), rng.choice(bases))
 
 
 # -- programs and images ------------------------------------------------------------------------

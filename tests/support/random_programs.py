@@ -23,7 +23,7 @@ class RandomProgram(NamedTuple):
     senses: Senses
     want: str
     short: Compilation
-    plain: Compilation  # not optimised
+    plain: Compilation  # the program without optimization
 
 
 def random_program(seed: int) -> RandomProgram:

@@ -26,7 +26,7 @@ from tiniscript.syntax.lexer import scan
 from tiniscript.vm.runner import run
 
 BACKSPACE = re.compile(rb"[A-Za-z_][\b\x7f]")
-SENSOR_BYTES = LEVELS["mega"].sensor_bytes  # as this computer has them
+SENSOR_BYTES = LEVELS["mega"].sensor_bytes  # sensor bytes on this computer
 TOKENS = (*WORDS, "X", "Y", "Z", "DISTANCE", "LIGHT_R", "LINE", "TOUCH", "LED", "GRIPPER", "GO",
           *"0123456789", "0.5", ".5", "5.", "12.7", "12.8", "-12.8", "-12.9", "32767", "32768",
           "-32768", "-32769", "32.767", "32.768", "-32.768", "255", "256", "2147483.647",
@@ -42,23 +42,26 @@ def reader_of(kit: Kit, room: int = LARGEST_ROOM) -> TextReader:
 
 
 def is_right(data: bytes, kit: Kit) -> bool:
-    """Whether the compiler takes these bytes for a program."""
+    """Return whether the compiler accepts these bytes."""
     try:
-        return analyze(decode(data), kit).is_right  # what it says of a wrong one takes longest
+        return analyze(decode(data), kit).is_right  # diagnosing a wrong text takes longest
     except Unreadable:
         return False
 
 
-# What a robot says of a right text whose DEFs have yes/no values, or values for several tasks.
+# Messages of a robot about a correct text whose DEFs have yes-no values, or values for several
+# tasks.
 NO_VALUES = ("ONE_TASK", "WANTS_NUMBER", "WANTS_YES_NO", "KIND", "COMPARE", "FULL")
 CONTROL = re.compile(rb"[\x01-\x07\x0b\x0c\x0e-\x1f]")
 
 
 def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | None:
-    """The reader says of a text what the compiler says; None: it is too long for a robot."""
+    """Check that the reader agrees with the compiler on a text; None: it is too long for a
+    robot.
+    """
     answer = reader_of(kit, room).read(data)
     right = is_right(data, kit)
-    if right and CONTROL.search(data):  # on a wire it is noise
+    if right and CONTROL.search(data):  # on a wire such characters are noise
         assert not answer.is_program, f"{answer}\n{data!r}"
         return None
     if right and UNREAD_WORDS & {token.text for token in scan(decode(data)).tokens}:
@@ -81,7 +84,7 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
 
 
 def lacks_values(data: bytes, kit: Kit) -> bool:
-    """Whether `--text-level` says of a right text that its DEFs have values no robot reads."""
+    """Return whether `--text-level` reports that no robot reads the values of its DEFs."""
     compilation = compile_text(decode(data), kit)
     assert compilation.program is not None
     diagnostics = find_misfits(compilation.source, compilation.program, kit, LEVELS["mega"])
@@ -90,34 +93,36 @@ def lacks_values(data: bytes, kit: Kit) -> bool:
 
 def check_code(data: bytes, kit: Kit, answer: Answer, room: int) -> None:
     """The code of a right text is the plain one, or what `text/memory.py` counts is too much."""
-    compiled = compile_text(decode(data), kit)
-    assert compiled.program is not None
-    plain = plain_code(compiled.program)
-    model = Model(scan(compiled.source.text).tokens, kit, SENSOR_BYTES)
+    compilation = compile_text(decode(data), kit)
+    assert compilation.program is not None
+    plain = plain_code(compilation.program)
+    model = Model(scan(compilation.source.text).tokens, kit, SENSOR_BYTES)
     model.program()
     fits = (
         plain.short_length <= CODE_BYTES
         and model.most_bytes <= room
         and model.extra_bracket_span is None
     )
-    if fits and all(len(word) <= LONGEST_WORD for word in re.findall(r"\w+", compiled.source.text)):
+    if fits and all(
+        len(word) <= LONGEST_WORD for word in re.findall(r"\w+", compilation.source.text)
+    ):
         assert answer.code == plain.code, f"{answer} {model.most_bytes}\n{data!r}"
     else:
         assert answer.problem == "FULL", f"{answer} {model.most_bytes}\n{data!r}"
 
 
 def takes_more(data: bytes, kit: Kit) -> bool:
-    """Whether the reader takes a text that the compiler does not.
+    """Return whether the reader accepts a text that the compiler refuses.
 
     It only passes over the bytes of a comment, and a backspace after a letter takes that back.
     """
     text = data.decode("utf-8", "replace")
     return ("\ufffd" in text and "//" in text) or (
-        bool(BACKSPACE.search(data)) and is_right(edited(data), kit)
+        bool(BACKSPACE.search(data)) and is_right(apply_backspaces(data), kit)
     )
 
 
-def edited(data: bytes) -> bytes:
+def apply_backspaces(data: bytes) -> bytes:
     """Return a text as it is when each backspace has taken back the letter of a word before it."""
     while BACKSPACE.search(data):
         data = BACKSPACE.sub(b"", data, count=1)
@@ -130,11 +135,11 @@ def check_program(data: bytes, kit: Kit, senses: Senses) -> None:
     if answer is None:
         return
     assert answer.is_program, f"{answer}\n{data.decode()}"
-    compiled = compile_text(decode(data), kit)
-    assert compiled.program is not None and compiled.program.start == answer.start
-    actual, want = (trace(code, kit, senses) for code in (answer.code, compiled.code))
+    compilation = compile_text(decode(data), kit)
+    assert compilation.program is not None and compilation.program.start == answer.start
+    actual, want = (trace(code, kit, senses) for code in (answer.code, compilation.code))
     if any(lines[-1].endswith("LIMIT") for lines in (actual, want)):
-        least = min(len(actual), len(want)) - 1  # where steps cut a run is no part of the meaning
+        least = min(len(actual), len(want)) - 1  # the meaning does not include where a run was cut
         actual, want = actual[:least], want[:least]
     assert actual == want, data.decode()
 
@@ -142,11 +147,11 @@ def check_program(data: bytes, kit: Kit, senses: Senses) -> None:
 def trace(code: bytes, kit: Kit, senses: Senses) -> list[str]:
     lists = lists_of(kit, senses)
     events = run(code, kit, lists, senses.max_ms, senses.max_steps, senses.seed)
-    *lines, _ = map(str, events)  # the last one says where in its own code a run has ended
+    *lines, _ = map(str, events)  # the last one reports the place in its own code where a run ended
     return lines
 
 
-def damaged(rng: random.Random, data: bytes) -> bytes:
+def damage_text(rng: random.Random, data: bytes) -> bytes:
     """Return a text with one byte changed, lost or added, now and then."""
     if not data or rng.random() < 0.6:
         return data
@@ -171,11 +176,11 @@ def soup(seed: int) -> tuple[Kit, bytes]:
 
 
 def some_texts(soups: int, count: int) -> list[bytes]:
-    """Return so many lines of any tokens, and random programs with a slip of each."""
+    """Return so many lines of random tokens, and random programs with a slip of each."""
     texts = [soup(seed)[1] for seed in range(soups)]
     for seed in range(count):
         rng = random.Random(seed)
         text = programs.program(rng, KITS[1][0])
-        slip = programs.broken(rng, text).encode("utf-8", "surrogatepass")
-        texts += [text.encode(), damaged(rng, slip)]
+        slip = programs.break_text(rng, text).encode("utf-8", "surrogatepass")
+        texts += [text.encode(), damage_text(rng, slip)]
     return texts

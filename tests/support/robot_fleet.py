@@ -17,11 +17,11 @@ from unittest import mock
 from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
 from tests.support import waiting
 from tests.support.pty_robot import drives_now
-from tests.support.simulated_port import PtyPort, simulated
+from tests.support.simulated_port import PtyPort, simulate
 from tiniscript.base.kit import Kit
 from tiniscript.link import known_ports, ports
 
-STEP_MS = 10  # between two steps of a robot for which nothing comes
+STEP_MS = 10  # interval between two steps of an idle robot
 
 
 class Pupil(PtyPort):
@@ -31,19 +31,19 @@ class Pupil(PtyPort):
         super().__init__()
         self.number = number
         self.robot = HostFirmware(kit, EMPTY, seed=0x1000 + number)
-        self.babble = b""  # what it says again and again, as fast as its port takes it
-        self.deaf_after: int | None = None  # so many bytes more, and it hears and says nothing
+        self.babble = b""  # bytes that it sends repeatedly, as fast as its port accepts them
+        self.deaf_after: int | None = None  # bytes after which it neither hears nor answers
 
     @property
-    def did(self) -> list[str]:
+    def actions(self) -> list[str]:
         return [line.split(" ", 1)[1] for line in self.robot.did]
 
     @property
     def moves(self) -> bool:
-        return drives_now(self.did)
+        return drives_now(self.actions)
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
-        """Let time pass, at whose end bytes arrive; return what it has sent."""
+        """Let time pass, with received bytes at its end; return the bytes sent."""
         with self._lock:
             return self._pass_ms(milliseconds, data)
 
@@ -54,10 +54,10 @@ class Pupil(PtyPort):
             self.deaf_after -= len(data)
         robot = self.robot
         robot.now_ms += milliseconds - 1
-        sent = robot.step(self._through_noise(data), 0, TICKS * milliseconds)
+        sent_bytes = robot.step(self._through_noise(data), 0, TICKS * milliseconds)
         if self.babble:
             return self.babble
-        return b"" if self.deaf_after == 0 else self._through_noise(sent)
+        return b"" if self.deaf_after == 0 else self._through_noise(sent_bytes)
 
     def close(self) -> None:
         self.robot.close()
@@ -65,7 +65,7 @@ class Pupil(PtyPort):
 
 
 class RobotFleet:
-    """So many robots; their time is that of the wall, unless this process has opened the port."""
+    """A fleet of robots in real time, unless this process has opened the port."""
 
     def __init__(self, kits: Sequence[Kit]) -> None:
         self.pupils = [Pupil(kit, number) for number, kit in enumerate(kits)]
@@ -75,7 +75,7 @@ class RobotFleet:
         self._in_here = ExitStack()
 
     def __enter__(self) -> RobotFleet:
-        self._in_here.enter_context(simulated(*self.pupils))
+        self._in_here.enter_context(simulate(*self.pupils))
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -103,14 +103,14 @@ class RobotFleet:
                 if pupil.simulated is not None:
                     continue
                 data = os.read(end, 4096) if end in ready else b""
-                sent = pupil.pass_ms(min(passed_ms, 5 * STEP_MS), data)
-                if sent and select.select([], [end], [], 0)[1]:
-                    os.write(end, sent)
+                sent_bytes = pupil.pass_ms(min(passed_ms, 5 * STEP_MS), data)
+                if sent_bytes and select.select([], [end], [], 0)[1]:
+                    os.write(end, sent_bytes)
 
 
 @contextmanager
 def known_fleet(kits: Sequence[Kit]) -> Iterator[RobotFleet]:
-    """Have robots whose ports are remembered, and no other port: each would be waited for."""
+    """Start robots whose ports are remembered, without other ports, which would cause waits."""
     with mock.patch.object(ports, "list_ports", list), RobotFleet(kits) as fleet:
         for pupil in fleet.pupils:
             known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)

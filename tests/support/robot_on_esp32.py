@@ -20,14 +20,16 @@ TRANSPORTS: list[Make] = [*RADIOS, Network]
 Ends = list[tuple[End | None, Client]]
 
 
-def booted(name: str = "tinibot32", major: int = 2) -> Esp32Robot:
+def boot(name: str = "tinibot32", major: int = 2) -> Esp32Robot:
     robot = Esp32Robot(robots.load(name), major=major)
     robot.wait(300)
     return robot
 
 
-def ended(robot: Esp32Robot, ends: Ends, request: PendingRequest[Any], limit_ms: int = 5000) -> str:
-    """Let all talk until a request is over; return how it ended."""
+def wait_for_outcome(
+    robot: Esp32Robot, ends: Ends, request: PendingRequest[Any], limit_ms: int = 5000
+) -> str:
+    """Let all talk until a request is over; return its result."""
     for _ in range(limit_ms):
         if request.outcome is not None:
             status = request.outcome.status
@@ -36,13 +38,13 @@ def ended(robot: Esp32Robot, ends: Ends, request: PendingRequest[Any], limit_ms:
     raise AssertionError("the request is not over")
 
 
-def claimed(robot: Esp32Robot, ends: Ends, who: Session, which: int = 0) -> None:
-    """Let somebody claim a robot, and hold its button."""
+def claim_robot(robot: Esp32Robot, ends: Ends, who: Session, which: int = 0) -> None:
+    """Claim a robot for a session, and hold its button."""
     claim = who.claim(which)
     for milliseconds, flags in ((300, 0), (2500, 1), (800, 2)):
         talk(robot, ends, milliseconds, flags)
     assert claim.outcome and claim.outcome.status == 0
 
 
-def uploaded(robot: Esp32Robot, ends: Ends, who: Session, text: str = AWAY) -> str:
-    return ended(robot, ends, who.upload(image_of(text), saves=False))
+def upload_text(robot: Esp32Robot, ends: Ends, who: Session, text: str = AWAY) -> str:
+    return wait_for_outcome(robot, ends, who.upload(image_of(text), saves=False))

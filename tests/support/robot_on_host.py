@@ -1,4 +1,4 @@
-"""A whole robot on this computer, and what is sent to it."""
+"""A whole robot on this computer, and the requests to it."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ def outcome(request: PendingRequest[T]) -> Reply[T]:
     return request.outcome
 
 
-def held(robot: HostFirmware, session: Session) -> bytes:
+def fetch_image(robot: HostFirmware, session: Session) -> bytes:
     return robot.complete(session, session.fetch()).image
 
 
-def stored(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int:
+def wait_until_saved(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int:
     """Wait until the robot says that its program is saved; return how long that took."""
     begun_ms = robot.now_ms
     while robot.now_ms < begun_ms + limit_ms:
@@ -60,12 +60,12 @@ def holding(text: str = "SB|F(0.2, 80)") -> tuple[HostFirmware, Session]:
     """Return a robot that has saved a program, and its session."""
     robot, session = switched_on(), computer()
     send(robot, session, text)
-    stored(robot, session)
+    wait_until_saved(robot, session)
     return robot, session
 
 
 def broken_upload(robot: HostFirmware, session: Session) -> None:
-    """Let the robot hold what is stored, and nothing of it in memory."""
+    """Break off an upload, so that the robot holds its stored program."""
     request = session.upload(image_of(LONG))
     robot.talk(session, 3)
     assert request.outcome is None
@@ -76,7 +76,7 @@ def actions_of(robot: HostFirmware) -> list[str]:
     return [line.split(" ", 1)[1] for line in robot.did]
 
 
-def pushed(robot: HostFirmware, milliseconds: int = 400) -> list[str]:
+def push_button(robot: HostFirmware, milliseconds: int = 400) -> list[str]:
     """Push the button; return what the robot does then."""
     robot.did.clear()
     robot.push()

@@ -30,7 +30,7 @@ OBSTACLE_LINES = (
 
 
 def switched_on(sketch: Path, memory: Path, board: str = "uno") -> Uno:
-    # Nobody opens its port here, and whoever does by mistake does not reset it.
+    # Nobody opens its port here, and opening it by mistake does not reset it.
     uno = Uno(sketch, names=NAMES, board=board, eeprom=memory, baud=BAUD, resets_on_open=False)
     uno.run_ms(300)
     assert states(uno) == OFF
@@ -45,10 +45,10 @@ def computer(uno: Uno, nonce: int = 1) -> Wired:
     return Wired(uno, Session(nonce, BAUD, KIT.fingerprint))
 
 
-def send(wired: Wired, text: str, **how: bool) -> None:
-    assert wired.until(wired.session.upload(image_of(text), **how)) == OK
+def send(wired_uno: Wired, text: str, **how: bool) -> None:
+    assert wired_uno.until(wired_uno.session.upload(image_of(text), **how)) == OK
 
 
-def saved(wired: Wired) -> int:
-    """Return how the robot's program is kept."""
-    return wired.complete(wired.session.status()).saved
+def read_saved_state(wired_uno: Wired) -> int:
+    """Return the storage state of the robot's program."""
+    return wired_uno.complete(wired_uno.session.status()).saved

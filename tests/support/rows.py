@@ -1,4 +1,4 @@
-"""One test of many rows that assert the same."""
+"""A single test of many rows with the same assertion."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ Row = TypeVar("Row")
 def go_through(
     test: Callable[[Row], None], rows: Iterable[Row], name: Callable[[Row], str] = repr
 ) -> None:
-    """Test each row, and tell of each one that fails: like `each_row`, of rows of this run."""
+    """Test each row, and report each failing one: like `each_row`, for rows made at run time."""
     wrong: dict[str, Exception] = {}
     for row in rows:
         try:
             test(row)
-        except Exception as why:  # of any kind: the other rows are to be seen, too
+        except Exception as why:  # any exception, so that the other rows run too
             wrong[name(row)] = why
     if wrong:
         failures = (f"{row}: {type(why).__name__}: {why}" for row, why in wrong.items())
@@ -34,21 +34,27 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
     Take it where a row is quick and uses no fixture that keeps something: a test of its own costs
     six milliseconds. There must be a row.
     """
-    wanted = [name.strip() for name in names.split(",")]
-    sets = [pytest.ParameterSet.extract_from(row, force_tuple=len(wanted) == 1) for row in rows]
+    wanted_texts = [name.strip() for name in names.split(",")]
+    sets = [
+        pytest.ParameterSet.extract_from(row, force_tuple=len(wanted_texts) == 1) for row in rows
+    ]
     assert sets, "no rows"
 
     def parametrize(test: Test) -> Test:
         @functools.wraps(test)
-        def whole(**given: Any) -> None:
+        def whole(**arguments: Any) -> None:
             def one(row: Any) -> None:
-                test(**given, **dict(zip(wanted, row.values, strict=True)))
+                test(**arguments, **dict(zip(wanted_texts, row.values, strict=True)))
 
             go_through(one, sets, lambda row: str(row.id or repr(row.values)))
 
         signature = inspect.signature(test)
-        left = [parameter for name, parameter in signature.parameters.items() if name not in wanted]
-        assert len(left) == len(signature.parameters) - len(wanted), f"it takes no {names}"
+        left = [
+            parameter
+            for name, parameter in signature.parameters.items()
+            if name not in wanted_texts
+        ]
+        assert len(left) == len(signature.parameters) - len(wanted_texts), f"it takes no {names}"
         whole.__signature__ = signature.replace(parameters=left)  # type: ignore[attr-defined]
         return whole
 

@@ -1,4 +1,4 @@
-"""Of rows that take long, on chips or of random programs, each commit runs a fair sample.
+"""Sampling of slow rows, on chips or of random programs: each commit runs a fair sample.
 
 A test marked `sampled("chip")` keeps, of the rows that differ in `chip` alone, one that the commit
 draws: every other value is in each run, each chip as often as the others, and every row in some.
@@ -56,10 +56,10 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
         turn = draw.randrange(1000)
         for rows in draw.sample(list(groups.values()), len(groups)):
             turn += not together
-            chosen = {
+            chosen_items = {
                 rows[(turn + k) % len(rows)] for k in range(_mark(rows).kwargs.get("keep", 1))
             }
-            left_out |= set(rows) - chosen
+            left_out |= set(rows) - chosen_items
     if left_out:
         items[:] = [item for item in items if item not in left_out]
         config.hook.pytest_deselected(items=list(left_out))
@@ -67,9 +67,9 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
 
 def _long_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytest.Item]:
     """Return the long tests that this run leaves out, of files that nobody names."""
-    named = _named(config)
+    named_paths = _list_named_files(config)
     long_tests = [
-        item for item in items if item.get_closest_marker(LONG) and item.path not in named
+        item for item in items if item.get_closest_marker(LONG) and item.path not in named_paths
     ]
     if not config.getoption("--tenth"):
         return set(long_tests)
@@ -89,11 +89,11 @@ def _files_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pyte
     for (name, keep), same in files.items():
         draw = random.Random(f"{seed(config)} {name}")
         for path in draw.sample(sorted(same), len(same))[keep:]:
-            left_out |= set(same[path] if path not in _named(config) else ())
+            left_out |= set(same[path] if path not in _list_named_files(config) else ())
     return left_out
 
 
-def _named(config: pytest.Config) -> set[Path]:
+def _list_named_files(config: pytest.Config) -> set[Path]:
     return {Path(arg).resolve() for arg in config.args if arg.endswith(".py")}
 
 
@@ -108,7 +108,7 @@ def _mark(rows: list[pytest.Item]) -> pytest.Mark:
 
 
 def some_of(config: pytest.Config, draw: str, rows: Sequence[Row], keep: int = 1) -> Sequence[Row]:
-    """Return so many rows of those that one test goes through by itself, in their order."""
+    """Return a sample of the rows that one test iterates over, in their order."""
     if config.getoption("--whole") or is_narrowed(config):
         return rows
     kept = random.Random(f"{seed(config)} {draw}").sample(range(len(rows)), keep)
@@ -116,7 +116,7 @@ def some_of(config: pytest.Config, draw: str, rows: Sequence[Row], keep: int = 1
 
 
 def how_to_repeat(config: pytest.Config) -> str:
-    """Return how the rows of this run are run again, or nothing where it has all."""
+    """Return the command that repeats the rows of this run, or "" if it has all."""
     if config.getoption("--whole") or is_narrowed(config):
         return ""
     tenth = " --tenth" if config.getoption("--tenth") else ""
@@ -124,12 +124,12 @@ def how_to_repeat(config: pytest.Config) -> str:
 
 
 def is_narrowed(config: pytest.Config) -> bool:
-    asked = config.option.keyword  # "not this one" asks for none
+    asked = config.option.keyword  # "not this one" selects none
     return (asked and not asked.startswith("not ")) or any("::" in arg for arg in config.args)
 
 
 def seed(config: pytest.Config) -> str:
-    """Return what draws the sample: the commit, or `none` where there is no history."""
+    """Return the seed of the sample: the commit, or `none` without a history."""
     return str(config.getoption("--sample") or _commit())
 
 
@@ -140,7 +140,8 @@ def _commit() -> str:
         completed = subprocess.run(words, capture_output=True, text=True)
     except OSError:
         return "none"
-    if completed.returncode and (ROOT / ".git").exists():  # it would draw one sample for ever
+    # Without a commit, the sample would never change.
+    if completed.returncode and (ROOT / ".git").exists():
         raise pytest.UsageError(
             f"This checkout has a history that cannot be read: {completed.stderr}"
         )
@@ -152,5 +153,5 @@ def _others(item: pytest.Item, names: tuple[str, ...]) -> str:
     assert isinstance(item, pytest.Function)
     params = dict(item.callspec.params)
     for name in names:
-        params.pop(name)  # a KeyError: the test has no such parameter
+        params.pop(name)  # a KeyError means that the test has no such parameter
     return repr(sorted((name, repr(value)) for name, value in params.items()))

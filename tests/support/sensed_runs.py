@@ -25,7 +25,7 @@ MOST_APART_MS = 1  # a byte
 class SensedRun(NamedTuple):
     did: list[Did]
     events: list[Event]
-    values: list[list[int]]  # what each sensor had, one after the other
+    values: list[list[int]]  # successive values of each sensor
 
     @property
     def readings(self) -> list[ReadingEvent]:
@@ -35,7 +35,7 @@ class SensedRun(NamedTuple):
 def sensed_run(
     text: str, seed: int, is_told: bool, byte_ticks: int, most_ms: int = 30
 ) -> SensedRun:
-    """Run a program while what its sensors see changes; it is told or not."""
+    """Run a program while its sensors' readings change, with or without reporting them."""
     robot = Debugged(text)
     assert robot.robot.until(robot.session, robot.session.tell_readings(is_told)) == OK
     rng, readings = random.Random(seed), [[0] for _ in KIT.sensors]
@@ -54,6 +54,6 @@ def sensed_run(
 
 
 def is_steady(text: str, seed: int) -> bool:
-    """Whether a program does the same at the same times on a line that is 5 % slower or faster."""
+    """Return whether a program acts at the same times on a line that is 5 % slower or faster."""
     usual, *others = (sensed_run(text, seed, False, BYTE_TICKS + more).did for more in (0, -1, 1))
     return all(apart_ms(usual, other) <= MOST_APART_MS for other in others)

@@ -20,9 +20,11 @@ DESCRIPTION: dict[str, int | bytes] = {
 }  # fmt: skip
 
 
-def answer(sent: bytes, values: dict[str, int | bytes], status: int = 0, epoch: int = 10) -> bytes:
+def answer(
+    sent_bytes: bytes, values: dict[str, int | bytes], status: int = 0, epoch: int = 10
+) -> bytes:
     """Return a robot's answer to what a session has sent."""
-    frame = decode_frame(sent.strip(b"\0"))
+    frame = decode_frame(sent_bytes.strip(b"\0"))
     assert frame
     payload = bytes((status, 0, 0))
     if not status:
@@ -36,7 +38,7 @@ def event(name: str, seq: int, values: dict[str, int | bytes], epoch: int = 11) 
     return b"\0" + encode_frame(Frame(message.number, seq, epoch, payload, is_reply=True))
 
 
-def greeted(baud: int = 9600, now_ms: int = 0, features: int = 0) -> Session:
+def greet(baud: int = 9600, now_ms: int = 0, features: int = 0) -> Session:
     """Return a session that has said HELLO."""
     session = Session(1, baud, KIT)
     session.hello()

@@ -10,7 +10,7 @@ from tiniscript.link.session import Session
 KIT = robots.load("tinibot").kit
 
 
-def started(text: str) -> tuple[Session, HostFirmware]:
+def start_program(text: str) -> tuple[Session, HostFirmware]:
     """Return a robot that has just begun a program, and the session that has asked for it."""
     session, robot = Session(1, 9600, KIT.fingerprint), HostFirmware(KIT)
     robot.wait(100)
@@ -19,7 +19,7 @@ def started(text: str) -> tuple[Session, HostFirmware]:
 
 
 def running() -> tuple[Session, HostFirmware]:
-    session, robot = started("F(200, 80)")
+    session, robot = start_program("F(200, 80)")
     robot.talk(session, 500)
     assert session.is_running and not session.events()
     return session, robot

@@ -1,4 +1,4 @@
-"""A robot behind a pseudo-terminal whose port this process shares, as `tsc monitor --hold` does."""
+"""A robot on a pseudo-terminal whose port this process shares, as `tsc monitor --hold` does."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from math import inf
 
 SENSORS = ("DISTANCE", "LIGHT_L", "LIGHT_R")
 MOST_DEPTH = 2
-Did = tuple[float, str]  # when, and what
+Did = tuple[float, str]  # time and text of an action
 
 
 def program(rng: random.Random) -> str:
@@ -50,8 +50,9 @@ def _check(rng: random.Random) -> str:
 
 
 def apart_ms(one: list[Did], other: list[Did]) -> float:
-    """Return how far two runs are apart at most, as long as both last: `inf` if they do not do the
-    same in the same order."""
+    """Return the largest time difference of two runs while both last: `inf` if their actions
+    differ.
+    """
     both = list(zip(one, other, strict=False))
     if any(one[1] != other[1] for one, other in both):
         return inf

@@ -1,4 +1,4 @@
-"""What may be at the other end of a port, in simulated time: for the doctor.
+"""Devices at the other end of a port in simulated time, for the doctor.
 
 The firmware here answers HELLO, STATUS and PING alone, with whatever a test wants it to say; the
 real one is behind `tests/support/pty_robot.py`.
@@ -32,12 +32,12 @@ def state(name: str) -> int:
 
 
 class Nobody:
-    """Nothing: a board without power."""
+    """An end without a device: a board without power."""
 
     def __init__(self, baud: int = 9600) -> None:
         self.baud = baud
         self.now_ms = 0
-        self.received: list[bytes] = []  # what arrived, byte for byte
+        self.received: list[bytes] = []  # bytes received
 
     def step(self, data: bytes) -> bytes:
         self.now_ms += 1

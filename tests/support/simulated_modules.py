@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-SLOW_MS = 1000  # after so long a silence a module without line ends takes what it has for a command
+SLOW_MS = 1000  # silence after which a module without line ends executes its command
 
 
 class SimulatedModule:
@@ -22,12 +22,12 @@ class SimulatedModule:
     name, pin = "", "1234"
     ends_lines = True
     answers: Sequence[tuple[str, str]] = ()
-    otherwise = ""  # what it says to any other command
-    bauds: Mapping[str, int] = {}  # none: a speed is its own name
+    otherwise = ""  # answer to any other command
+    bauds: Mapping[str, int] = {}  # none, because a speed is its own name
     is_quick = False  # a new speed counts at once
 
     def __init__(self, baud: int = 9600) -> None:
-        self.baud = baud  # at which it listens now
+        self.baud = baud  # speed at which it listens now
         self.data_baud = baud
         self.is_on, self.is_asleep = True, False
         self.commands: list[str] = []
@@ -54,7 +54,7 @@ class SimulatedModule:
         return replies
 
     def restart(self) -> None:
-        """It has no line that a computer could pull."""
+        """Do nothing, because it has no reset line."""
 
     def power_on(self) -> None:
         self.is_on, self.baud, self._line = True, self.data_baud, b""
@@ -95,7 +95,7 @@ class SimulatedModule:
 
 
 class Hc05(SimulatedModule):
-    """With its button held: 38400, lines, and a PIN that may keep its quotes."""
+    """An HC-05 with its button held: 38400 baud, lines, and a PIN that may keep its quotes."""
 
     name = "HC-05"
     version = "2.0-20100601"

@@ -1,4 +1,4 @@
-"""Ports that keep the time of what is behind them: where this process opens one, nobody waits.
+"""Ports in the time of their device: a process that opens one never waits.
 
 The port itself is real: it is opened, locked and pulled out as any other.
 """
@@ -20,11 +20,11 @@ from tiniscript.link.transports import serial as serial_transport
 if TYPE_CHECKING:
     import serial
 
-STRIDE_MS = 5  # so long nobody looks at a robot for which nothing comes
+STRIDE_MS = 5  # longest time between two looks at an idle robot
 
 
 class PtyPort:
-    """A pseudo-terminal, and what is behind it; what a computer opens is `port`.
+    """A pseudo-terminal with a device; a computer opens `port`.
 
     While `simulated` is set, its own thread leaves its time alone.
     """
@@ -37,13 +37,13 @@ class PtyPort:
         tty.setraw(self._theirs)
         self.port = os.ttyname(self._theirs)
         self.simulated: SimulatedPort | None = None
-        self.heard = b""  # all that has come to the port
-        self.damages = 0  # of so many bytes one changes on its way; 0: none does
+        self.heard = b""  # all data received by the port
+        self.damages = 0  # one of so many bytes is damaged; 0 means none
         self._passed = 0  # bytes, through the noise
         self._lock = threading.Lock()
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
-        """Let time pass, at whose beginning bytes arrive; return what it has sent meanwhile."""
+        """Let time pass, with received bytes at its beginning; return the bytes sent meanwhile."""
         raise NotImplementedError
 
     def _through_noise(self, data: bytes) -> bytes:
@@ -60,7 +60,7 @@ class PtyPort:
 
 
 class SimulatedPort:
-    """An open port of pyserial: time goes on behind it while it is read, and at no other time."""
+    """An open port of pyserial: time advances only while it is read."""
 
     def __init__(self, end: PtyPort, device: serial.SerialBase) -> None:
         self._end, self._device = end, device
@@ -77,15 +77,15 @@ class SimulatedPort:
 
     def read(self, size: int = 1) -> bytes:
         left_ms = int(self.timeout * 1000)
-        self._back += self._device.read(self._device.in_waiting)  # somebody else writes there
+        self._back += self._device.read(self._device.in_waiting)  # another process writes there
         while not self._back and left_ms > 0:
             stride = min(left_ms, STRIDE_MS)
             data, self._there = self._there, b""
             self._back += self._end.pass_ms(stride, data)
             self._now_ms += stride
             left_ms -= stride
-        taken, self._back = self._back[:size], self._back[size:]
-        return taken
+        taken_bytes, self._back = self._back[:size], self._back[size:]
+        return taken_bytes
 
     @property
     def in_waiting(self) -> int:
@@ -108,12 +108,12 @@ class SimulatedPort:
 
 
 @contextmanager
-def simulated(*ends: PtyPort) -> Iterator[None]:
+def simulate(*ends: PtyPort) -> Iterator[None]:
     """Within it, what this process opens keeps the time of its end."""
     actual = serial_transport._open
     by_port = {end.port: end for end in ends}
 
-    def opened(port: str, baud: int) -> serial.SerialBase | SimulatedPort:
+    def open_port(port: str, baud: int) -> serial.SerialBase | SimulatedPort:
         device = actual(port, baud)
         return SimulatedPort(by_port[port], device) if port in by_port else device
 
@@ -122,7 +122,7 @@ def simulated(*ends: PtyPort) -> Iterator[None]:
         return port.now_ms() / 1000 if port else time.monotonic()
 
     with ExitStack() as stack:
-        stack.enter_context(mock.patch.object(serial_transport, "_open", opened))
+        stack.enter_context(mock.patch.object(serial_transport, "_open", open_port))
         if len(ends) == 1:
             for module in (recorder, run_monitor):
                 stack.enter_context(mock.patch.object(module, "monotonic", now_s))

@@ -1,4 +1,4 @@
-"""A wire in simulated time: what is at its other end is stepped millisecond by millisecond."""
+"""A wire in simulated time: the device at its other end is stepped millisecond by millisecond."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class OtherEnd(Protocol):
     def restart(self) -> None: ...
 
 
-def garbled(data: bytes, sent: int, heard: int) -> bytes:
-    """Return what an UART at one speed hears of bytes that were sent at another one."""
-    return at_speed(data, sent, heard) if sent != heard else data
+def garble(data: bytes, sent_baud: int, heard_baud: int) -> bytes:
+    """Return the bytes that a UART at one speed receives from another speed."""
+    return at_speed(data, sent_baud, heard_baud) if sent_baud != heard_baud else data
 
 
 class SimulatedWire(Wire):
@@ -41,26 +41,26 @@ class SimulatedWire(Wire):
         if self.is_gone:
             raise OSError("gone")
         self.sent.append((self.baud, data))
-        self._there += garbled(data, self.baud, self._speed())
+        self._there += garble(data, self.baud, self._speed())
 
     def receive(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
         if self.is_gone:
             raise OSError("gone")
-        received, wait_left_ms = b"", wait_ms
-        while wait_left_ms > 0 and len(received) < MOST_BYTES:
+        received_bytes, wait_left_ms = b"", wait_ms
+        while wait_left_ms > 0 and len(received_bytes) < MOST_BYTES:
             data = self._step()
-            received += data
+            received_bytes += data
             wait_left_ms = quiet_ms if data else wait_left_ms - 1
-        return received
+        return received_bytes
 
     def _step(self) -> bytes:
         self.now_ms += 1
         speed = self._speed()  # an answer has the speed of before the command
         data, self._there = self._there, b""
-        return garbled(self.end.step(data), speed, self.baud)
+        return garble(self.end.step(data), speed, self.baud)
 
     def _speed(self) -> int:
-        """Return the speed of what is at the other end; a bare wire has that of its bytes."""
+        """Return the speed of the device at the other end; a bare wire has that of its bytes."""
         return self.baud if getattr(self.end, "is_bare", False) else self.end.baud
 
     def set_baud(self, baud: int) -> None:

@@ -1,4 +1,4 @@
-"""Who visits a virtual robot over TCP."""
+"""Visitors of a virtual robot over TCP."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tiniscript.link.messages import BY_NAME
 from tiniscript.virtual.simulator import Simulator
 
 PING = b"\0" + encode_frame(Frame(BY_NAME["PING"].number, 1, 0))
-TURNS = 3000  # far more than anything here takes
+TURNS = 3000  # far more than any use here
 
 
 def visit(simulator: Simulator) -> socket.socket:
@@ -29,11 +29,11 @@ def until(simulator: Simulator, is_so: Callable[[], bool]) -> None:
 
 
 def until_answered(simulator: Simulator, client: socket.socket, end: bytes = b"\0") -> None:
-    heard = bytearray()
-    until(simulator, lambda: end in received(client, heard))
+    heard_bytes = bytearray()
+    until(simulator, lambda: end in receive(client, heard_bytes))
 
 
-def received(client: socket.socket, into: bytearray) -> bytearray:
+def receive(client: socket.socket, into: bytearray) -> bytearray:
     with contextlib.suppress(BlockingIOError):
         into += client.recv(10_000)
     return into

@@ -8,11 +8,11 @@ import re
 from tests.machines.host_firmware import HostFirmware
 from tests.oracle.task_programs import task_program
 
-MARK = "BEEP(0.001, 31);"  # tells when a program begins
+MARK = "BEEP(0.001, 31);"  # reports the start of a program
 
 
 class SmallRobot(HostFirmware):
-    """As an Uno: it reads text where the program is that it holds."""
+    """A robot that, like an Uno, reads text into the place of its program."""
 
     has_draft = False
 
@@ -20,7 +20,7 @@ class SmallRobot(HostFirmware):
 FIRST_READINGS, READINGS = (1_000, 2_000, 3_000), (9_000, 600_000, 5_000)
 
 
-def drawn(rng: random.Random) -> str:
+def draw_program(rng: random.Random) -> str:
     """Return a program that begins with the mark, and draws nothing by itself."""
     text = re.sub(r"RANDOM\(\d, \d\)", str(rng.randint(0, 3)), task_program(rng)[0])
     moves = rng.choice(("", "F(60, 80);", "X = 0;W(0.05);SHOW(1 / X);", "M(30, -30);",

@@ -8,7 +8,7 @@ from tests.machines.board import MS, Board
 from tiniscript.robots.profile import Robot
 
 US_PER_CM = 2 / 0.0343
-STEP_CM = 1.5  # in 30 ms at 50 cm/s
+STEP_CM = 1.5  # distance in 30 ms at 50 cm/s
 SAMPLES_PER_WRONG_ONE = 50
 
 
@@ -18,21 +18,25 @@ def sonar_pins(robot: Robot, number: int = 2) -> tuple[int, int]:
 
 
 def ping_starts_ms(board: Board, trigger: int) -> list[float]:
-    """Return when pings left, in ms."""
+    """Return the times of the pings, in ms."""
     return [cycle / MS for cycle in board.edges(trigger)[1::2]]
 
 
 def driven_ms(board: Board, motors: int) -> list[float]:
     """Return the times at which so many motors have just been turned on."""
-    times = [cycle / MS for cycle in board.moved()]
+    times = [cycle / MS for cycle in board.list_motor_changes()]
     return [ms for ms in times if sum("pwm" in pin for pin in board.motors(ms)) == motors]
 
 
 def approaching_obstacle(seed: int, samples: int) -> tuple[list[float], list[float]]:
-    """Return how far away an obstacle that comes at 50 cm/s is at each ping, and what is heard."""
+    """Return the distance of an obstacle that approaches at 50 cm/s at each ping, and the
+    echoes.
+    """
     draw = random.Random(seed)
     true = [max(20.0, 160 - STEP_CM * number) for number in range(samples)]
-    heard = list(true)
+    heard_cm = list(true)
     for begin in range(0, samples, SAMPLES_PER_WRONG_ONE):
-        heard[begin + draw.randrange(SAMPLES_PER_WRONG_ONE)] = draw.choice([2, 5, 40, 90, 250, 400])
-    return true, heard
+        heard_cm[begin + draw.randrange(SAMPLES_PER_WRONG_ONE)] = draw.choice(
+            [2, 5, 40, 90, 250, 400]
+        )
+    return true, heard_cm

@@ -9,11 +9,11 @@ from tiniscript.library.source_map import SourceMap
 KIT = robots.load("tinibot").kit
 
 
-def compiled(text: str) -> Compilation:
+def compile_right_text(text: str) -> Compilation:
     compilation = compile_text(text, KIT, "drive.ts")
     assert compilation.is_right, [diagnostic.code.number for diagnostic in compilation.diagnostics]
     return compilation
 
 
-def mapped(compilation: Compilation) -> SourceMap:
+def make_source_map(compilation: Compilation) -> SourceMap:
     return source_map.map_of_compiled(compilation)

@@ -1,4 +1,4 @@
-"""How STOP is typed, and what stands before it."""
+"""Spellings of a typed STOP, and the bytes before it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 RUNS = b"SI|F(60,80)\n"
 SILENCE_MS = 1000
 HELD_MS, MOST_MS = 100, 1.0
-# What comes before the line of the stop, after a program that runs and a second of silence.
+# Bytes before the line of the stop, after a running program and a second of silence.
 PREFIXES = {
     "nothing": b"",
     "CR LF": b"\r\n",
@@ -41,7 +41,7 @@ PREFIXES = {
     "a byte order mark": b"\xef\xbb\xbf",
     "a module's message": b"OK+CONN\r\n",
 }
-# The same in what began as a frame.
+# The same inside a started frame.
 FRAMED = {
     "a frame that has begun": b"\0\x08\x02\x02\n",
     "a zero and lines without anything": b"\0\n\n",
@@ -58,7 +58,7 @@ SPELLINGS = STRICT + LOOSE
 
 
 def spellings_after(name: str) -> tuple[bytes, ...]:
-    """Return which are a stop after a prefix. What a 0x00 ends or begins has to be printable."""
+    """Return the spellings that stop after a prefix. Bytes next to a 0x00 must be printable."""
     if name in FRAMED:
         return STRICT
     prefix = PREFIXES[name]

@@ -34,26 +34,27 @@ if TYPE_CHECKING:
 
     from tests.support.pty_robot import PtyRobot
 
-# No sandbox: root has none, and these pages are our own.
+# No sandbox: root cannot use one, and these pages are our own.
 WHOLE: tuple[str, ...] = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
            "--disable-background-networking", "--disable-component-update",
            "--disable-sync")  # fmt: skip
 SHARED = Path("/dev/shm")
-if not SHARED.is_dir() or shutil.disk_usage(SHARED).free < 1 << 30:  # in a container it is small
+# A container's shared memory is small.
+if not SHARED.is_dir() or shutil.disk_usage(SHARED).free < 1 << 30:
     WHOLE += ("--disable-dev-shm-usage",)
 # Code is compiled once and not again for speed: a page of a test does little. The tabs of a context
 # share a renderer and what it has compiled.
 OPTIONS = (*WHOLE, "--js-flags=--liftoff-only --no-maglev --no-opt", "--process-per-site")
-UPLOADS = 10  # after so many stops in a row the computer is not to blame
+UPLOADS = 10  # number of consecutive stops that cannot be the computer's fault
 
 
 def missing() -> str:
-    """Return why the studio's page cannot be opened here, or nothing."""
+    """Return the reason why the studio's page cannot be opened here, or ""."""
     return missing_browser() or studio.why_stale()
 
 
 def missing_browser() -> str:
-    """Return why no page at all can be opened here, or nothing."""
+    """Return the reason why no page at all can be opened here, or ""."""
     if find_spec("playwright") is None:
         return "playwright is not installed: pip install playwright"
     if chromium() is None:
@@ -62,7 +63,7 @@ def missing_browser() -> str:
 
 
 def missing_firefox() -> str:
-    """Return why no page can be opened in Firefox here, or nothing."""
+    """Return the reason why no page can be opened in Firefox here, or ""."""
     return missing() or ("" if firefox() else "there is no Firefox: apt-get install firefox-esr")
 
 
@@ -76,20 +77,20 @@ def chromium() -> str | None:
 
 
 def headless() -> str | None:
-    """Return the same without windows: half of the processor's time for a page."""
+    """Return a browser without windows, which takes half the processor time for a page."""
     return os.environ.get("CHROMIUM") or shutil.which("chromium-headless-shell") or chromium()
 
 
 @contextmanager
-def served(page: dict[str, serving.File] | None = None) -> Iterator[serving.Server]:
+def serve_page(page: dict[str, serving.File] | None = None) -> Iterator[serving.Server]:
     """The built page, or another one, at an address of this computer."""
     with serves(serving.Server(page or serving.files(), 0)) as server:
         yield server
 
 
 @contextmanager
-def hosted() -> Iterator[serving.Server]:
-    """The same with the robots of this computer, as `tsc studio` has them."""
+def serve_robots() -> Iterator[serving.Server]:
+    """Serve the page with the robots of this computer, as `tsc studio` does."""
     hosting = Hosting()
     try:
         with serves(serving.Server(serving.files(), 0, hosting.answer)) as server:
@@ -115,8 +116,8 @@ class Class(NamedTuple):
 
 
 @contextmanager
-def taught(ports: list[str]) -> Iterator[Class]:
-    """The same as a class has it, at an address of the network, as `tsc studio --class` does."""
+def serve_class(ports: list[str]) -> Iterator[Class]:
+    """Serve a class at an address of the network, as `tsc studio --class` does."""
     hosting = Hosting()
     room = Classroom(hosting, ports)
     page = serving.for_class(serving.files())
@@ -129,7 +130,7 @@ def taught(ports: list[str]) -> Iterator[Class]:
 
 @contextmanager
 def driver(of_studio: bool = True) -> Iterator[Playwright]:
-    """What drives browsers; there is one in a process. Other pages need no studio."""
+    """Return the driver of browsers, one per process. Other pages need no studio."""
     need(missing() if of_studio else missing_browser())
     from playwright.sync_api import sync_playwright
 
@@ -141,11 +142,11 @@ def driver(of_studio: bool = True) -> Iterator[Playwright]:
 def browser(playwright: Playwright, *more: str, is_whole: bool = False) -> Iterator[Browser]:
     """A browser; one that is to be whole is what people have. `more` are options of it."""
     path, options = (chromium(), WHOLE) if is_whole else (headless(), OPTIONS)
-    opened = playwright.chromium.launch(executable_path=path, args=[*options, *more])
+    browser = playwright.chromium.launch(executable_path=path, args=[*options, *more])
     try:
-        yield opened
+        yield browser
     finally:
-        opened.close()
+        browser.close()
 
 
 # A tab that stays in a context keeps its renderer, and the WebAssembly of Python compiled in it.
@@ -165,7 +166,7 @@ class Pages:
     """
 
     def __init__(
-        self, opened: Browser, address: str, patience_s: int = 90,
+        self, browser: Browser, address: str, patience_s: int = 90,
         entrance: Callable[[], str] | None = None,
     ) -> None:  # fmt: skip
         """Pages ask at `address` alone; `entrance` makes the one that each is opened with."""
@@ -173,7 +174,7 @@ class Pages:
         self.address = address
         self.entrance = entrance or (lambda: address)
         self.wrong: list[str] = []
-        self._browser = opened
+        self._browser = browser
         self._contexts: list[BrowserContext] = []
         self._to_leave: list[BrowserContext] = []
 
@@ -197,9 +198,9 @@ class Pages:
 
         With `is_alone`, or options of Playwright's, in a context that no other visitor gets.
         """
-        context = self._own(options) if is_alone or options else self._lent()
+        context = self._own(options) if is_alone or options else self._lend_context()
         context.set_default_timeout(1000 * self.patience_s)
-        context.on("request", self._asked)
+        context.on("request", self._note_request)
         page = context.new_page()
         self.watch(page)
         return page
@@ -212,13 +213,14 @@ class Pages:
         page = self.blank(**options)
         if view == "start":
             page.goto(address)
-            page.locator("html[data-screen=start]").wait_for(state="attached")  # with its texts
+            # The screen with its texts.
+            page.locator("html[data-screen=start]").wait_for(state="attached")
         else:
             enter(page, address)
         if view == "text":
             page.click("#view_text")
         elif view == "blocks":
-            shown(page)
+            wait_for_blocks(page)
         return page
 
     def _own(self, options: dict[str, Any]) -> BrowserContext:
@@ -231,7 +233,7 @@ class Pages:
         self._contexts.append(self._browser.new_context(**settings))
         return self._contexts[-1]
 
-    def _lent(self) -> BrowserContext:
+    def _lend_context(self) -> BrowserContext:
         left = _LEFT.setdefault(self._browser, [])
         if left:
             context = left.pop()
@@ -248,7 +250,7 @@ class Pages:
         page.on("pageerror", lambda error: self.wrong.append(str(error)))
         page.on(
             "console",
-            lambda console_message: self._said(console_message.type, console_message.text),
+            lambda console_message: self._note_message(console_message.type, console_message.text),
         )
 
     def close(self) -> None:
@@ -256,7 +258,7 @@ class Pages:
         for context in self._contexts:
             context.close()
         for context in self._to_leave:
-            context.remove_listener("request", self._asked)
+            context.remove_listener("request", self._note_request)
             still, *others = context.pages
             for page in others:
                 page.close()
@@ -266,11 +268,11 @@ class Pages:
             session.detach()
             _LEFT[self._browser].append(context)
 
-    def _said(self, kind: str, text: str) -> None:
+    def _note_message(self, kind: str, text: str) -> None:
         if kind in ("error", "warning") and "blocked by Playwright" not in text:
             self.wrong.append(text)
 
-    def _asked(self, request: Request) -> None:
+    def _note_request(self, request: Request) -> None:
         if not request.url.startswith((self.address, "data:", "blob:")):
             self.wrong.append(request.url)
 
@@ -278,12 +280,12 @@ class Pages:
 def enter(page: Page, address: str) -> None:
     """Open an address, leave the start screen, and wait until the program is compiled."""
     page.goto(address)
-    checked(page)
+    wait_until_checked(page)
     if page.locator("html[data-screen=start]").count():
         page.click("#start_write")
 
 
-# What somebody presses who wants to begin anew: home ends a lesson, a drawing and what runs.
+# Actions of a person who starts again: home ends a lesson, a drawing and a run.
 _ANEW = """() => {
   const at = (id) => document.getElementById(id);
   for (const each of document.querySelectorAll('dialog[open]')) each.close();
@@ -299,7 +301,7 @@ _ANEW = """() => {
 
 
 def begin_anew(page: Page) -> None:
-    """Have a page that others have used as `Pages.open` gives it, with an empty program.
+    """Reset a used page to the state after `Pages.open`, with an empty program.
 
     In English, for a tinibot among obstacles; no lesson, no drawing and no run goes on. What the
     page has kept stays: runs, programs, drawn worlds, which lesson is open, and at which step.
@@ -309,7 +311,7 @@ def begin_anew(page: Page) -> None:
     if page.input_value("#language") != "en":
         speak(page, "en")
     page.evaluate(_ANEW)
-    checked(page)
+    wait_until_checked(page)
 
 
 # Once a new size of the screen has been heard of, and drawn.
@@ -328,7 +330,7 @@ def finger(page: Page, way: Sequence[tuple[float, float]]) -> None:
 
 
 def colors_of(page: Page, canvas: str) -> set[str]:
-    """Return the colors of the pixels of a canvas that hide what is behind."""
+    """Return the colors of the opaque pixels of a canvas."""
     colors = page.evaluate(
         "(id) => { const c = document.querySelector(id); const d = c.getContext('2d')"
         ".getImageData(0, 0, c.width, c.height).data; const found = new Set();"
@@ -360,8 +362,8 @@ def hears(page: Page, is_so: Callable[[], object], what: str) -> None:
         page.wait_for_timeout(20)
 
 
-def checked(page: Page) -> None:
-    """Wait until what is in the editor is compiled; the page's policy forbids waiting functions."""
+def wait_until_checked(page: Page) -> None:
+    """Wait until the editor's text is compiled; the page's policy forbids waiting functions."""
     page.locator("html[data-state=checked]").wait_for(state="attached")
 
 
@@ -371,14 +373,14 @@ def speak(page: Page, language: str) -> None:
     page.locator(f"html[lang={language}]").wait_for(state="attached")
 
 
-def shown(page: Page) -> None:
+def wait_for_blocks(page: Page) -> None:
     """Wait until the blocks are those of the text, and the text is compiled."""
     page.locator("#blocks[data-state=shown]").wait_for()
-    checked(page)
+    wait_until_checked(page)
 
 
 def drives(page: Page, robot: PtyRobot) -> None:
-    """Let a page's robot drive, and wait until it does.
+    """Make a page's robot drive, and wait until it does.
 
     A busy computer can keep a page silent for so long that its robot is stopped before this thread
     has seen it drive. Then the page asks again.
@@ -399,7 +401,7 @@ HUNG_MS = round(1000 * (LEFT_S - 1))
 
 
 def hang(page: Page, milliseconds: int) -> None:
-    """Let the page's main thread hang, from now on."""
+    """Make the page's main thread hang, from now on."""
     page.evaluate(
         "(hung) => { setTimeout(() => { const end = performance.now() + hung;"
         " while (performance.now() < end); }, 0); }",
@@ -407,7 +409,7 @@ def hang(page: Page, milliseconds: int) -> None:
     )
 
 
-def noted(page: Page, text: str) -> None:
+def wait_for_note(page: Page, text: str) -> None:
     """Wait until the page has said so below the editor."""
     page.locator("#note").filter(has_text=text).wait_for()
 
@@ -421,14 +423,14 @@ def write(page: Page, text: str) -> None:
     page.keyboard.press("Delete")
     if text:
         page.keyboard.insert_text(text)
-    checked(page)
+    wait_until_checked(page)
 
 
 def axe(page: Page, *rules: str, within: str = "html") -> list[tuple[str, str]]:
-    """Return what axe finds in an element, of these rules or of all: the rule, the first place.
+    """Return axe's findings in an element, for these rules or all: the rule, the first place.
 
     The page hangs meanwhile, for seconds where the computer is busy: a robot that it drives is
-    stopped, and one to which it is connected is left. So this comes last, where there is one.
+    stopped, and one to which it is connected is left. So this comes last, if there is one.
     """
     if not page.evaluate("'axe' in window"):
         page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
@@ -436,7 +438,7 @@ def axe(page: Page, *rules: str, within: str = "html") -> list[tuple[str, str]]:
     return [(rule, html) for rule, html in problems]
 
 
-# What passes is neither described nor sent to Python.
+# Passing results are neither described nor sent to Python.
 _AXE = """async ([within, ...rules]) => {
   const only = rules.length ? {runOnly: rules} : {};
   const found = await axe.run(within, {...only, resultTypes: ['violations']});
@@ -477,13 +479,13 @@ _ASK = """async (requests) => {
 }"""
 
 
-def asked(page: Page, requests: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+def ask_worker(page: Page, requests: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the answers of a worker to requests, in their order."""
     answers: list[dict[str, Any]] = page.evaluate(_ASK, requests)
     return answers
 
 
-DANCE = "F(1, 80);R(0.5, 60);BEEP(0.1, 440);SHOW(5);B(0.2, 50)"  # takes no reading
+DANCE = "F(1, 80);R(0.5, 60);BEEP(0.1, 440);SHOW(5);B(0.2, 50)"  # reads no sensor
 
 
 def dances_like_the_command(page: Page) -> list[str]:
@@ -492,6 +494,6 @@ def dances_like_the_command(page: Page) -> list[str]:
     page.select_option("#speed", "20")
     page.click("#run")
     in_phase(page, "ended")
-    wanted = [f"{event.ms} {event.text}" for event in run(DANCE).events]
-    assert (page.locator("#trace").text_content() or "").split("\n") == wanted
-    return wanted
+    wanted_texts = [f"{event.ms} {event.text}" for event in run(DANCE).events]
+    assert (page.locator("#trace").text_content() or "").split("\n") == wanted_texts
+    return wanted_texts

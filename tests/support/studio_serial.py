@@ -33,16 +33,16 @@ exec "$ROBOT_BROWSER" "$@"' sh "$@"
 
 
 def missing() -> str:
-    """Return why there is no such browser here, or nothing."""
+    """Return the reason why there is no such browser here, or ""."""
     if not hasattr(os, "geteuid") or os.geteuid() != 0:
         return "a mount namespace takes root"
     if not Path(LISTED).is_char_device():
         return f"there is no {LISTED}"
     if shutil.which("unshare") is None:
         return "there is no unshare"
-    tried = subprocess.run(["unshare", "-m", "mount", "--bind", "/dev/null", LISTED],
+    completed = subprocess.run(["unshare", "-m", "mount", "--bind", "/dev/null", LISTED],
                            capture_output=True, text=True)  # fmt: skip
-    return tried.stderr.strip() if tried.returncode else ""
+    return completed.stderr.strip() if completed.returncode else ""
 
 
 @contextmanager
@@ -59,11 +59,11 @@ def context(
         "ROBOT_PAGE": origin.rstrip("/"),
         "ROBOT_BROWSER": str(studio.chromium()),
     }
-    opened = playwright.chromium.launch_persistent_context(
+    opened_browser_context = playwright.chromium.launch_persistent_context(
         str(folder / "profile"), executable_path=str(script), args=list(studio.OPTIONS),
         env=environment, locale="en-US", viewport={"width": 1366, "height": 768},
     )  # fmt: skip
     try:
-        yield opened
+        yield opened_browser_context
     finally:
-        opened.close()
+        opened_browser_context.close()

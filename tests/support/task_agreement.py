@@ -1,4 +1,4 @@
-"""How the compiler and the machines are compared with the oracle on a random program with tasks."""
+"""Compares the compiler and the machines with the oracle on a random program with tasks."""
 
 from __future__ import annotations
 

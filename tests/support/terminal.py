@@ -36,11 +36,11 @@ class Terminal:
         self, *words: str | Path, command: Sequence[str] = TSC, size: tuple[int, int] = (80, 24),
         output: Path | None = None, env: Mapping[str, str] | None = None, types: bool = True,
     ) -> None:  # fmt: skip
-        """With `types` standard input is the terminal, else nothing."""
+        """Start the command; with `types`, standard input is the terminal, otherwise empty."""
         self._ours, theirs = pty.openpty()
         fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
         modes = termios.tcgetattr(theirs)
-        modes[3] |= termios.NOFLSH  # after Ctrl-C the system may drop what is written since
+        modes[3] |= termios.NOFLSH  # without NOFLSH, Ctrl-C may drop later output
         termios.tcsetattr(theirs, termios.TCSANOW, modes)
         variables = {name: value for name, value in os.environ.items() if name not in HIDDEN}
         with output.open("wb") if output else nullcontext(theirs) as out:
@@ -105,7 +105,7 @@ class Terminal:
         return bool(part)
 
     def _read_on(self) -> None:
-        """Read at once: whoever writes to a terminal that is full waits."""
+        """Read at once, because a writer to a full terminal blocks."""
         part = b"begun"
         while part:
             part = rest_of(self._ours)

@@ -39,37 +39,39 @@ class Fuzz:
             self.robot, self.session = switched_on(), computer()
 
     def step(self, data: bytes = b"", flags: int = 0) -> bytes:
-        """Let a millisecond pass; nothing moves while the robot is latched."""
+        """Step one millisecond; nothing may move while the robot is latched."""
         robot = self.robot
         robot.did.clear()
         was_latched = robot.is_latched
-        sent = robot.step(data, flags)
+        sent_bytes = robot.step(data, flags)
         self.check(was_latched, robot.is_latched, robot.did, has_data=bool(data))
-        return sent
+        return sent_bytes
 
-    def check(self, was_latched: bool, is_latched: bool, did: list[str], has_data: bool) -> None:
+    def check(
+        self, was_latched: bool, is_latched: bool, actions: list[str], has_data: bool
+    ) -> None:
         """Assert what must be so of a millisecond."""
-        for line in did:
+        for line in actions:
             assert "MARK" not in line and "MEASURED" not in line, line
-        moves = [line for line in did if " MOTORS " in line]
-        if not has_data:  # of several lines at once one may start what the next one stops
-            assert not (was_latched and is_latched and moves), did
+        moves = [line for line in actions if " MOTORS " in line]
+        if not has_data:  # in several lines at once, one may start what the next one stops
+            assert not (was_latched and is_latched and moves), actions
         if is_latched and moves:
             assert moves[-1].endswith("MOTORS 0 0"), moves
 
     def steps(self, milliseconds: int, data: bytes) -> bytes:
-        """Let milliseconds pass, in each of which a byte arrives, if there is one."""
+        """Step milliseconds, in each of which one of the bytes arrives."""
         robot = self.robot
         robot.did.clear()
         was_latched, begin_ms = robot.is_latched, robot.now_ms + 1
-        sent, latched = robot.latched_while(milliseconds, data, is_spread=True)
-        did: list[list[str]] = [[] for _ in latched]
+        sent_bytes, latch_states = robot.latched_while(milliseconds, data, is_spread=True)
+        actions: list[list[str]] = [[] for _ in latch_states]
         for line in robot.did:
-            did[int(line.split()[0]) - begin_ms].append(line)
-        for number, is_latched in enumerate(latched):
-            self.check(was_latched, is_latched, did[number], has_data=number < len(data))
+            actions[int(line.split()[0]) - begin_ms].append(line)
+        for number, is_latched in enumerate(latch_states):
+            self.check(was_latched, is_latched, actions[number], has_data=number < len(data))
             was_latched = is_latched
-        return sent
+        return sent_bytes
 
     def wait(self, milliseconds: int) -> bytes:
         return self.steps(milliseconds, b"")
@@ -156,7 +158,7 @@ class Fuzz:
         raise AssertionError("it saves for ever")
 
     def moving(self) -> bool:
-        """Whether the line of `check_line` has the motors: it stops them here."""
+        """Return whether the line of `check_line` has the motors, which it stops here."""
         lines: list[str] = []
         for _ in range(50):
             self.step(b"\0" * 8)

@@ -13,9 +13,9 @@ from tiniscript.diagnostics import codes
 
 
 def written_out(word: re.Match[str]) -> str:
-    """Return what a word with fixed values stands for, and any other as it is."""
-    known = WORDS.get(word[0].upper())
-    return (known and known.stands_for) or word[0]
+    """Return the meaning of a word with fixed values; others stay unchanged."""
+    known_word = WORDS.get(word[0].upper())
+    return (known_word and known_word.stands_for) or word[0]
 
 
 def check_line(text: str, kit: Kit) -> None:

@@ -17,7 +17,7 @@ CAPITAL_WORDS = re.compile(r"\b[A-Z][A-Z_]*\b")
 
 
 def text_only_words(sentences: str, language: str, *, is_line_on_floor: bool = False) -> list[str]:
-    """Return what in a sentence for blocks is only in a text, code aside."""
+    """Return the words of a block sentence that only exist in text, apart from code."""
     prose = CODE.sub("``", sentences)
     patterns = [WRITING[language], *([] if is_line_on_floor else [LINES[language]])]
     words = [match[0] for pattern in patterns for match in re.finditer(pattern, prose, re.I)]

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from tests.machines.host_firmware import HostFirmware
-from tests.support.robot_on_host import computer, send, stored, switched_on
+from tests.support.robot_on_host import computer, send, switched_on, wait_until_saved
 from tiniscript.link.payloads import StatusReply
 from tiniscript.link.session import Session
 
-SAVED_BACK = ["MOTORS -60 -60", "MOTORS 0 0", "FINISHED"]  # what `holding` holds
+SAVED_BACK = ["MOTORS -60 -60", "MOTORS 0 0", "FINISHED"]  # actions of the program in `holding`
 LINE = ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
 SAVED_MEMORY = 1
 
 
-def typed(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) -> list[str]:
-    """Let bytes arrive at 9600 baud; return the lines that it answers."""
+def type_text(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) -> list[str]:
+    """Send bytes at 9600 baud; return the lines of the answer."""
     data = text if isinstance(text, bytes) else text.encode()
-    sent = b"".join(robot.step(bytes((byte,))) for byte in data)
-    return (sent + robot.wait(milliseconds)).decode("latin-1").splitlines()
+    sent_bytes = b"".join(robot.step(bytes((byte,))) for byte in data)
+    return (sent_bytes + robot.wait(milliseconds)).decode("latin-1").splitlines()
 
 
 def holding(text: str = "SB|B(0.2, 60)", saves: bool = True) -> tuple[HostFirmware, Session]:
@@ -24,7 +24,7 @@ def holding(text: str = "SB|B(0.2, 60)", saves: bool = True) -> tuple[HostFirmwa
     robot, session = switched_on(), computer()
     send(robot, session, text, saves=saves)
     if saves:
-        stored(robot, session)
+        wait_until_saved(robot, session)
     robot.wait(4000)
     robot.did.clear()
     return robot, session
@@ -34,13 +34,13 @@ def status(robot: HostFirmware, session: Session) -> StatusReply:
     return robot.complete(session, session.status())
 
 
-def fetched(robot: HostFirmware, session: Session) -> bytes:
+def fetch_image(robot: HostFirmware, session: Session) -> bytes:
     return robot.complete(session, session.fetch()).image
 
 
 def read_back(saves: bool = True) -> tuple[HostFirmware, Session, bytes]:
     """Return a robot that holds a program, and that program, when its client has gone."""
     robot, session = holding(saves=saves)
-    before = fetched(robot, session)
+    bytes_before = fetch_image(robot, session)
     robot.wait(4000)
-    return robot, session, before
+    return robot, session, bytes_before

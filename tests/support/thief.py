@@ -1,4 +1,4 @@
-"""Who hears the line of a robot's owner, and makes frames of what was said there."""
+"""A thief on the owner's line, who makes frames from recorded ones."""
 
 from __future__ import annotations
 
@@ -10,12 +10,14 @@ from tiniscript.link.seal import Seal
 
 
 class Thief:
-    """Who hears an owner's line, and writes into it. `recorded` has frames of other seals too."""
+    """A thief who hears an owner's line, and writes into it. `recorded` has frames of other seals
+    too.
+    """
 
     def __init__(self, chance: random.Random, old: list[bytes]) -> None:
         self.chance = chance
         self.old = old
-        self.sent: list[bytes] = []  # of the present seal
+        self.sent: list[bytes] = []  # frames under the current seal
         self.replies: list[bytes] = []
 
     def frame(self, epoch: int, seq: int) -> tuple[str, bytes]:
@@ -37,13 +39,13 @@ class Thief:
         if how == "cut":
             return how, wire_of(frame._replace(payload=frame.payload[: -chance.randrange(1, 13)]))
         if how == "changed":
-            changed = bytearray(frame.payload)
-            changed[chance.randrange(len(changed))] ^= 1 << chance.randrange(8)
-            return how, wire_of(frame._replace(payload=bytes(changed)))
+            changed_bytes = bytearray(frame.payload)
+            changed_bytes[chance.randrange(len(changed_bytes))] ^= 1 << chance.randrange(8)
+            return how, wire_of(frame._replace(payload=bytes(changed_bytes)))
         if how == "unsealed":
             payload = frame.payload[5:-8]
             return how, wire_of(frame._replace(payload=payload, seq=seq, is_sealed=False))
-        if how == "moved":  # another number of the request, of the message, or of the counter
+        if how == "moved":  # changes the number of the request, the message or the counter
             count = chance.choice((seq, chance.randrange(256))) if chance.random() < 0.5 else 0
             rising = frame.payload[:1] + (2**32 - 1).to_bytes(4, "little") + frame.payload[5:]
             number = chance.choice((frame.number, 7, 8, 9, 19))
@@ -55,14 +57,14 @@ class Thief:
         message = chance.choice(acting)
         low = sum(field.least_bytes for field in message.request)
         high = min(sum(field.most_bytes for field in message.request), SEALED_PAYLOAD_BYTES)
-        asked = Frame(message.number, seq, epoch, chance.randbytes(chance.randint(low, high)))
+        asked_frame = Frame(message.number, seq, epoch, chance.randbytes(chance.randint(low, high)))
         if how == "forged":
             counter = chance.choice((1, 1000, 2**32 - 1)).to_bytes(4, "little")
-            whole = b"\0" + counter + asked.payload + chance.randbytes(8)
-            return how, wire_of(asked._replace(payload=whole, is_sealed=True))
+            whole = b"\0" + counter + asked_frame.payload + chance.randbytes(8)
+            return how, wire_of(asked_frame._replace(payload=whole, is_sealed=True))
         seal = Seal(chance.randbytes(16))
         seal.sent_counter = 10_000
-        return how, wire_of(seal.seal_frame(asked))
+        return how, wire_of(seal.seal_frame(asked_frame))
 
 
 def wire_of(frame: Frame) -> bytes:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.machines import MACHINES
-from tests.support.case_runs import compiled, robot_and_senses
+from tests.support.case_runs import compile_case, robot_and_senses
 from tests.support.casefile import Case
 from tests.support.robot_on_uno import MOTORS, computer
 from tiniscript.bytecode.image import unpack
@@ -15,15 +15,15 @@ from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 SHORT_MS = 95  # settings that are over sooner: between two instructions, or while a sensor is read
-OFF_MS = 5  # that a change may be from its time in the trace,
+OFF_MS = 5  # tolerance of a change's time in the trace
 PING_MS = 25
-READING_MS = 55  # and so much more for each reading before it: it may have to be confirmed,
-FIRST_MS = 85  # or is the first of the run
-TELLING_MS = 200  # for which SHOW and DONE may be on the wire at the end
+READING_MS = 55  # extra tolerance for each earlier reading, which may need confirmation
+FIRST_MS = 85  # extra tolerance for the first reading of the run
+TELLING_MS = 200  # time at the end in which SHOW and DONE may be on the wire
 
 
 class Setting(NamedTuple):
-    """What the motors get from a time on, in percent."""
+    """The powers of the motors from a time on, in percent."""
 
     ms: float
     left: int
@@ -35,7 +35,7 @@ def program(text: str) -> Case:
 
 
 def motor_settings(uno: Uno, since: int) -> list[Setting]:
-    """Return what the pins have told the motors since a cycle."""
+    """Return the settings of the motor pins since a cycle."""
     changes = [
         change
         for name in MOTORS
@@ -84,8 +84,10 @@ def lasting(settings: list[Setting]) -> list[Setting]:
     return lasting_settings[1:]
 
 
-def pinged(distances: list[float]) -> list[float]:
-    """Return what each ping hears: three pings make the first reading, and two one that jumps."""
+def simulate_pings(distances: list[float]) -> list[float]:
+    """Return the distance that each ping measures: three pings make the first reading, and two one
+    that jumps.
+    """
     heard_cm = distances[:1] * 3
     for before, now in pairwise(distances):
         is_far = abs(now - before) > max(3, before / 5)
@@ -95,8 +97,8 @@ def pinged(distances: list[float]) -> list[float]:
 
 def check_pins(case: Case, uno: Uno) -> None:
     robot, senses = robot_and_senses(case)
-    image = unpack(compiled(case).image)
-    trace = MACHINES["python"](compiled(case).image, robot.kit, senses)
+    image = unpack(compile_case(case).image)
+    trace = MACHINES["python"](compile_case(case).image, robot.kit, senses)
     expected, reads = parsed_trace(trace)
     end_ms = float(trace.splitlines()[-1].split()[0])
     is_over = not trace.endswith("LIMIT\n")
@@ -104,33 +106,33 @@ def check_pins(case: Case, uno: Uno) -> None:
     for pin, name in (("A0", "LIGHT_R"), ("A1", "LIGHT_L")):
         uno.analog(pin, senses.readings.get(name, [0])[0] // 1000)
     uno.sonar("trigger", "echo", distances[0])
-    wired = computer(uno)
+    wired_uno = computer(uno)
     if image.start == "PING":
-        assert wired.until(wired.session.hello()) == OK
+        assert wired_uno.until(wired_uno.session.hello()) == OK
         assert motor_settings(uno, 0) == []
         return
-    heard = len(uno.received_bytes)
-    assert wired.until(wired.session.upload(image, is_detached=True)) == OK
-    began = last_zero(uno, heard)
+    heard_count = len(uno.received_bytes)
+    assert wired_uno.until(wired_uno.session.upload(image, is_detached=True)) == OK
+    began = last_zero(uno, heard_count)
     if image.start == "SB":
-        wired.run(300)
+        wired_uno.run(300)
         assert motor_settings(uno, began) == []
         uno.press("button", 60)
         began = uno.run_until("left forward", "high", limit_ms=500).cycle - 1
     triggers = 0
-    distances = pinged(distances)
+    distances = simulate_pings(distances)
     last_ms = end_ms + FIRST_MS + READING_MS * len(reads) + TELLING_MS
     while (uno.cycle - began) / CYCLES_PER_MS < last_ms:
-        wired.run(2)
+        wired_uno.run(2)
         pulses = [
             pin_change for pin_change in uno.pins.history("trigger") if pin_change.state == "high"
         ]
         if len(pulses) > triggers:
             triggers = len(pulses)
-            wired.run(PING_MS)
+            wired_uno.run(PING_MS)
             uno.sonar("trigger", "echo", distances[min(triggers, len(distances) - 1)])
     settings = motor_settings(uno, began)
-    events = wired.session.events()
+    events = wired_uno.session.events()
     if not is_over:
         settings = [setting for setting in settings if setting.ms < end_ms]
         expected = [setting for setting in expected if setting.ms < end_ms]
@@ -141,17 +143,21 @@ def check_pins(case: Case, uno: Uno) -> None:
         assert -OFF_MS <= pins.ms - line.ms <= late_ms, (pins, line)
     if is_over:
         lines = [line.split(" ", 1)[1] for line in trace.splitlines()]
-        shown = [line for line in lines if line.startswith("SHOW") or line == "DONE"]
+        shown_texts = [line for line in lines if line.startswith("SHOW") or line == "DONE"]
         names = [event.name for event in events]
         assert [name for name in names if name in ("SHOW", "DONE")] == [
-            line.split()[0] for line in shown
+            line.split()[0] for line in shown_texts
         ]
 
 
 def last_zero(uno: Uno, since: int) -> int:
-    """Return when the last frame was there from which something has begun to move."""
-    heard = uno.received_bytes[since:]
-    moved = [change.cycle for name in MOTORS for change in uno.pins.history(name)
-             if change.state in ("high", "pwm") and change.cycle > heard[0].cycle]  # fmt: skip
-    end = min(moved, default=heard[-1].cycle + 1)
-    return max(byte.cycle for byte in heard if byte.cycle < end and byte.value == 0)
+    """Return the time of the last frame from which a movement started."""
+    heard_bytes = uno.received_bytes[since:]
+    drive_cycles = [
+        change.cycle
+        for name in MOTORS
+        for change in uno.pins.history(name)
+        if change.state in ("high", "pwm") and change.cycle > heard_bytes[0].cycle
+    ]
+    end = min(drive_cycles, default=heard_bytes[-1].cycle + 1)
+    return max(byte.cycle for byte in heard_bytes if byte.cycle < end and byte.value == 0)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.machines.uno import needed
-from tests.support.platformio import changed
+from tests.machines.uno import skip_unless_available
+from tests.support.platformio import build_changed_sketch
 from tests.support.robot_on_uno import states
 from tools.uno import Uno
 
@@ -15,11 +15,11 @@ HANGS, HANGS_ALONE = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
 TIMER_MS, WATCHDOG_MS = 110, 300
 
 
-def built(folder: Path, hang: str, environment: str = "uno") -> Path:
+def build_hanging_firmware(folder: Path, hang: str, environment: str = "uno") -> Path:
     """Return the firmware that hangs when the button is pressed."""
-    needed()
+    skip_unless_available()
     hangs = f"if (press == Press::kPressed) {hang}"
-    return changed(folder, "main.cpp", PRESSED, hangs, environment)
+    return build_changed_sketch(folder, "main.cpp", PRESSED, hangs, environment)
 
 
 def is_on(uno: Uno) -> bool:

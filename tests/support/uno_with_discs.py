@@ -21,12 +21,12 @@ from tools.uno import Uno
 from tools.uno.log import Event
 
 ROBOT = robots.load("tinibot2", "uno")
-ENVIRONMENT = "uno_tinibot2"  # of vm_arduino/platformio.ini
-FULL = 255  # what PWM says of 100 %
+ENVIRONMENT = "uno_tinibot2"  # environment in vm_arduino/platformio.ini
+FULL = 255  # PWM value of 100 %
 
 
 class Driven(Wired):
-    """It stands on an endless floor; its motors have `motors` percent of their speed."""
+    """An Uno on an endless floor, whose motors have `motors` percent of their speed."""
 
     def __init__(
         self, firmware: Path, seed: int, motors: tuple[float, float], rough: Roughness
@@ -48,7 +48,7 @@ class Driven(Wired):
         self._discs = [f"D{board.discs.pins[side]}" for side in ("left", "right")]
         self._levels = [False, False]
         self._noticed = 0  # events of the board
-        self._pins: dict[str, Event] = {}  # what it did last with each pin
+        self._pins: dict[str, Event] = {}  # last event of each pin
         for name in self._discs:
             uno.drive(name, False)
         uno.run_ms(300)
@@ -75,7 +75,7 @@ class Driven(Wired):
                     self.uno.drive(self._discs[number], level)
 
     def _power(self, side: str) -> float:
-        """Return what a motor gets, in percent."""
+        """Return the power of a motor, in percent."""
         pins = ROBOT.board.motors.pins
         pwm = self._pins[f"D{pins[f'{side}_pwm']}"]
         level: int = pwm["value"] if pwm["is"] == "pwm" else FULL * (pwm["is"] == "high")

@@ -28,7 +28,7 @@ def long_upload(session: Session) -> PendingRequest[ReceiptReply]:
     return session.upload(image("SHOW(2);" * 30))
 
 
-def greeted() -> tuple[Session, HostFirmware]:
+def open_session() -> tuple[Session, HostFirmware]:
     session, robot = Session(1, 9600, KIT.fingerprint), HostFirmware(KIT)
     robot.wait(100)
     assert robot.until(session, session.hello()) == OK

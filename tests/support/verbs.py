@@ -13,7 +13,7 @@ def parsers() -> dict[str, options.Options]:
 
 
 def words_of(command: str) -> list[str]:
-    """Return what is typed for a command; one that a value chooses has that still to come."""
+    """Return the words of a command, without a value that selects it."""
     flags = {flag for option in options_of(command) if option.kind for flag in option.flags.split()}
     return [word for word in command_words(command).split() if word not in flags]
 

@@ -38,7 +38,7 @@ class Robot:
     def end(self, number: int = signal.SIGINT) -> CommandResult:
         if self.command.process.poll() is None:
             self.command.signal(number)
-        return self.command.ended()
+        return self.command.wait_for_result()
 
 
 @contextmanager

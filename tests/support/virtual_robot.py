@@ -33,14 +33,14 @@ def robot_in(
 
 
 def trace(events: Sequence[Event]) -> list[str]:
-    """Return what a robot did in its last run as `tsc run` prints it."""
+    """Return a robot's actions in its last run, in the form of `tsc run`."""
     starts = [k for k, event in enumerate(events) if event.kind == "START"]
     began_ms = events[starts[-1]].time_ms
     return [f"{event.time_ms - began_ms} {event.text}" for event in events[starts[-1] + 1 :]]
 
 
 class Talk(Computer):
-    """One that sends programs as text."""
+    """A computer that sends programs as text."""
 
     def __init__(self, robot: VirtualRobot, nonce: int = 5, keys: KeyRing | None = None) -> None:
         super().__init__(robot, nonce, keys)

@@ -1,4 +1,4 @@
-"""How two machines are compared."""
+"""Compares two machines."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from tests.support.random_programs import MAX_MS
 
 
 def same(want: str, actual: str) -> bool:
-    """Whether two traces mean the same: where `max-steps` cuts is not part of the meaning."""
+    """Return whether two traces are equivalent; the place of a cut by `max-steps` does not
+    count.
+    """
     if want == actual:
         return True
     ours, theirs = actual.splitlines(), want.splitlines()

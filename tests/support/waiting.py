@@ -18,7 +18,7 @@ def until(is_so: Callable[[], bool], what: str, limit_s: float = HANGS_S) -> Non
 
 
 def has_ended(number: str) -> bool:
-    """Whether a process of Linux is gone, or waits only for somebody to ask how it ended."""
+    """Return whether a process of Linux is gone, or a zombie."""
     try:
         stat = Path(f"/proc/{number}/stat").read_text()
     except (FileNotFoundError, ProcessLookupError):

@@ -23,8 +23,8 @@ def pins_of(robot: Robot) -> set[int]:
     return pins | {pin for pin in single if pin is not None}
 
 
-def wired(driver: Driver, chip: Chip, taken: set[int], is_whole: bool = True) -> Wiring:
-    """Wire a driver to the first pins that fit. `is_whole`: with what is optional, too.
+def wire_driver(driver: Driver, chip: Chip, used_pins: set[int], is_whole: bool = True) -> Wiring:
+    """Wire a driver to the first pins that fit. `is_whole`: including optional parts.
 
     Pins that a simulated board has come first, and of these the pins that can do the least: they
     leave to each driver the pins that only it needs, in whatever order the drivers come.
@@ -35,11 +35,11 @@ def wired(driver: Driver, chip: Chip, taken: set[int], is_whole: bool = True) ->
         if fixed is not None:
             if driver.choosing_key(key, settings):
                 pins[key] = fixed
-                taken.add(fixed)
+                used_pins.add(fixed)
             continue
         if is_optional and not is_whole:
             continue
-        free = [pin for pin in chip.digital_pins | chip.analog_pins if pin not in taken]
+        free = [pin for pin in chip.digital_pins | chip.analog_pins if pin not in used_pins]
         pins[key] = min(
             (pin for pin in free if chip.can(pin, need)),
             key=lambda pin: (
@@ -49,7 +49,7 @@ def wired(driver: Driver, chip: Chip, taken: set[int], is_whole: bool = True) ->
                 pin,
             ),
         )
-        taken.add(pins[key])
+        used_pins.add(pins[key])
     return Wiring(driver.name, pins, settings)
 
 
@@ -57,13 +57,13 @@ def robot_with(motors: str, devices: list[Driver], chip_name: str = "mega", is_w
                label: str = "something") -> Robot:  # fmt: skip
     """Return a robot that has these drivers, on pins all over its board."""
     chip, tinibot = CHIPS[chip_name], robots.load("tinibot")
-    taken = {0, 1, 2, 11, 13}
-    motors_wiring = wired(DRIVERS["motors", motors], chip, taken, is_whole)
+    used_pins = {0, 1, 2, 11, 13}
+    motors_wiring = wire_driver(DRIVERS["motors", motors], chip, used_pins, is_whole)
     parts: dict[str, list[tuple[Device, Wiring]]] = {"sensors": [], "actuators": []}
     for number, driver in enumerate(devices):
         table, kind = driver.used_by.split()
         device = Device(f"D{number}", kind, "", 0, 5 * ONE if kind == NUMBER else 1)
-        parts[table].append((device, wired(driver, chip, taken)))
+        parts[table].append((device, wire_driver(driver, chip, used_pins)))
     kit = Kit(
         tuple(device for device, _ in parts["sensors"]),
         tuple(device for device, _ in parts["actuators"]),
@@ -86,9 +86,11 @@ def with_discs(chip: str, name: str) -> Robot:
     """Return a robot with discs of a driver."""
     robot = robots.load("tinibot32" if chip == "esp32dev" else "tinibot2", chip)
     robot = robot._replace(board=robot.board._replace(discs=None))
-    taken = set(pins_of(robot))
+    used_pins = set(pins_of(robot))
     return robot._replace(
-        board=robot.board._replace(discs=wired(DRIVERS["discs", name], CHIPS[chip], taken))
+        board=robot.board._replace(
+            discs=wire_driver(DRIVERS["discs", name], CHIPS[chip], used_pins)
+        )
     )
 
 

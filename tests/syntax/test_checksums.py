@@ -1,4 +1,4 @@
-"""The checksums of lines: which bytes they cover, where they stand, and what is said of them."""
+"""The checksums of lines: the bytes they cover, their place, and their messages."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LINE = "SI|F(2, 80)"
 CHECKED = f"{LINE}~B77E7BD9"
 
 
-def compiled(text: str) -> Compilation:
+def compile_program(text: str) -> Compilation:
     return compile_text(text, TINIBOT.kit)
 
 
@@ -25,7 +25,7 @@ def messages(text: str) -> list[tuple[str, str]]:
     """Return the code of each diagnostic, and what it points at."""
     return [
         (diagnostic.code.number, text[slice(*diagnostic.span)])
-        for diagnostic in compiled(text).diagnostics
+        for diagnostic in compile_program(text).diagnostics
     ]
 
 
@@ -49,7 +49,7 @@ def test_the_checksum_is_the_crc_32_of_the_bytes_of_the_line() -> None:
 )
 def test_a_line_with_its_checksum_is_the_line(text: str) -> None:
     assert messages(text) == []
-    assert compiled(text).image == compiled(LINE).image
+    assert compile_program(text).image == compile_program(LINE).image
 
 
 def test_a_byte_order_mark_of_a_file_does_not_count() -> None:
@@ -59,18 +59,18 @@ def test_a_byte_order_mark_of_a_file_does_not_count() -> None:
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_each_line_has_a_checksum_of_its_own_or_none(end: str) -> None:
     lines = ["LOOP(2)", "  F(1, 50)  ", "END_LOOP // twice", "", "S"]
-    want = compiled("\n".join(lines)).image
+    want = compile_program("\n".join(lines)).image
     for which in range(2 ** len(lines)):
         rows = [with_checksum(row) if which >> k & 1 else row for k, row in enumerate(lines)]
-        assert compiled(end.join(rows)).image == want, rows
+        assert compile_program(end.join(rows)).image == want, rows
         assert messages(end.join([*rows[:-1], "R~00000000"])) != []
 
 
 @pytest.mark.parametrize("at", range(len(LINE)))
 def test_a_line_that_has_changed_is_a_mistake(at: int) -> None:
-    changed = LINE[:at] + chr(ord(LINE[at]) ^ 1) + LINE[at + 1 :]
-    assert ("TS058", "~B77E7BD9") in messages(f"{changed}~B77E7BD9")
-    assert not compiled(f"{changed}~B77E7BD9").image
+    changed_text = LINE[:at] + chr(ord(LINE[at]) ^ 1) + LINE[at + 1 :]
+    assert ("TS058", "~B77E7BD9") in messages(f"{changed_text}~B77E7BD9")
+    assert not compile_program(f"{changed_text}~B77E7BD9").image
 
 
 def test_spaces_before_the_sign_count() -> None:
@@ -79,7 +79,7 @@ def test_spaces_before_the_sign_count() -> None:
 
 
 def test_a_line_of_comment_has_a_checksum_too() -> None:
-    """So a line in which two signs became `//` does not pass for a comment."""
+    """Therefore a line in which two signs became `//` does not pass for a comment."""
     assert messages(with_checksum("// a square")) == []
     assert messages("// a square~00000000") == [("TS058", "~00000000")]
     assert messages(with_checksum("S // stop")) == []

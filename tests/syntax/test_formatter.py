@@ -12,7 +12,7 @@ import pytest
 
 from tests.oracle.interpreter import PAPER_KIT
 from tests.oracle.interpreter import Kit as OracleKit
-from tests.oracle.programs import WIDE_KIT, broken, program
+from tests.oracle.programs import WIDE_KIT, break_text, program
 from tests.support.checking_work import count_calls
 from tiniscript import Compilation, compile_text
 from tiniscript.base import kit
@@ -138,7 +138,7 @@ LAYOUTS: dict[str, tuple[str, str]] = {
 
 @pytest.mark.parametrize(("text", "layout"), LAYOUTS.values(), ids=LAYOUTS.keys())
 def test_layout(text: str, layout: str) -> None:
-    """Is the one that stands beside the text, and formatting it again changes nothing."""
+    """Check that the layout is the one beside the text, and formatting it again changes nothing."""
     assert not has_mistakes(text)
     assert after(text) == layout
     check(text)
@@ -148,7 +148,7 @@ def test_layout(text: str, layout: str) -> None:
 
 
 def compiler_kit(oracle_kit: OracleKit) -> kit.Kit:
-    """The same kit, as the compiler knows it."""
+    """Return the compiler's form of the kit."""
 
     def devices(of_kind: str) -> tuple[kit.Device, ...]:
         return tuple(
@@ -169,8 +169,8 @@ def code_of(text: str) -> list[tuple[str, str]]:
             if not brackets and code and code[-1][0] not in (";", "|"):
                 code.append((";", ";"))
             continue
-        shown = ALIASES.get(token.text, token.text)
-        code.append((token.kind, "0" + shown if shown.startswith(".") else shown))
+        shown_text = ALIASES.get(token.text, token.text)
+        code.append((token.kind, "0" + shown_text if shown_text.startswith(".") else shown_text))
     return code
 
 
@@ -198,25 +198,25 @@ def check(text: str) -> str:
 
 def check_compiled(text: str, of: kit.Kit) -> None:
     """Assert that a right program and its layout compile to the same."""
-    before, then = compile_text(text, of), compile_text(check(text), of)
-    assert before.is_right and then.is_right
-    assert before.image and then.image == before.image
-    assert len(then.locations) == len(before.locations)
-    assert codes_of(then) == codes_of(before)
+    compilation_before, then = compile_text(text, of), compile_text(check(text), of)
+    assert compilation_before.is_right and then.is_right
+    assert compilation_before.image and then.image == compilation_before.image
+    assert len(then.locations) == len(compilation_before.locations)
+    assert codes_of(then) == codes_of(compilation_before)
 
 
-def codes_of(compiled: Compilation) -> list[codes.Code]:
-    """Return the codes; what is said of a note alone may go, because notes are joined."""
+def codes_of(compilation: Compilation) -> list[codes.Code]:
+    """Return the codes; those of a note may disappear, because notes are joined."""
     of_notes = (codes.IN_A_NOTE, codes.EMPTY_BLOCK)  # a note alone keeps a block from being empty
     return [
-        diagnostic.code for diagnostic in compiled.diagnostics if diagnostic.code not in of_notes
+        diagnostic.code for diagnostic in compilation.diagnostics if diagnostic.code not in of_notes
     ]
 
 
 def laid_out_anew(rng: random.Random, text: str) -> str:
-    """The same tokens with other spaces, lines, comments and empty instructions."""
+    """Return the same tokens with other spaces, lines, comments and empty instructions."""
     newline = rng.choice(("\n", "\n", "\r\n", "\r"))
-    calm = rng.choice((0.0, 0.5, 0.9))  # how rarely something odd happens
+    calm = rng.choice((0.0, 0.5, 0.9))  # probability of ordinary layout
 
     def odd(chance: float) -> bool:
         return rng.random() >= calm and rng.random() < chance
@@ -226,16 +226,20 @@ def laid_out_anew(rng: random.Random, text: str) -> str:
         return (" " + comment if odd(0.3) else rng.choice(("", "", " "))) + newline
 
     out: list[str] = [line_end() for _ in range(3) if odd(0.3)]
-    brackets, before = 0, ""
-    for kind, written in code_of(text):
+    brackets, text_before = 0, ""
+    for kind, written_text in code_of(text):
         if kind == ";":
             ends = [rng.choice((";", line_end(), line_end()))]
             ends += [rng.choice((";", " ", line_end(), line_end())) for _ in range(4) if odd(0.4)]
             out += ends
         else:
-            if (before[-1:].isalnum() or before[-1:] == "_") and written[0].isalnum():
+            if (text_before[-1:].isalnum() or text_before[-1:] == "_") and written_text[
+                0
+            ].isalnum():
                 out.append(" ")
-            out.append(rng.choice("-\u2013\u2014\u2212") if written == "-" else written.lower())
+            out.append(
+                rng.choice("-\u2013\u2014\u2212") if written_text == "-" else written_text.lower()
+            )
             brackets += (kind == "(") - (kind == ")")
             if brackets and odd(0.1):
                 out += [line_end() for _ in range(rng.randint(1, 3))]
@@ -243,7 +247,7 @@ def laid_out_anew(rng: random.Random, text: str) -> str:
                 out.append(rng.choice((" ", "  ", "\t", "\u00a0")))
             if kind == "|":
                 out += [rng.choice((";", line_end())) for _ in range(3) if odd(0.3)]
-        before = written
+        text_before = written_text
     return "".join(out)
 
 
@@ -279,16 +283,16 @@ def test_one_line_stays_one_line_and_several_stay_several() -> None:
 
 
 def test_texts_with_other_mistakes_are_formatted_too() -> None:
-    """Where the shape is right, names, kinds and ranges may be wrong; and nothing ever raises."""
+    """If the shape is right, names, kinds and ranges may be wrong; the formatter never raises."""
     rng = random.Random("broken")
-    checked = 0
+    checked_count = 0
     for _ in range(1000):
-        text = broken(rng, program(rng, WIDE_KIT))
+        text = break_text(rng, program(rng, WIDE_KIT))
         after(text)
         if not has_mistakes(text):
             check(text)
-            checked += 1
-    assert checked > 60
+            checked_count += 1
+    assert checked_count > 60
 
 
 @pytest.mark.parametrize(

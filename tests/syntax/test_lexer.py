@@ -7,13 +7,13 @@ import random
 import pytest
 
 from tests.oracle.interpreter import PAPER_KIT
-from tests.oracle.programs import broken, program
+from tests.oracle.programs import break_text, program
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, scan
 
 SIGNS = ("<=", ">=", "<>", "+", "-", "*", "/", "%", "=", "<", ">", "(", ")", ",", ";", "|")
 
 
-def lexed(text: str) -> list[str]:
+def list_tokens(text: str) -> list[str]:
     """Return each token as `kind text`, and a sign, whose kind is its text, once."""
     tokens = scan(text).tokens
     assert tokens[-1] == (END, "", len(text), len(text))
@@ -27,39 +27,39 @@ def lexed(text: str) -> list[str]:
 
 
 def test_words_are_in_capitals_and_names_may_have_digits_and_underscores() -> None:
-    assert lexed("if Light_R x2") == ["word 'IF'", "word 'LIGHT_R'", "word 'X2'"]
+    assert list_tokens("if Light_R x2") == ["word 'IF'", "word 'LIGHT_R'", "word 'X2'"]
 
 
 @pytest.mark.parametrize("number", ["0", "5", "007", "0.5", ".5", "2147483648.999", "1.23456"])
 def test_numbers_are_digits_with_at_most_one_point(number: str) -> None:
-    assert lexed(number) == [f"number {number!r}"]
+    assert list_tokens(number) == [f"number {number!r}"]
     assert scan(number).diagnostics == ()
 
 
 @pytest.mark.parametrize("sign", SIGNS)
 def test_a_sign_is_a_token_of_its_own_kind(sign: str) -> None:
-    assert lexed(f"A{sign}B") == ["word 'A'", sign, "word 'B'"]
+    assert list_tokens(f"A{sign}B") == ["word 'A'", sign, "word 'B'"]
 
 
 def test_the_longest_sign_is_taken() -> None:
-    assert lexed("<=<>>=<") == ["<=", "<>", ">=", "<"]
+    assert list_tokens("<=<>>=<") == ["<=", "<>", ">=", "<"]
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_each_kind_of_line_end_is_one_token(end: str) -> None:
-    assert lexed(f"S{end}S") == ["word 'S'", r"newline '\n'", "word 'S'"]
+    assert list_tokens(f"S{end}S") == ["word 'S'", r"newline '\n'", "word 'S'"]
     assert scan(f"S{end}S").tokens[1].span == (1, 1 + len(end))
 
 
 @pytest.mark.parametrize("space", [" ", "\t", "\u00a0", "\u2009", "\u200b", "\u3000", "\ufeff"])
 def test_spaces_of_all_kinds_only_part_tokens(space: str) -> None:
-    assert lexed(f"{space}S{space}{space}S{space}") == ["word 'S'", "word 'S'"]
+    assert list_tokens(f"{space}S{space}{space}S{space}") == ["word 'S'", "word 'S'"]
     assert scan(f"S{space}S").diagnostics == ()
 
 
 @pytest.mark.parametrize("dash", ["\u2010", "\u2013", "\u2014", "\u2212"])
 def test_the_dashes_of_phones_are_a_minus(dash: str) -> None:
-    assert lexed(f"{dash}5") == ["-", "number '5'"]
+    assert list_tokens(f"{dash}5") == ["-", "number '5'"]
     assert scan(f"{dash}5").diagnostics == ()
 
 
@@ -69,7 +69,7 @@ def test_comments_are_no_tokens_and_end_with_their_line() -> None:
         ("// stop; now", 2),
         ("//", 17),
     ]
-    assert lexed("S // stop; now\r\nS//") == ["word 'S'", r"newline '\n'", "word 'S'"]
+    assert list_tokens("S // stop; now\r\nS//") == ["word 'S'", r"newline '\n'", "word 'S'"]
 
 
 def test_spans_are_places_in_the_text() -> None:
@@ -101,18 +101,18 @@ def test_an_empty_text_has_only_its_end() -> None:
     ],
 )
 def test_what_the_language_does_not_have_is_odd(text: str, tokens: list[str]) -> None:
-    assert lexed(text) == tokens
+    assert list_tokens(text) == tokens
 
 
 @pytest.mark.parametrize("text", ["10cm", "10 Cm", "10\u00a0CM"])
 def test_a_unit_is_a_word_of_its_own(text: str) -> None:
-    assert lexed(text) == ["number '10'", "word 'CM'"]
+    assert list_tokens(text) == ["number '10'", "word 'CM'"]
 
 
 @pytest.mark.parametrize("text", ["90°", "90º", "90 º", "90deg", "90 Deg"])
 def test_a_sign_of_degrees_is_their_word(text: str) -> None:
-    assert lexed(text) == ["number '90'", "word 'DEG'"]
-    assert lexed(f"X{text.lstrip('90')}")[0] != "word 'X90'"
+    assert list_tokens(text) == ["number '90'", "word 'DEG'"]
+    assert list_tokens(f"X{text.lstrip('90')}")[0] != "word 'X90'"
 
 
 # -- any text -------------------------------------------------------------------------------------
@@ -122,7 +122,7 @@ def texts() -> list[str]:
     rng = random.Random(7)
     signs = "\n\r;,|()[]{}<>=!&+-*/%.\"'`#°ñé5aS_ \t\u00a0\u2013（）\x07\U0001f600"
     noise = ["".join(rng.choices(signs, k=rng.randrange(40))) for _ in range(1500)]
-    return noise + [broken(rng, program(rng, PAPER_KIT)) for _ in range(300)]
+    return noise + [break_text(rng, program(rng, PAPER_KIT)) for _ in range(300)]
 
 
 def test_tokens_and_comments_of_any_text_follow_one_another() -> None:
@@ -139,7 +139,9 @@ def test_what_is_no_space_is_a_token_as_it_is_written() -> None:
     for text in texts():
         scanned = scan(text)
         for token in (*scanned.tokens, *scanned.comments):
-            written = text[token.start : token.end]
+            written_text = text[token.start : token.end]
             if token.kind in (WORD, NUMBER, *SIGNS):
-                assert token.text == {"\u2013": "-", "°": "DEG"}.get(written, written.upper())
+                assert token.text == {"\u2013": "-", "°": "DEG"}.get(
+                    written_text, written_text.upper()
+                )
             assert token.kind in (WORD, NUMBER, NEWLINE, END, ODD, "comment", *SIGNS)

@@ -1,4 +1,4 @@
-"""The parser: the AST of each construct with its spans, and what goes on after a mistake.
+"""The parser: the AST of each construct with its spans, and recovery after a mistake.
 
 An AST is drawn as an outline: a row for each node, `name arguments «its text»`, and deeper rows for
 what is inside. An expression is drawn in brackets, its parts in the order of the AST.
@@ -14,7 +14,7 @@ from textwrap import dedent
 import pytest
 
 from tests.oracle.interpreter import PAPER_KIT
-from tests.oracle.programs import broken, program
+from tests.oracle.programs import break_text, program
 from tiniscript.base.fixed_point import as_text
 from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
@@ -36,8 +36,8 @@ def value(argument: ast.Argument | None) -> str:
 
 def rows(body: tuple[ast.Instruction, ...], text: str, depth: int = 0) -> Iterator[str]:
     def row(name: str, span: Span) -> str:
-        written = " ".join(text[span.start : span.end].split())
-        return f"{'  ' * depth}{name} «{written}»"
+        written_text = " ".join(text[span.start : span.end].split())
+        return f"{'  ' * depth}{name} «{written_text}»"
 
     for node in body:
         if isinstance(node, ast.Command):
@@ -75,7 +75,7 @@ def outline(text: str) -> str:
     return "\n".join(rows(parse(Source(text)).program.body, text))
 
 
-def reported(text: str) -> list[str]:
+def list_diagnostics(text: str) -> list[str]:
     """Return each diagnostic as its code and what it points at."""
     return [
         f"{diagnostic.code.number} {text[diagnostic.span.start : diagnostic.span.end]}"
@@ -122,7 +122,7 @@ CONSTRUCTS = {
 @pytest.mark.parametrize("text", CONSTRUCTS)
 def test_each_construct_has_its_node_with_the_text_that_it_spans(text: str) -> None:
     assert outline(text) == dedent(CONSTRUCTS[text])
-    assert reported(text) == []
+    assert list_diagnostics(text) == []
 
 
 @pytest.mark.parametrize(
@@ -131,7 +131,7 @@ def test_each_construct_has_its_node_with_the_text_that_it_spans(text: str) -> N
 )
 def test_setup_says_how_a_program_starts(text: str, start: str) -> None:
     assert parse(Source(text)).program.start == start
-    assert reported(text) == []
+    assert list_diagnostics(text) == []
 
 
 def test_spans_of_a_command_an_assignment_and_a_definition() -> None:
@@ -150,7 +150,7 @@ def test_spans_of_a_command_an_assignment_and_a_definition() -> None:
 # -- expressions ----------------------------------------------------------------------------------
 
 EXPRESSIONS = {
-    # from loosest to tightest: OR, AND, NOT, comparisons, + -, * / %, minus
+    # From loosest to tightest: OR, AND, NOT, comparisons, + -, * / %, minus.
     "A OR Q AND C": "[A OR_LEFT Q AND_LEFT C AND OR]",
     "A AND Q OR C": "[A AND_LEFT Q AND OR_LEFT C OR]",
     "NOT A AND Q": "[A NOT AND_LEFT Q AND]",
@@ -160,7 +160,7 @@ EXPRESSIONS = {
     "A + Q * C": "[A Q C MUL ADD]",
     "-A * Q": "[A NEG Q MUL]",
     "A - -Q": "[A Q NEG SUB]",
-    # of equals, from left to right
+    # Operators of one level, from left to right.
     "A - Q - C": "[A Q SUB C SUB]",
     "A / Q * C % D": "[A Q DIV C MUL D MOD]",
     "A OR Q OR C": "[A OR_LEFT Q OR OR_LEFT C OR]",
@@ -187,7 +187,7 @@ EXPRESSIONS = {
 def test_parts_stand_in_the_order_of_a_stack_machine(text: str) -> None:
     assert outline(f"X = {text}").partition(" «")[0] == f"X = {EXPRESSIONS[text]}"
     assert outline(f"SHOW(\n{text}\n)").partition(" «")[0] == f"SHOW {EXPRESSIONS[text]}"
-    assert reported(f"X = {text}") == []
+    assert list_diagnostics(f"X = {text}") == []
 
 
 def test_each_part_of_an_expression_says_where_it_stands() -> None:
@@ -248,26 +248,26 @@ MISTAKES: dict[str, tuple[list[str], str]] = {
 @pytest.mark.parametrize("text", MISTAKES)
 def test_a_mistake_is_reported_once_and_reading_goes_on(text: str) -> None:
     diagnostics, tree = MISTAKES[text]
-    assert (reported(text), outline(text)) == (diagnostics, tree)
+    assert (list_diagnostics(text), outline(text)) == (diagnostics, tree)
 
 
 def test_blocks_that_are_nested_too_deep_are_reported_once_and_left_out() -> None:
     text = "LOOP(2);" * 20 + "S;" + "END_LOOP;" * 20
-    assert reported(text) == ["TS302 LOOP(2)"]
+    assert list_diagnostics(text) == ["TS302 LOOP(2)"]
     assert [row.strip().partition(" ")[0] for row in outline(text).split("\n")] == ["loop"] * 16
 
 
 def test_any_name_may_stand_alone() -> None:
-    assert reported("REPETIR;FIN;GO(5)") == []
+    assert list_diagnostics("REPETIR;FIN;GO(5)") == []
 
 
 def test_a_def_may_be_called_by_a_word_of_another_language() -> None:
-    assert reported("DEF FIN;S;END_DEF;FIN") == []
+    assert list_diagnostics("DEF FIN;S;END_DEF;FIN") == []
 
 
 def test_reading_ends_where_more_diagnostics_help_nobody() -> None:
-    parsed = parse(Source("*;" * 5000))
-    assert len(parsed.diagnostics) == MOST_DIAGNOSTICS + 1
+    parsed_text = parse(Source("*;" * 5000))
+    assert len(parsed_text.diagnostics) == MOST_DIAGNOSTICS + 1
 
 
 # -- any text -------------------------------------------------------------------------------------
@@ -294,14 +294,14 @@ DEEP = 20_000
     ids=lambda text: text[:12],
 )
 def test_no_depth_of_input_exhausts_the_stack(text: str) -> None:
-    parsed = parse(Source(text))
-    assert parsed.scan.tokens[-1].end == len(text)
+    parsed_text = parse(Source(text))
+    assert parsed_text.scan.tokens[-1].end == len(text)
 
 
 @cache
 def broken_programs() -> list[str]:
     rng = random.Random(20)
-    return [broken(rng, program(rng, PAPER_KIT)) for _ in range(600)]
+    return [break_text(rng, program(rng, PAPER_KIT)) for _ in range(600)]
 
 
 def spans(body: tuple[ast.Instruction, ...]) -> Iterator[tuple[Span, tuple[ast.Instruction, ...]]]:

@@ -14,7 +14,7 @@ import pytest
 
 from tests.machines.host_firmware import HostFirmware
 from tests.support.bytes_around import PIECES
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.robot_on_host import KIT
 
 LINE = "SI|BEEP(0.1,97);W(9)"
@@ -25,13 +25,13 @@ DAMAGED_FRAME = re.compile(rb"\0[^\0]*[^ -~\0][^\0]*\0")
 
 
 class SmallRobot(HostFirmware):
-    """As an Uno: it reads text where the program is that it holds."""
+    """A robot that, like an Uno, reads text into the place of its program."""
 
     has_draft = False
 
 
-def drawn(rng: random.Random) -> list[bytes]:
-    """Return what comes before and after."""
+def draw_surroundings(rng: random.Random) -> list[bytes]:
+    """Return random bytes before and after a line."""
     return [b"".join(rng.choices(PIECES, k=rng.choice((0, 1, 1, 2, 4)))) for _ in "12"]
 
 
@@ -39,21 +39,23 @@ def check(seed: int) -> str:
     rng = random.Random(seed)
     robot = rng.choice((HostFirmware, SmallRobot))(KIT)
     robot.wait(rng.choice((200, 4000)))
-    before, after = drawn(rng)
+    bytes_before, bytes_after = draw_surroundings(rng)
     line, end = LINE.encode(), rng.choice(ENDS)
     is_spread = rng.random() < 0.7
-    sent = b""
-    for data in (before, line + end, after):
+    sent_bytes = b""
+    for data in (bytes_before, line + end, bytes_after):
         if data:
-            sent += robot.latched_while(len(data), data, is_spread)[0]
-        sent += robot.wait(rng.choice((0, 0, 300, 1200)))
-    sent += robot.wait(5000)
+            sent_bytes += robot.latched_while(len(data), data, is_spread)[0]
+        sent_bytes += robot.wait(rng.choice((0, 0, 300, 1200)))
+    sent_bytes += robot.wait(5000)
     if any(did.endswith(BEEPS) for did in robot.did):
         return "it runs"
-    if b"// " not in sent and DAMAGED_FRAME.search(before + line + end + after):
+    if b"// " not in sent_bytes and DAMAGED_FRAME.search(bytes_before + line + end + bytes_after):
         return "no line"
-    is_answered = b"// " in sent or (bytes(4) in before and sent)  # a stop, by a frame
-    assert is_answered, f"seed {seed}: {before!r} {end!r} {after!r} {sent!r}"
+    is_answered = b"// " in sent_bytes or (
+        bytes(4) in bytes_before and sent_bytes
+    )  # a stop, by a frame
+    assert is_answered, f"seed {seed}: {bytes_before!r} {end!r} {bytes_after!r} {sent_bytes!r}"
     return "an answer"
 
 
@@ -65,4 +67,4 @@ def test_a_right_line_runs_or_an_answer_says_why_not(part: int) -> None:
 
 
 if __name__ == "__main__":
-    each_seed(check, wanted(2000, 10_000))
+    each_seed(check, make_options(2000, 10_000))

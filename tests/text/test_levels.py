@@ -75,7 +75,7 @@ def test_a_word_that_a_level_lacks_is_told_at_each_place() -> None:
 
 
 def test_an_uno_lacks_tasks_and_ways() -> None:
-    """So that somebody sends them compiled."""
+    """Therefore such programs are sent compiled."""
     text = "TASK; S; ENDTASK; when(TRUE); F(FOREVER, 60); R(9 DEG, 60); F(9cm, 60); END_WHEN"
     words = ("TASK", "when", "DEG", "cm")  # no ends beside them
     assert problems_of(text) == [("TS308", word, {"word": word.upper()}) for word in words]
@@ -121,7 +121,7 @@ def test_the_first_instruction_that_does_not_fit_is_the_place() -> None:
 
 
 def test_short_jumps_alone_count() -> None:
-    """A jump that is far in `tsc` is not in a robot: what is over is what must go."""
+    """A far jump of `tsc` is short in a robot: only the excess must be removed."""
     text = "IF(TRUE);" + "S;" * 300 + "ENDIF"
     assert problems_of(text)[0][2] == {"code": "303", "limit": "255", "over": "48"}
 
@@ -137,7 +137,7 @@ def most(text: str, level: Level = UNO) -> int:
     ("text", "bytes_"),
     [
         ("", 0),
-        ("S", 1),  # a letter of a word lies where the code comes
+        ("S", 1),  # a letter of a word lies in the code's place
         ("STOP", 4),
         ("S;STOP", 5),
         # a value's own byte, and one byte of code after it
@@ -205,7 +205,8 @@ def test_names_take_room_too() -> None:
     before = 6 * (2 + 51)
     needed = before + 2 * 50 + 1
     values = {"code": str(needed), "limit": str(UNO.room), "over": str(needed - UNO.room)}
-    assert problems_of(long) == [("TS310", "G" + "X" * 49, values)]  # where it is full
+    # At the place where the memory is full.
+    assert problems_of(long) == [("TS310", "G" + "X" * 49, values)]
     assert problems_of(long, LEVELS["mega"]) == []
     assert problems_of(long[: -len("X=0;") - (needed - UNO.room) // 2 - 1] + "=0;") == []
 
@@ -233,12 +234,12 @@ def test_short_programs_fit_each_level(text: str) -> None:
 def test_a_word_that_no_level_reads_is_kept_from_names_alone(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """It is no command of the reader, but one of the words of later versions."""
+    """It is not a command of the reader, but a word of later versions."""
     monkeypatch.setattr(text_tables, "UNREAD_WORDS", UNREAD_WORDS | {"BEEP"})
     words = text_tables.words_in_order()
     assert words.index(WORDS["BEEP"]) > words.index(WORDS["SI"])
-    packed, rows, _ = text_tables.words_tables("a test").split("tini_progmem = {")[1:]
-    assert "// BEEP" in packed and "// BEEP" not in rows and "// SHOW" in rows
+    packed_text, rows, _ = text_tables.words_tables("a test").split("tini_progmem = {")[1:]
+    assert "// BEEP" in packed_text and "// BEEP" not in rows and "// SHOW" in rows
     before = sum(len(word.text) for word in words[: words.index(WORDS["BEEP"])])
     assert text_tables.bytes_before("later") == before
 

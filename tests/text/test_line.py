@@ -7,7 +7,7 @@ import random
 import pytest
 
 from tests.oracle import programs
-from tests.support.case_runs import compiled, robot_and_senses
+from tests.support.case_runs import compile_case, robot_and_senses
 from tests.support.kits import KITS
 from tests.support.text_lines import check_line
 from tests.support.vm_cases import CASES
@@ -49,4 +49,4 @@ def test_the_line_of_each_program_of_the_documents_is_the_same_program() -> None
     assert len(right) > 150
     for case in right:
         robot, _ = robot_and_senses(case)
-        check_line(compiled(case).source.text, robot.kit)
+        check_line(compile_case(case).source.text, robot.kit)

@@ -27,12 +27,14 @@ def test_what_a_robot_says_comes_back(language: str, is_small: bool) -> None:
 def test_what_a_small_robot_never_says() -> None:
     """All that it says keeps its number."""
     every, few = rows("en"), rows("en", is_small=True)
-    unsaid = [text for text, packed_text in zip(every, few, strict=True) if text != packed_text]
-    assert unsaid == [
+    unsaid_texts = [
+        text for text, packed_text in zip(every, few, strict=True) if text != packed_text
+    ]
+    assert unsaid_texts == [
         "Not in a block", "Only one task may call this DEF", ", text mega", ", text esp32",
         "No program reads keys", "STUCK", "STUCK_LEFT", "STUCK_RIGHT",
     ]  # fmt: skip
-    assert set(few) == {*every, ""} - {*unsaid}
+    assert set(few) == {*every, ""} - {*unsaid_texts}
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 from tests.machines import Senses
 from tests.machines.python import run_python
 from tests.oracle import programs
-from tests.support.case_runs import compiled, robot_and_senses
+from tests.support.case_runs import compile_case, robot_and_senses
 from tests.support.casefile import ROOT
 from tests.support.images import image_for
 from tests.support.kits import KITS
@@ -29,7 +29,7 @@ from tiniscript.robots.text_levels import CODE_BYTES
 from tiniscript.semantics.task_copies import copy_defs_per_task
 
 TINIBOT, GRABBER = robots.load("tinibot").kit, robots.load("grabber").kit
-# what is for the optimising compiler alone: `docs/develop/text.md` has none of it
+# Syntax for the optimizing compiler only, absent from `docs/develop/text.md`.
 FUSED = re.compile(
     r"PUSH_READ|(SET_VAR|ADD_VAR|WAIT|BEEP|MOTORS|LOOP|UNTIL|IF|IF_VAR)(8|16)|MOVE8|IF_NOT|INC_|DEC_"
     r"|ADD_VAR|AND$|OR$|END$|\w+_FAR$"
@@ -53,7 +53,7 @@ def names(text: str, kit: Kit = TINIBOT) -> str:
 @each_row(
     "text, says",
     [
-        # what the optimiser would fold, fuse or drop
+        # Code that the optimizer would fold, fuse or drop.
         ("X = 2 + 3; SHOW(X)", "PUSH_NUM_2 PUSH_NUM_3 ADD SET_VAR_0 PUSH_VAR_0 SHOW"),
         ("X = 1; X = X + 1", "PUSH_NUM_1 SET_VAR_0 PUSH_VAR_0 PUSH_NUM_1 ADD SET_VAR_0"),
         ("F(2, 80)", "PUSH_NUM_2 PUSH_NUM_80 MOVE_F"),
@@ -90,7 +90,7 @@ def names(text: str, kit: Kit = TINIBOT) -> str:
             "IF(DISTANCE < 5); ELSEIF(DISTANCE < LIGHT_L); ENDIF",
             "READ_2 PUSH_SENSOR_2 PUSH_NUM_5 LT IF ELSE READ_1 PUSH_SENSOR_2 PUSH_SENSOR_1 LT IF",
         ),
-        # ways, tasks where they stand, and a FOREVER that lasts
+        # Moves by distance, tasks in their place, and an endless FOREVER.
         ("F(20 CM, 60)", "PUSH_NUM_20 PUSH_NUM_60 GO_F"),
         ("r(90°, 60) UNTIL(TRUE)", "PUSH_NUM_90 PUSH_NUM_60 WATCH_GO_R PUSH_TRUE UNTIL"),
         ("TASK; S; END_TASK; S; TASK; ENDTASK", "TASK STOP END_TASK STOP TASK END_TASK"),
@@ -102,14 +102,14 @@ def names(text: str, kit: Kit = TINIBOT) -> str:
         ("F(FOREVER, 9); W(FOREVER); TASK; END_TASK",
          "PUSH_NUM_9 WATCH_FOREVER_F PUSH_FALSE UNTIL WATCH_FOREVER_WAIT PUSH_FALSE UNTIL"
          " TASK END_TASK"),
-        # DEFs where they stand, called or not
+        # DEFs in their place, called or not.
         ("S; DEF A; END_DEF; S", "STOP DEF RETURN STOP"),
         ("S; DEF A; S; END_DEF; A; DEF C; END_DEF", "STOP DEF STOP RETURN CALL DEF RETURN"),
         # the minus of a number, and others
         ("X = - 5; X = 3 - 5; X = --5; X = -(5)",
          "PUSH_TENTHS SET_VAR_0 PUSH_NUM_3 PUSH_NUM_5 SUB SET_VAR_0 PUSH_TENTHS NEG SET_VAR_0"
          " PUSH_NUM_5 NEG SET_VAR_0"),
-        # nothing
+        # An empty program.
         ("START", ""), ("", ""), ("PING|CHECK_CONNECTION", ""),
     ],
 )  # fmt: skip
@@ -119,7 +119,7 @@ def test_each_word_is_its_own_instruction(text: str, says: str) -> None:
 
 @each_row("number, code", NUMBER_CODES)
 def test_a_number_has_the_first_push_that_says_it(number: str, code: str) -> None:
-    """In optimised code, too."""
+    """This also holds in optimized code."""
     assert plain_of(f"SHOW({number})").code.hex(" ") == f"{code} 39"
     assert compile_text(f"SHOW({number})", TINIBOT).code.hex(" ") == f"{code} 39"
 
@@ -156,14 +156,14 @@ def test_the_page_names_every_instruction_of_plain_code_and_no_other() -> None:
     """`MOVE_B`, `PUSH_NUM_5` and the like are under the first of their kind."""
     page = (ROOT / "docs" / "develop" / "text.md").read_text(encoding="utf-8")
     page = page[page.index("## Plain code") : page.index("## A program, byte")]
-    named = {word for part in re.findall(r"`([^`]+)`", page) for word in part.split()}
+    names = {word for part in re.findall(r"`([^`]+)`", page) for word in part.split()}
     for name in PLAIN:
         kind = re.sub(r"_\d+$", "", name)
         kind = {"PUSH_NUM": "PUSH_NUM_n"}.get(kind, kind)
         kind = re.sub(r"(MOVE|GO|WATCH|WATCH_GO|WATCH_FOREVER)_[BLR]$", r"\1_F", kind)
-        assert kind in named, name
-    known = {op.name for op in OPS}
-    assert named & known <= PLAIN | {"AND", "OR"}  # which are words of the language, too
+        assert kind in names, name
+    known_names = {op.name for op in OPS}
+    assert names & known_names <= PLAIN | {"AND", "OR"}  # words of the language as well
 
 
 def check_same(compilation: Compilation, kit: Kit, senses: Senses) -> None:
@@ -196,7 +196,7 @@ def test_programs_of_all_documents_do_the_same_in_plain_code() -> None:
     assert len(run) > 80 and len(run) == len(having("tiniscript", "robot"))
     for case in run:
         robot, senses = robot_and_senses(case)
-        compilation = compiled(case)
+        compilation = compile_case(case)
         assert compilation.program is not None
         if (
             copy_defs_per_task(compilation.program) == compilation.program

@@ -20,11 +20,11 @@ from tiniscript.syntax.lexer import scan
 
 KIT = robots.load("tinibot").kit
 MORE = Answer()
-BLOCK_BYTES = 3 + 3 * 4  # with a bit for each of 32 sensors
+BLOCK_BYTES = 3 + 3 * 4  # including a bit for each of 32 sensors
 
 
 def one(text: str | bytes) -> Answer:
-    """Return what a robot answers to one line."""
+    """Return a robot's answer to one line."""
     data = text if isinstance(text, bytes) else text.encode()
     (answer,) = read_lines(KIT, data + b"\n")
     return answer
@@ -36,7 +36,7 @@ def code_of(text: str) -> list[str]:
     return [row[25:] for row in disassemble(answer.code).splitlines()]
 
 
-def checked(line: bytes) -> bytes:
+def add_checksum(line: bytes) -> bytes:
     return b"%s~%08x" % (line, crc32(line))
 
 
@@ -88,29 +88,31 @@ def test_programs_that_do_nothing(line: str) -> None:
 
 
 def test_a_line_with_its_checksum_runs() -> None:
-    assert one(checked(b"F(2, 80)")) == one("F(2, 80)")
-    assert one(checked(b"F(2, 80)").upper() + b" \t") == one("F(2, 80)")
-    assert one(checked(b"F(2, 80) // and a note")) == one("F(2, 80)")
-    assert one("\ufeff".encode() + checked(b"S")) == one("S")
+    assert one(add_checksum(b"F(2, 80)")) == one("F(2, 80)")
+    assert one(add_checksum(b"F(2, 80)").upper() + b" \t") == one("F(2, 80)")
+    assert one(add_checksum(b"F(2, 80) // and a note")) == one("F(2, 80)")
+    assert one("\ufeff".encode() + add_checksum(b"S")) == one("S")
 
 
 def test_each_line_of_a_program_may_have_one() -> None:
-    lines = b"\r\n".join(map(checked, (b"LOOP(2)", b"F(1,", b"80)", b"", b"END_LOOP"))) + b"\r\n"
+    lines = (
+        b"\r\n".join(map(add_checksum, (b"LOOP(2)", b"F(1,", b"80)", b"", b"END_LOOP"))) + b"\r\n"
+    )
     assert read_lines(KIT, lines)[-1] == one("LOOP(2);F(1,80);END_LOOP")
 
 
 def test_every_damage_of_one_byte_is_noticed() -> None:
-    line = checked(b"F(2, 80);S // note")
+    line = add_checksum(b"F(2, 80);S // note")
     for at in range(len(line)):
         for byte in b"~/0aF(\x00\xc2":
-            damaged = line[:at] + bytes((byte,)) + line[at + 1 :]
-            if damaged.lower() != line.lower():
-                assert not one(damaged).is_program or at > line.index(b"/"), damaged
+            damaged_bytes = line[:at] + bytes((byte,)) + line[at + 1 :]
+            if damaged_bytes.lower() != line.lower():
+                assert not one(damaged_bytes).is_program or at > line.index(b"/"), damaged_bytes
 
 
-@pytest.mark.parametrize("before", [b"LOOP(2)", b"LOOP(2) // ~0", b"LOOP(2) // ~0 and more"])
-def test_a_checksum_is_that_of_its_own_line(before: bytes) -> None:
-    lines = read_lines(KIT, before + b"\n" + checked(b"S;END_LOOP") + b"\n")
+@pytest.mark.parametrize("bytes_before", [b"LOOP(2)", b"LOOP(2) // ~0", b"LOOP(2) // ~0 and more"])
+def test_a_checksum_is_that_of_its_own_line(bytes_before: bytes) -> None:
+    lines = read_lines(KIT, bytes_before + b"\n" + add_checksum(b"S;END_LOOP") + b"\n")
     assert lines == [MORE, one("LOOP(2);S;END_LOOP")]
 
 
@@ -120,8 +122,8 @@ def test_what_is_no_checksum(line: bytes) -> None:
 
 
 def test_a_damaged_line_is_said_to_be_damaged_whatever_else_is_wrong() -> None:
-    assert one(checked(b"F(2, 80)").replace(b"F", b"G")).problem == "CHECKSUM"
-    assert one(checked(b"G(2, 80)")).problem == "UNKNOWN_WORD"
+    assert one(add_checksum(b"F(2, 80)").replace(b"F", b"G")).problem == "CHECKSUM"
+    assert one(add_checksum(b"G(2, 80)")).problem == "UNKNOWN_WORD"
 
 
 # -- characters ---------------------------------------------------------------------------------
@@ -204,7 +206,7 @@ def test_what_is_wrong_and_where(line: str) -> None:
     assert (answer.problem, answer.column) == WRONG[line]
 
 
-# What begins an instruction but is none yet is told where it stands, and so is a FOREVER.
+# An unknown beginning of an instruction is reported at its place, and so is a FOREVER.
 AT_ITS_WORD = ("UNKNOWN_WORD", "INSTRUCTION", "FOREVER_HERE")
 RIGHT = (
     "SI|F(2, 80)", "sb | L(FOREVER, 50) UNTIL(DISTANCE < 9 OR NOT LIGHT_L >= 5)",
@@ -226,17 +228,17 @@ RIGHT = (
 def test_what_is_missing_at_the_end_is_missing_after_the_last_character(
     line: str, tail: str
 ) -> None:
-    """Of a right line that is cut after any of its tokens nothing but its rest is missing.
+    """A correct line cut after any of its tokens lacks only its rest.
 
     It belongs before a comment.
     """
-    refused, gap = 0, tail.find("/") > 0
+    refused_count, gap = 0, tail.find("/") > 0
     for token in scan(line).tokens[:-1]:
         answer = one(line[: token.end] + tail)
         if answer.problem and answer.problem not in AT_ITS_WORD:
             assert answer.column == token.end + 1 + gap, line[: token.end]
-            refused += 1
-    assert refused > 0
+            refused_count += 1
+    assert refused_count > 0
 
 
 def test_columns_from_255_on_are_255() -> None:
@@ -252,7 +254,7 @@ def test_every_problem_has_its_test() -> None:
 
 
 def test_a_reader_without_defs_reads_all_else() -> None:
-    """It knows the words, so that they are no names, and says of each what it needs."""
+    """It recognizes the words, so that they are no names, and reports the missing feature."""
     small, large = TextReader(KIT, flags=NO_DEFS), TextReader(KIT)
     lacks = LEVELS["uno"].lacks
     texts = [
@@ -268,7 +270,7 @@ def test_a_reader_without_defs_reads_all_else() -> None:
     for text in (*texts, *WRONG, *cases):
         answer, words = small.read(text.encode()), {token.text for token in scan(text).tokens}
         if text in texts or not (lacks | UNREAD_WORDS) & words:
-            other = large.read(text.encode())  # whose FOREVER waits for tasks
+            other = large.read(text.encode())  # on this robot, FOREVER waits for tasks
             assert answer == other or (answer.problem == "FOREVER_HERE" and other.problem), text
         else:
             assert answer.problem, text
@@ -316,7 +318,7 @@ def chain(calls: int) -> str:
          "DEF A;" + blocks(8) + "END_DEF;DEF C;" + "IF(TRUE);" * 4 + "A;" + "ENDIF;" * 4
          + "END_DEF;" + "IF(TRUE);" * 5 + "C;" + "ENDIF;" * 5),
         (chain(8), chain(9)),
-        # tasks, and what is open in all of them together
+        # Tasks, and the blocks open in all of them together.
         ("TASK;ENDTASK;" * 4, "TASK;ENDTASK;" * 5),
         (blocks(4) + tasks(6, 5) + blocks(5), blocks(4) + tasks(6, 5) + blocks(6)),
         (blocks(10) + tasks(2, 4), blocks(10) + tasks(2, 5)),
@@ -345,8 +347,8 @@ def test_a_name_may_begin_in_the_deepest_block() -> None:
         [row.split()[0] for row in code_of(text + end)]
         for text in (f"V=1;{begin}S;", f"{begin}V=1;S;")
     )
-    opened = 2 + 1 + 2 * 16
-    assert late == early[2:opened] + early[:2] + early[opened:]
+    opened_count = 2 + 1 + 2 * 16
+    assert late == early[2:opened_count] + early[:2] + early[opened_count:]
 
 
 def test_at_most_255_bytes_of_code() -> None:
@@ -382,7 +384,7 @@ def test_what_lies_in_the_buffer() -> None:
 
 
 def test_a_forever_waits_for_the_tasks_that_let_it_last() -> None:
-    """They may come after it, as long as the program goes on."""
+    """They may follow it, as long as the program continues."""
     move = "SI|F(FOREVER, 60)"
     assert one(f"{move}; TASK; END_TASK").is_program
     assert one(f"TASK; END_TASK; {move[3:]}").is_program
@@ -391,7 +393,7 @@ def test_a_forever_waits_for_the_tasks_that_let_it_last() -> None:
     loop = "LOOP(1);F(FOREVER, 60)\nEND_LOOP"
     assert read_lines(KIT, f"{loop};WHEN(TRUE)\nS\nEND_WHEN\n".encode())[-1].is_program
     assert read_lines(KIT, f"{loop}\nS\n".encode())[1:] == [
-        Answer(problem="FOREVER_HERE", column=1),  # it stands in a line before
+        Answer(problem="FOREVER_HERE", column=1),  # the word is in an earlier line
         one("S"),
     ]
 
@@ -477,7 +479,7 @@ def test_a_call_goes_on_in_the_next_line() -> None:
 
 @pytest.mark.parametrize("key", ["\b", "\x7f"])
 @pytest.mark.parametrize(
-    ("typed", "meant"),
+    ("typed_text", "meant_text"),
     [
         ("G<F(2,80)", "F(2,80)"), ("FOO<<(2,80)", "F(2,80)"), ("X=1;XY<=2", "X=1;X=2"),
         ("LOPP<<OP(2);END_LOOP", "LOOP(2);END_LOOP"), ("SX<;S", "S;S"),
@@ -485,13 +487,15 @@ def test_a_call_goes_on_in_the_next_line() -> None:
         ("S // note<", "S"), (" " * 260 + "SS<", None),
     ],
 )  # fmt: skip
-def test_backspace_takes_back_what_is_not_done(key: str, typed: str, meant: str | None) -> None:
+def test_backspace_takes_back_what_is_not_done(
+    key: str, typed_text: str, meant_text: str | None
+) -> None:
     """`<` is the key, and only letters of the word that is typed are not done."""
-    answer = one(typed.replace("<", key))
-    if meant is None:
+    answer = one(typed_text.replace("<", key))
+    if meant_text is None:
         assert answer.problem == "CHARACTER"
     else:
-        assert answer == one(meant) and answer.is_program
+        assert answer == one(meant_text) and answer.is_program
 
 
 def test_columns_after_a_backspace_are_those_that_are_seen() -> None:

@@ -15,13 +15,13 @@ import pytest
 from tests.machines import Senses
 from tests.oracle import programs
 from tests.oracle.task_programs import shared_program, task_program
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.casefile import Case, all_cases
 from tests.support.kits import KITS
 from tests.support.reader_agreement import (
     check_bytes,
     check_program,
-    damaged,
+    damage_text,
     is_right,
     reader_of,
     soup,
@@ -32,21 +32,24 @@ from tiniscript.base.kit import Kit
 
 MAX_MS, MAX_STEPS = 5_000, 5_000
 SHORT_BUFFER = 389 - 15
-PROGRAMS, BROKEN, SOUPS = 400, 4, 3000  # in the tests; a commit runs a part, a campaign more
-TRACED = 10  # of so many programs a campaign runs one
+# Numbers for the tests; a commit runs a part, a campaign more.
+PROGRAMS, BROKEN, SOUPS = 400, 4, 3000
+TRACED = 10  # a campaign runs one of so many programs
 
 
-def texts_of(seed: int, broken: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
-    """Return a random program, its readings, and what is left of it after slips."""
+def texts_of(seed: int, broken_count: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
+    """Return a random program, its readings, and its text after slips."""
     rng = random.Random(seed)
     oracle_kit, kit = KITS[seed % len(KITS)]
     text = programs.program(rng, oracle_kit, ways=seed % 3 == 2)
     senses = Senses(programs.senses(rng, oracle_kit), MAX_MS, MAX_STEPS, seed + 1)
-    slips = [programs.broken(rng, text).encode("utf-8", "surrogatepass") for _ in range(broken)]
-    return kit, text.encode(), senses, [damaged(rng, slip) for slip in slips]
+    slips = [
+        programs.break_text(rng, text).encode("utf-8", "surrogatepass") for _ in range(broken_count)
+    ]
+    return kit, text.encode(), senses, [damage_text(rng, slip) for slip in slips]
 
 
-def tasks_of(seed: int, broken: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
+def tasks_of(seed: int, broken_count: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
     """Return a random program with tasks, and its slips.
 
     Every second one has ways, every fourth one DEFs with values that tasks share.
@@ -63,9 +66,11 @@ def tasks_of(seed: int, broken: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
     if seed % 4 == 1:
         text = re.sub(r"(?<=\d) CM", rng.choice(("cm", "Cm", "\ncm")), text)
         text = re.sub(" DEG", rng.choice((" deg", "°", "º", " \n°")), text)
-    slips = [programs.broken(rng, text).encode("utf-8", "surrogatepass") for _ in range(broken)]
+    slips = [
+        programs.break_text(rng, text).encode("utf-8", "surrogatepass") for _ in range(broken_count)
+    ]
     senses = Senses(readings, MAX_MS, MAX_STEPS, seed + 1)
-    return KITS[0][1], text.encode(), senses, [damaged(rng, slip) for slip in slips]
+    return KITS[0][1], text.encode(), senses, [damage_text(rng, slip) for slip in slips]
 
 
 # -- in the tests -------------------------------------------------------------------------------
@@ -152,7 +157,7 @@ def test_little_room_is_full_and_nothing_else(room: int) -> None:
             assert answer.problem == "FULL" or answer == want
 
 
-FOUND: Counter[str] = Counter()  # in a campaign, of texts that are no whole programs
+FOUND: Counter[str] = Counter()  # problems found by a campaign in incomplete programs
 
 
 def check_seed(seed: int) -> None:
@@ -172,5 +177,5 @@ def check_seed(seed: int) -> None:
 
 
 if __name__ == "__main__":
-    each_seed(check_seed, wanted(100_000, 1_000_000))
+    each_seed(check_seed, make_options(100_000, 1_000_000))
     print(f"of other texts {dict(FOUND)}")

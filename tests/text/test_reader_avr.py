@@ -1,4 +1,4 @@
-"""The reader of text on a simulated ATmega328P says what it says on this computer.
+"""The reader of text on a simulated ATmega328P agrees with the one on this computer.
 
 There an int has 16 bits, and tables lie in another memory.
 """
@@ -32,7 +32,7 @@ NUMBERS = (
 
 
 def chip_numbers(answer: Answer) -> list[int]:
-    """Return what the chip says: kind, start or problem, length or column, and a checksum."""
+    """Return the chip's answer: kind, start or problem, length or column, and a checksum."""
     numbers = {name: number for number, name in PROBLEM_NAMES.items()}
     if answer.problem:
         return [4, numbers[answer.problem], answer.column, 0]
@@ -56,7 +56,7 @@ def test_the_chip_says_the_same() -> None:
     reader = TextReader(KIT, ROOM, NO_DEFS)
     program = avr_bench.build("reader", avr_bench.SOURCES, "-Dtiniscript_with_remote")
     head = pack("<HH", ROOM, len(kit_words(KIT))) + kit_words(KIT)
-    request, expected, compared = head, list[list[int]](), 0
+    request, expected, compared_count = head, list[list[int]](), 0
     for text in [*texts(), b""]:
         more = pack("<H", len(text)) + text
         if not text or len(request) + len(more) + 2 > avr_bench.REQUEST_BYTES:
@@ -67,10 +67,10 @@ def test_the_chip_says_the_same() -> None:
                 [3 if answer[0] == 1 else answer[0], *answer[1:]] for answer in answers
             ]  # no program: 1
             assert answers == expected
-            request, expected, compared = head, [], compared + len(answers)
+            request, expected, compared_count = head, [], compared_count + len(answers)
         answer = reader.read(text)
-        if answer.is_program or answer.problem:  # else a block is open
+        if answer.is_program or answer.problem:  # otherwise a block is open
             request += more
             expected.append(chip_numbers(answer))
     reader.close()
-    assert compared > 500
+    assert compared_count > 500

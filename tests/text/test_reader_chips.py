@@ -1,4 +1,4 @@
-"""The reader of text on the emulated chips of ESP boards says what it says on this computer.
+"""The reader of text on the emulated chips of ESP boards agrees with the one on this computer.
 
 There a char may be unsigned, and a word must lie at an address that four divides.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.machines.qemu import emulated, missing
+from tests.machines.qemu import missing, start_emulator
 from tests.machines.text_reader import LARGEST_ROOM, TextReader
 from tests.support.casefile import all_cases
 from tests.support.kits import KITS
@@ -37,7 +37,7 @@ def test_the_chip_says_the_same(name: str, room: int) -> None:
     reader = TextReader(KIT, room)
     expected = [reader.read(text) for text in all_texts]
     reader.close()
-    answers = emulated(name).read(all_texts, KIT, room)
+    answers = start_emulator(name).read(all_texts, KIT, room)
     for text, mine, other in zip(all_texts, expected, answers, strict=True):
         assert other == mine, text
     assert sum(answer.is_program for answer in answers) > 1000

@@ -18,7 +18,7 @@ from tiniscript.together.page import Page
 from tiniscript.together.tree import ARM, BLOCK, INSTRUCTION, NOTE, ROOT, START, Subtree, Tree
 
 Text = list[str]
-Stage = Callable[[Text, int], tuple[Text, int, bool]]  # what the editor has after some keys
+Stage = Callable[[Text, int], tuple[Text, int, bool]]  # the editor's text after some keys
 VALUES = {
     "F": "F({}, 50)", "B": "B({}, 50)", "L": "L({}, 60)", "R": "R({}, 60)", "W": "W({})",
     "LOOP": "LOOP({})", "WHILE": "WHILE(X < {})", "IF": "IF(X > {})", "ELSEIF": "ELSEIF(X > {})",
@@ -49,7 +49,7 @@ class Pupil:
         self._cut: Text = []
 
     def acts(self) -> None:
-        """Go on with what is being typed, or do something else."""
+        """Continue typing, or do something else."""
         if self.stages or self._chance.random() < 0.55:
             self.types()
         else:
@@ -255,7 +255,7 @@ class Pupil:
         return [first, last]
 
     def _plan_lines(self) -> list[Stage]:
-        """Lines one below the other, with Enter behind each."""
+        """Plan lines one below the other, each followed by Enter."""
         rows = [self._simple() for _ in range(self._chance.randint(2, 4))]
         at = 0
 

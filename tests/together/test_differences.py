@@ -17,7 +17,8 @@ from tiniscript.together.operations import apply_change
 BASE = "SI|F(1, 80)\nR(0.5, 60)\nB(2, 40)  // back\n\n// again\nW(1)\nS\n"
 SEVEN = "F(1,1)\nF(2,2)\nF(3,3)\nF(4,4)\nF(5,5)\nF(6,6)\nF(7,7)\n"
 LOOP = "LOOP(2)\nB(1,1)\nEND_LOOP\n"
-# What a person does, before, after, the operations (or `*`), and how many instructions stay.
+# An action of a person: texts before and after, the operations (or `*`), and the number of
+# unchanged instructions.
 CASES = [
     ("a number", BASE, BASE.replace("80", "90"), "replace", 6),
     ("a word", BASE, BASE.replace("R(", "L("), "replace", 6),
@@ -64,7 +65,7 @@ CASES = [
 PROGRAMS = 150
 
 
-def described(operations: list[Operation]) -> str:
+def describe(operations: list[Operation]) -> str:
     rows = []
     for operation in operations:
         size = (
@@ -83,7 +84,7 @@ def test_what_is_the_same_stays(what: str, before: str, after: str, wanted: str,
     operations = find_operations(old, after, lambda: f"n.{next(new_numbers)}")
     new = apply_change(old, Change("n:1", tuple(operations))).tree
     assert new.shape() == parse_tree(after).shape()
-    assert wanted in ("*", described(operations))
+    assert wanted in ("*", describe(operations))
     assert sum(id.startswith("o.") for id in new.subtree_ids()) == stay
 
 
@@ -114,7 +115,7 @@ def program(chance: Random, size: int, depth: int = 0) -> list[str]:
     return rows
 
 
-def edited(chance: Random, rows: list[str]) -> list[str]:
+def edit_rows(chance: Random, rows: list[str]) -> list[str]:
     new = rows[:]
     for _ in range(chance.randint(1, 4)):
         kind, i = chance.random(), chance.randrange(len(new) + 1)
@@ -140,7 +141,7 @@ def test_operations_make_the_new_program_and_are_taken_back(seed: int) -> None:
     chance, tried = Random(seed), Counter[str]()
     while sum(tried.values()) < PROGRAMS:
         before = program(chance, chance.randint(0, 20))
-        after = edited(chance, before) if chance.random() < 0.8 else program(chance, 12)
+        after = edit_rows(chance, before) if chance.random() < 0.8 else program(chance, 12)
         numbers, new_numbers = count(1), count(1)
         try:
             old = parse_tree("\n".join(before), lambda: f"o.{next(numbers)}")  # noqa: B023

@@ -86,7 +86,7 @@ class Editor:
         self.change(answer["changes"])
 
     def hears(self) -> None:
-        """Send what is pending, and hear what is new."""
+        """Send pending changes, and receive news."""
         self.program.submit(list(map(change_of, self.shown["pending"])))
         name = self.shown["kept"]["name"]
         news = self.program.news(name, self.shown["since"], self.shown["epoch"])
@@ -139,12 +139,12 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
         if chance.random() < 0.5:
             editor.hears()
         answer = editor.step()
-        if chance.random() < 0.3:  # somebody has typed where that changes something: it is void
+        if chance.random() < 0.3:  # typing there changes something, so it is void
             editor.types(chance)
             answer = editor.step()
         row = editor.text.split("\n")[editor.line]
         editor.take(answer)
-        if editor.is_hot:  # nobody touches the line that is being typed
+        if editor.is_hot:  # nobody touches the line being typed
             assert editor.text.split("\n")[editor.line] == row
         if chance.random() < 0.1:
             loose = editor.loose

@@ -16,7 +16,7 @@ from collections import Counter
 
 import pytest
 
-from tests.support.campaign import wanted
+from tests.support.campaign import make_options
 from tests.together.world import World
 
 DEEDS = 120  # of a history
@@ -136,7 +136,7 @@ def _tell(worlds: list[World]) -> None:
 
 
 if __name__ == "__main__":
-    given = wanted(10_000, 0, "lessons")
+    given = make_options(10_000, 0, "lessons")
     if given.lessons:
         for pages in (2, 3, 4):
             _tell([lesson(seed, pages, 600) for seed in range(given.seed, given.seed + 3)])

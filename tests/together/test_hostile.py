@@ -38,7 +38,7 @@ VALUES: list[Any] = [
     [{"id": "i.2", "text": "LOOP(9)", "in": [{"id": "q.7", "text": "S"}]}], [{"id": "q.8"}],
     {"text": "a:9", "place": "b:3"}, {"i.2": ""},
 ]  # fmt: skip
-# What is likely to be taken, for each operation, and any other field.
+# Likely values for each operation, and random other fields.
 LIKELY: dict[str, list[Any]] = {
     "id": ["i.1", "i.2", "i.3", "i.5", "start", "q.1"], "ids": [["i.1"], ["i.2", "i.3"], ["q.1"]],
     "at": [["root", ""], ["i.2", ""], ["i.4", "i.6"], ["root", "q.1"]],
@@ -147,7 +147,7 @@ def test_a_change_counts_once_and_in_its_order() -> None:
 
     assert not program.submit([beep(2)])  # the first one is on its way
     assert program.submit([beep(1), beep(2)])
-    assert not program.submit([beep(1), beep(2)])  # it comes twice
+    assert not program.submit([beep(1), beep(2)])  # it arrives twice
     assert text_of(program.tree) == "S;\nBEEP(2, 440);\nBEEP(1, 440);\n"
     with pytest.raises(Refused):
         taken_change_of({"n": 1, "uid": "m:1", "ops": "no"})

@@ -23,13 +23,13 @@ from tiniscript.together.ordering import SharedProgram
 from tiniscript.together.tree import START
 
 
-def begun(path: Path) -> tuple[Journal, SharedProgram]:
+def begin_journal(path: Path) -> tuple[Journal, SharedProgram]:
     ids = count(1)
     journal = Journal(path)
     return journal, journal.begin(parse_tree(FIRST, lambda: f"i.{next(ids)}"), "e1")
 
 
-def changed(program: SharedProgram, value: int, page: str = "a") -> bool:
+def change_program(program: SharedProgram, value: int, page: str = "a") -> bool:
     """Change the program, or be refused where the value is 0."""
     uid = f"{page}:{program.last_count_by_page.get(page, 0) + 1}"
     operation = Replace("i.8", (("text", f"W({value})"),)) if value else Unwrap("i.99")
@@ -46,11 +46,11 @@ def same(one: SharedProgram, other: SharedProgram) -> bool:
 def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, seed: int) -> None:
     """All that was told is there; of a row that a crash has cut off nobody had heard."""
     path, chance = tmp_path / "journal", Random(seed)
-    journal, program = begun(path)
+    journal, program = begin_journal(path)
     sizes = [path.stat().st_size]
     states = [(program.number, dict(program.last_count_by_page))]
     for k in range(12):
-        changed(program, chance.choice((0, 1000 + k)), chance.choice("ab"))
+        change_program(program, chance.choice((0, 1000 + k)), chance.choice("ab"))
         sizes.append(path.stat().st_size)
         states.append((program.number, dict(program.last_count_by_page)))
     journal.close()
@@ -61,7 +61,7 @@ def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, see
     last = max(k for k, size in enumerate(sizes) if size <= cut)
     assert (resumed.number, resumed.last_count_by_page) == states[last]
     assert resumed.epoch == "e2"
-    changed(resumed, 2000)
+    change_program(resumed, 2000)
     whole = Journal(path).resume("e3")
     assert whole is not None
     assert same(whole, resumed)
@@ -69,9 +69,9 @@ def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, see
 
 def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
     path = tmp_path / "journal"
-    _, program = begun(path)
+    _, program = begin_journal(path)
     for value in (5, 0, 6):
-        changed(program, value)
+        change_program(program, value)
         resumed = Journal(path).resume("e2")
         assert resumed is not None
         assert same(resumed, program)
@@ -83,7 +83,7 @@ def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
 ) -> None:
     """A system says so when it is written to, by what it has taken, or when it is to be lasting."""
     path = tmp_path / "journal"
-    journal, program = begun(path)
+    journal, program = begin_journal(path)
     write = os.write
 
     def full(*_: object) -> int:
@@ -97,9 +97,9 @@ def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
             disk.setattr(os, "write", takes_part)
         else:
             disk.setattr(os, says_so, full)
-        assert changed(program, 7)
+        assert change_program(program, 7)
         assert journal.is_incomplete
-    assert changed(program, 8)
+    assert change_program(program, 8)
     assert not journal.is_incomplete
     resumed = Journal(path).resume("e2")
     assert resumed is not None
@@ -111,7 +111,7 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     path, chance, is_full, kept_number = tmp_path / "journal", Random(seed), False, 0
-    journal, program = begun(path)
+    journal, program = begin_journal(path)
     monkeypatch.setattr(journals, "MOST_BYTES", 2000)
 
     def look() -> None:
@@ -133,10 +133,10 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
     monkeypatch.setattr(journals, "replace", on_disk(files.replace))
     for value in range(1, 40):
         is_full = chance.random() < (0.8 if is_full else 0.2)
-        assert changed(program, value)
+        assert change_program(program, value)
         kept_number = kept_number if journal.is_incomplete else program.number
         look()
-        if chance.random() < 0.2:  # it crashes, and goes on with what there is
+        if chance.random() < 0.2:  # it crashes, and resumes with the stored data
             journal.close()
             journal = Journal(path)
             if chance.random() < 0.5 and path.with_name(path.name + OLD_ENDING).exists():
@@ -147,7 +147,7 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
             program = resumed
             kept_number = max(kept_number, program.number)
     is_full = False
-    assert changed(program, 99) and not journal.is_incomplete
+    assert change_program(program, 99) and not journal.is_incomplete
     final = Journal(path).resume("e3")
     assert final is not None and same(final, program)
 
@@ -157,9 +157,9 @@ def test_a_journal_that_is_too_long_begins_anew_and_keeps_the_one_before(
 ) -> None:
     monkeypatch.setattr(journals, "MOST_BYTES", 3000)
     path = tmp_path / "journal"
-    _, program = begun(path)
+    _, program = begin_journal(path)
     for value in range(1, 60):
-        changed(program, value)
+        change_program(program, value)
         assert path.stat().st_size < 6000
     assert path.with_name(path.name + OLD_ENDING).exists()
     resumed = Journal(path).resume("e2")
@@ -179,24 +179,24 @@ def test_what_is_no_journal_is_none(tmp_path: Path, data: bytes) -> None:
 
 def test_a_forgotten_journal_is_gone(tmp_path: Path) -> None:
     path = tmp_path / "folder" / "journal"
-    journal, program = begun(path)
-    changed(program, 3)
+    journal, program = begin_journal(path)
+    change_program(program, 3)
     journal.forget()
     assert not list(path.parent.iterdir())
     assert Journal(path).resume("e2") is None
-    assert START in program.tree  # whoever has it goes on with it
+    assert START in program.tree  # the holder continues with it
 
 
 def test_the_newest_of_the_history_is_in_memory_and_the_rest_in_the_journal(tmp_path: Path) -> None:
     path = tmp_path / "journal"
-    _, program = begun(path)
+    _, program = begin_journal(path)
     program._most_kept = 20
     for value in range(1, 100):
-        assert changed(program, value)
+        assert change_program(program, value)
         assert len(program.taken_changes) <= 20
     assert program.taken_changes[-1].number == 99
     rows = [json.loads(row) for row in path.read_text().splitlines()]
     assert [row["n"] for row in rows if "uid" in row] == list(range(1, 100))
-    late = program.news("z", 3, "e1")  # who has been away for longer gets the whole
+    late = program.news("z", 3, "e1")  # a page absent for longer gets the whole program
     assert late["whole"] == program.tree.snapshot() and "changes" not in late
     assert len(program.news("z", 95, "e1")["changes"]) == 4

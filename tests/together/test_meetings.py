@@ -1,4 +1,4 @@
-"""What happens where two pupils meet: who wins, what is refused or a draft, what undo does."""
+"""Conflicts of two pupils: the winner, refusals and drafts, and the effect of undo."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ def test_of_two_values_the_later_wins_whole_and_undo_gives_back_the_other(two: T
     two.types(two.luz, "F(1, 80)", "F(1, 99)")
     assert "F(1, 99)" in two.meet()
     assert any("F(2, 80)" in str(taken) for taken in two.program.taken_changes)
-    assert not two.ana.undo()  # what she wrote is not there any more
+    assert not two.ana.undo()  # her text is gone
     assert two.luz.undo()
     assert "F(2, 80)" in two.meet()
     assert two.ana.undo()  # now it is
@@ -258,7 +258,7 @@ def test_a_page_that_is_loaded_again_goes_on(two: Two) -> None:
     two.sends(two.luz)
     two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
     assert two.ana.lines[two.ana.caret] == "  W(9)"
-    two.ana.leave()  # nobody has gone on with that line
+    two.ana.leave()  # nobody has continued that line
     assert "F(2, 80)" in two.meet()
     assert "W(1)" in two.meet()
     assert "L(3, 60)" in " ".join(two.ana.lines)

@@ -79,7 +79,7 @@ class World:
         self._rows: list[Json] = []  # the journal
         self.all_taken: list[TakenChange] = []
         self.program = SharedProgram(parse_tree(FIRST, lambda: f"i.{next(ids)}"), "e0", self._keep)
-        self._snapshot = self._travelled(self.program.snapshot())
+        self._snapshot = self._send_and_parse(self.program.snapshot())
         self.first = set(self.program.tree.node_by_id)
         tree = self.program.tree
         self.typed = {text for id in self.first for text in (tree[id].text, tree[id].note)}
@@ -100,17 +100,17 @@ class World:
             self.now_s, _, do, what = heapq.heappop(self._queue)
             do(*what)
 
-    def _travelled(self, data: Json) -> Json:
+    def _send_and_parse(self, data: Json) -> Json:
         copy: Json = json.loads(json.dumps(data))
         return copy
 
     def _keep(self, row: Json) -> None:
-        self._rows.append(self._travelled(row))
+        self._rows.append(self._send_and_parse(row))
 
     # -- network ----------------------------------------------------------------------------------
 
     def ask(self, name: str, turn: int) -> None:
-        """Send what is pending and ask what is new; a page that hears nothing asks again."""
+        """Send pending changes and ask for news; a page without an answer asks again."""
         if turn != self.turn[name]:
             return
         page = self.pupils[name].page
@@ -119,7 +119,7 @@ class World:
             return
         self.at(SILENT_S, self._ask_again, name, turn)
         if self.chance.random() >= self._lost:
-            sent = self._travelled(
+            sent = self._send_and_parse(
                 {"sent": [data_of_change(change) for change in page.pending_changes]}
             )
             since = -1 if page.is_astray else page.number
@@ -132,7 +132,7 @@ class World:
 
     def _reach(self, name: str, turn: int, sent: Json, since: int, epoch: str) -> None:
         self.submit(sent["sent"])
-        news = self._travelled(self.program.news(name, since, epoch))
+        news = self._send_and_parse(self.program.news(name, since, epoch))
         if self.chance.random() >= self._lost and self.now_s >= self.off_until_s[name]:
             self.at(self._delay(self.chance), self._arrive, name, turn, news)
 
@@ -170,8 +170,8 @@ class World:
         """The page is loaded again; it has what its browser has kept."""
         pupil = self.pupils[name]
         pupil.page.flush()
-        kept = self._travelled(pupil.page.store_data())
-        news = self._travelled(self.program.news(name, -1, ""))
+        kept = self._send_and_parse(pupil.page.store_data())
+        news = self._send_and_parse(self.program.news(name, -1, ""))
         pupil.page = Page.of(name, news, kept)
         self.turn[name] += 1
         self.ask(name, self.turn[name])
@@ -199,11 +199,11 @@ class World:
             for name, pupil in self.pupils.items():
                 page = pupil.page
                 self.submit(
-                    self._travelled({"": list(map(data_of_change, page.pending_changes))})[""]
+                    self._send_and_parse({"": list(map(data_of_change, page.pending_changes))})[""]
                 )
                 since = -1 if page.is_astray else page.number
-                page.receive(self._travelled(self.program.news(name, since, page.epoch)))
-                page.give_up()  # what was refused only now
+                page.receive(self._send_and_parse(self.program.news(name, since, page.epoch)))
+                page.give_up()  # changes refused just now
 
     def check(self) -> None:
         tree = self.program.tree
@@ -213,7 +213,7 @@ class World:
         assert format_source(Source(text)) == text
         self._check_instructions(tree, text, parsed.program.body)
         assert parse_tree(text).shape() == tree.shape()
-        # The page's own blocks say the same program.
+        # The page's own blocks form the same program.
         round_tripped = format_blocks(read_blocks(text, KIT)).text
         one, other = compile_text(_whole(text), KIT), compile_text(_whole(round_tripped), KIT)
         assert one.image and one.image == other.image, (text, round_tripped, one.diagnostics)
@@ -252,7 +252,7 @@ class World:
         alive = set(self.first)
         for taken in self.all_taken:
             for operation in taken.operations:
-                alive |= _added(operation)
+                alive |= _list_added_ids(operation)
                 if isinstance(operation, Delete):
                     alive -= set(operation.ids)
                 elif isinstance(operation, Unwrap):
@@ -260,14 +260,14 @@ class World:
         assert alive == set(self.program.tree.node_by_id)
 
 
-def _added(operation: Operation) -> set[str]:
+def _list_added_ids(operation: Operation) -> set[str]:
     if isinstance(operation, Insert):
         return {id for node in operation.nodes for id in node.ids()}
     return {operation.node.id} if isinstance(operation, Wrap) else set()
 
 
 def _whole(text: str) -> str:
-    """Let X have a value: the line that gives it one may have been deleted."""
+    """Give X a value, because the line that assigns it may have been deleted."""
     start = re.search(r"\b(SI|SB)\|", text)
     return text.replace(start[0], "X = 0\n", 1) if start else "X = 0\n" + text
 

@@ -46,7 +46,7 @@ def bout(text: str, robot: str = "sumo") -> Bout:
     return made_bout
 
 
-def crowded(draw: random.Random) -> World:
+def draw_crowded_world(draw: random.Random) -> World:
     """Rivals, walls and a robot, none in another."""
     text = RING.replace("border = false", f"border = {draw.choice(['true', 'false'])}")
     for x, y in draw.sample([(100, 60), (100, 100), (140, 120), (90, 150)], draw.randint(1, 3)):
@@ -78,7 +78,11 @@ def rivals_of(driving: Driving) -> list[Pose]:
 @pytest.mark.parametrize("seed", range(12))
 def test_who_looks_changes_nothing(seed: int) -> None:
     draw = random.Random(seed)
-    world, moves, body = crowded(draw), powers(draw), robots.load(draw.choice(robots.names())).body
+    world, moves, body = (
+        draw_crowded_world(draw),
+        powers(draw),
+        robots.load(draw.choice(robots.names())).body,
+    )
     ends = []
     for looks in (0, 3, 40):
         driving, watch = driving_in(body, world), random.Random(seed + looks)
@@ -95,7 +99,7 @@ def test_who_looks_changes_nothing(seed: int) -> None:
 @pytest.mark.sampled("name", keep=3)
 @pytest.mark.parametrize("name", robots.names())
 def test_a_program_among_rivals_does_the_same_again(name: str) -> None:
-    """Of every robot, in the shipped world and from its own sensors."""
+    """For every robot, in the shipped world and from its own sensors."""
     image = compile("SI|LOOP(40);M(80,60);W(0.1);M(-20,90);W(0.05);END_LOOP", name).image
     ends = []
     for pauses in ([7000], [13] * 500 + [500]):
@@ -114,10 +118,10 @@ def test_a_program_among_rivals_does_the_same_again(name: str) -> None:
 @pytest.mark.parametrize("seed", range(24))
 def test_no_body_is_ever_inside_another(seed: int) -> None:
     draw = random.Random(seed)
-    world, moves = crowded(draw), powers(draw)
+    world, moves = draw_crowded_world(draw), powers(draw)
     driving = driving_in(robots.load(draw.choice(robots.names())).body, world)
     assert isinstance(driving, Bout)
-    touched = 0
+    touched_count = 0
     for (ms, left, right), (until, _, _) in zip(moves, [*moves[1:], (9000, 0, 0)], strict=True):
         driving.set_motors(ms, left, right)
         for at in range(ms, until, 7):
@@ -128,10 +132,10 @@ def test_no_body_is_ever_inside_another(seed: int) -> None:
                     apart = gap_between(hull.spine(pose), other.spine(place))[0]
                     gap = apart - hull.radius_cm - other.radius_cm
                     assert gap > -1e-3, f"{at} ms"
-                    touched += gap < 0.1
+                    touched_count += gap < 0.1
                 contact = hull.contact(pose, driving.obstacles)
                 assert contact is None or contact.gap_cm > -1e-3, f"{at} ms"
-    assert touched or not any(rival.power_percent for rival in world.rivals)
+    assert touched_count or not any(rival.power_percent for rival in world.rivals)
 
 
 @pytest.mark.parametrize("power", [20, 60, 100])
@@ -139,11 +143,11 @@ def test_no_body_is_ever_inside_another(seed: int) -> None:
 def test_a_rival_that_is_pushed_goes_where_it_is_pushed(heading: int, power: int) -> None:
     """Whichever way it stands: with its wheels most of all, aside the least."""
     driving = bout(RING + ASLEEP.replace("180", str(heading)))
-    [before] = driving.rivals
+    [pose_before] = driving.rivals
     driving.set_motors(0, power, power)
     driving.advance_to(6000 * 20 // power)
-    [after] = driving.rivals
-    assert after.x_cm > before.x_cm + 2
+    [pose_after] = driving.rivals
+    assert pose_after.x_cm > pose_before.x_cm + 2
     free = bout(RING + ASLEEP.replace("x_cm = 100\ny_cm = 100", "x_cm = 100\ny_cm = 20"))
     free.set_motors(0, power, power)
     assert driving.driven_cm < free.advance_to(6000 * 20 // power).x_cm - 60 - 2, (
@@ -159,9 +163,9 @@ def test_the_stronger_one_pushes_the_other_back(mine: int, its: int, speed: int)
     rival = HEAD_ON.format(its).replace("speed_cm_s = 45", f"speed_cm_s = {speed}")
     driving = bout(RING.replace("x_cm = 60", "x_cm = 80") + rival)
     driving.set_motors(0, mine, mine)
-    met = driving.advance_to(900)
+    met_pose = driving.advance_to(900)
     later = driving.advance_to(1500)
-    way = later.x_cm - met.x_cm
+    way = later.x_cm - met_pose.x_cm
     assert (way > 0.5) == (mine > its) and (way < -0.5) == (mine < its)
 
 
@@ -179,18 +183,18 @@ def test_a_body_alone_goes_as_it_does_without_a_ring() -> None:
 
 def test_a_rival_begins_when_the_robot_first_moves() -> None:
     driving = bout(RING + HEAD_ON.format(60))
-    before = rivals_of(driving)
+    rivals_before = rivals_of(driving)
     driving.advance_to(3000)
     driving.set_motors(3000, 0, 0)
     driving.advance_to(4000)
-    assert rivals_of(driving) == before
+    assert rivals_of(driving) == rivals_before
     driving.set_motors(4000, 10, 0)
     driving.advance_to(4500)
-    assert rivals_of(driving) != before
+    assert rivals_of(driving) != rivals_before
     driving.rest()
-    before = rivals_of(driving)
+    rivals_before = rivals_of(driving)
     driving.advance_to(9000)
-    assert rivals_of(driving) == before, "its time is over"
+    assert rivals_of(driving) == rivals_before, "its time is over"
 
 
 def test_a_rival_stays_in_a_ring_where_nobody_pushes_it() -> None:
@@ -199,7 +203,7 @@ def test_a_rival_stays_in_a_ring_where_nobody_pushes_it() -> None:
         text = RING.replace("x_cm = 60", "x_cm = 8")  # the robot is outside, and seen
         heading, power = draw.randint(-180, 180), draw.choice([30, 60, 100])
         driving = bout(text + HEAD_ON.format(power).replace("180", str(heading)))
-        driving.has_fallen = True  # and that ends nothing here
+        driving.has_fallen = True  # falling does not end this run
         driving.set_motors(0, 1, 0)
         for at in range(0, 20_000, 50):
             driving.advance_to(at)
@@ -282,7 +286,7 @@ def test_the_edge_is_seen_before_the_robot_is_out(power: int) -> None:
 # -- how it ends -----------------------------------------------------------------------------------
 
 
-def ended(program: str, text: str, ms: int = 9000) -> dict[str, int]:
+def run_to_score(program: str, text: str, ms: int = 9000) -> dict[str, int]:
     simulation = Simulation("sumo", read(text, "own"), compile(program, "sumo").image)
     simulation.go(ms)
     score: dict[str, int] = simulation.state()["score"]
@@ -291,16 +295,16 @@ def ended(program: str, text: str, ms: int = 9000) -> dict[str, int]:
 
 def test_who_is_pushed_out_and_who_falls() -> None:
     text = RING + ASLEEP + "[task]\nseconds = 20\n"
-    won = ended("F(9, 80)", text)
+    won = run_to_score("F(9, 80)", text)
     assert (won["pushed"], won["rivals"], won["stars"], won["has_fallen"]) == (1, 1, 3, False)
     assert won["points"] > 100
-    still = ended("W(1)", text)
+    still = run_to_score("W(1)", text)
     assert (still["pushed"], still["stars"], still["has_fallen"]) == (0, 0, False)
-    fallen = ended("B(9, 80)", text)
+    fallen = run_to_score("B(9, 80)", text)
     assert (fallen["pushed"], fallen["stars"], fallen["has_fallen"]) == (0, 0, True)
     flag = "[[flags]]\nx_cm = 0\ny_cm = 100\nreach_cm = 10\n"  # beyond the edge
-    assert ended("B(9, 80)", text + flag)["taken"] == 0
-    both = ended("B(2, 80);F(20, 80)", text, 25_000)
+    assert run_to_score("B(9, 80)", text + flag)["taken"] == 0
+    both = run_to_score("B(2, 80);F(20, 80)", text, 25_000)
     assert (both["pushed"], both["stars"], both["has_fallen"]) == (0, 0, True), (
         "it no longer counts"
     )
@@ -324,10 +328,10 @@ def test_a_world_says_what_is_wrong_with_its_rivals(tmp_path: Path) -> None:
         (ASLEEP + "lenght_cm = 7\n", "Did you mean length_cm?"),
         ("[[rings]]\nx_cm = 5\ny_cm = 5\n", "rings[2].radius_cm is missing"),
     ):
-        with pytest.raises(WorldRefused) as caught:
+        with pytest.raises(WorldRefused) as exception_info:
             read(RING + wrong, "wrong")
-        assert any(message in line for line in describe(caught.value, "en")), describe(
-            caught.value, "en"
+        assert any(message in line for line in describe(exception_info.value, "en")), describe(
+            exception_info.value, "en"
         )
 
 

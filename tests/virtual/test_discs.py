@@ -55,7 +55,7 @@ def started_robot(
 
 
 def displacement(robot: VirtualRobot) -> tuple[float, float, float]:
-    """Return how far it is ahead and to the left of where it began, and how it has turned."""
+    """Return the robot's displacement ahead and to the left, and its rotation."""
     pose = robot.pose
     return pose.x_cm - 250, pose.y_cm - 250, pose.heading
 
@@ -66,9 +66,9 @@ def wheel(robot: VirtualRobot, number: int) -> Wheel:
 
 
 def stands_for_a_while(robot: VirtualRobot) -> bool:
-    before = robot.pose
+    pose_before = robot.pose
     robot.step(robot.now_ms + 300)
-    return math.dist(before[:2], robot.pose[:2]) < 0.01
+    return math.dist(pose_before[:2], robot.pose[:2]) < 0.01
 
 
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
@@ -92,7 +92,7 @@ def test_it_turns_as_far_as_was_said(profile: Robot, text: str, turn: int) -> No
 
 
 def test_it_learns_how_its_wheels_roll(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of wheels that stand sooner than most, later moves are over sooner: fewer are corrected."""
+    """If wheels stop earlier than most, later moves end earlier, with fewer corrections."""
     monkeypatch.setattr(wheels, "LAG_MS", 30)
     robot, talk = started_robot("LOOP(6); F(30 CM, 70); SHOW(TIME); END_LOOP", slip=0.0)
     talk.wait(9000)
@@ -165,11 +165,11 @@ def test_a_task_that_takes_the_motors_gives_them_back_and_the_way_goes_on() -> N
     talk.wait(6000)
     talk.session.stop(robot.now_ms)
     talk.wait(100)
-    ahead, aside, turned = displacement(robot)
-    assert 8 < ahead < 25 and abs(ahead - aside - 60) < 8 and abs(turned + 90) < 6
+    ahead, aside, turned_degrees = displacement(robot)
+    assert 8 < ahead < 25 and abs(ahead - aside - 60) < 8 and abs(turned_degrees + 90) < 6
 
 
-def interrupted(way: str, times: int, body: str) -> str:
+def interrupt_moves(way: str, times: int, body: str) -> str:
     """A way that a WHEN interrupts so often."""
     return f"""X = 0; {way}; SHOW(1)
 WHEN(X < {times} AND TIME > 0.35 + X * 0.65)
@@ -191,24 +191,25 @@ INTERRUPTIONS += [("F(100 CM, 60)", 3, body) for body in STANDING[1:]]
 def test_a_way_that_is_interrupted_is_as_long_and_as_straight(
     profile: Robot, way: str, times: int, body: str
 ) -> None:
-    """What the wheels roll on when a WHEN takes the motors is a part of the way."""
+    """Rolling after a WHEN takes the motors counts as a part of the move."""
     for seed in (2, 3, 5):
-        robot, talk = started_robot(interrupted(way, times, body), seed, profile)
+        robot, talk = started_robot(interrupt_moves(way, times, body), seed, profile)
         talk.wait(13_000)
         lines = [line.split(" ", 1)[1] for line in trace(robot.take_events())]
         assert lines[-1] == "SHOW 1"
         assert sum(line == lines[0] for line in lines) == times + 1, "it has gone on so often"
-        ahead, aside, turned = displacement(robot)
+        ahead, aside, turned_degrees = displacement(robot)
         if way[0] == "F":
             assert abs(ahead - 100) <= 1.5 and abs(aside) <= 3.2
         else:
-            assert abs(turned + int(way[2:].split()[0])) <= 6
+            assert abs(turned_degrees + int(way[2:].split()[0])) <= 6
 
 
 @pytest.mark.parametrize(("body", "more_cm", "off_cm"), [
     ("M(0, 0); W(0.3); B(5 CM, 60)", -5, 0.6),  # a way of its own
     ("M(0, 0); W(0.05); F(5 CM, 60)", 5, 0.7),
-    ("M(60, 60); W(0.2); M(-60, -60); W(0.2); M(0, 0); W(0.4)", 0, 0.5),  # as far ahead as back
+    # The same distance forward and back.
+    ("M(60, 60); W(0.2); M(-60, -60); W(0.2); M(0, 0); W(0.4)", 0, 0.5),
     ("M(-40, -40); W(0.2); M(40, 40); W(0.2); M(0, 0); W(0.4)", 0, 0.5),
 ])  # fmt: skip
 def test_what_an_interruption_drives_is_not_a_part_of_the_way(
@@ -216,7 +217,7 @@ def test_what_an_interruption_drives_is_not_a_part_of_the_way(
 ) -> None:
     """Not exactly: how far a wheel that is driven meanwhile would have rolled is a guess."""
     for seed in (1, 2, 3):
-        robot, talk = started_robot(interrupted("F(100 CM, 60)", 3, body), seed)
+        robot, talk = started_robot(interrupt_moves("F(100 CM, 60)", 3, body), seed)
         talk.wait(13_000)
         ahead, _, _ = displacement(robot)
         assert abs(ahead - 100 - 3 * more_cm) <= 1.5 + 3 * off_cm
@@ -236,7 +237,7 @@ WHEN(X = 0 AND TIME > 0.6); X = 1; F(40 CM, 60); SHOW(2); END_WHEN"""
 
 
 def test_a_way_after_one_that_was_ended_is_whole() -> None:
-    """What S has ended is not gone on with, though the same task goes the next way."""
+    """A move ended by S is not continued, even if the same task makes the next one."""
     text = """F(60 CM, 60); F(30 CM, 60); SHOW(1)
 TASK; W(0.5); S; W(60); END_TASK"""
     robot, talk = started_robot(text, 2)
@@ -270,7 +271,7 @@ def test_a_way_ends_though_a_disc_flickers_at_rest(profile: Robot, hertz: float,
 @pytest.mark.parametrize("number", [0, 1])
 def test_edges_of_a_disc_that_flickers_are_no_part_of_a_way(number: int) -> None:
     """While a WHEN lets the robot stand, no more count than wheels may roll."""
-    robot, talk = started_robot(interrupted("F(100 CM, 60)", 2, "M(0, 0); W(3)"), 2)
+    robot, talk = started_robot(interrupt_moves("F(100 CM, 60)", 2, "M(0, 0); W(3)"), 2)
     Flicker(robot, number, 40)
     talk.wait(16_000)
     assert trace(robot.take_events())[-1].endswith("SHOW 1")
@@ -319,15 +320,15 @@ def test_wheels_that_both_stand_are_stuck_whoever_stood_first(
 def test_a_disc_whose_channels_are_exchanged_ends_the_move(
     text: str, number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It counts back while the wheel goes ahead: the robot drove in circles until somebody came."""
+    """It counts backward while the wheel turns forward, so the robot would drive in circles."""
     robot, talk = started_robot(text, profile=TWO_CHANNELS)
     one = wheel(robot, number)
     step = one.step
 
     def step_backward(has_two: bool) -> float:
-        before = one.counted_edges
+        counted_edges_before = one.counted_edges
         speed = step(has_two)
-        one.counted_edges = 2 * before - one.counted_edges
+        one.counted_edges = 2 * counted_edges_before - one.counted_edges
         return speed
 
     monkeypatch.setattr(one, "step", step_backward)
@@ -339,7 +340,7 @@ def test_a_disc_whose_channels_are_exchanged_ends_the_move(
 
 @pytest.mark.parametrize(("profile", "sees"), [(TWO, False), (TWO_CHANNELS, True)])
 def test_a_hand_that_turns_a_wheel_back(profile: Robot, sees: bool) -> None:
-    """With two channels the wheel goes that again. With one it seems to have gone ahead."""
+    """With two channels the wheel repeats that distance. With one it seems to have gone ahead."""
     robot, talk = started_robot(WAY, profile=profile)
     one = wheel(robot, 0)
     begun_cm = one.turned_cm
@@ -360,27 +361,28 @@ def noise(talk: Talk) -> tuple[int, ...]:
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
 @pytest.mark.parametrize("number", [0, 1])
 def test_a_disc_that_flickers_at_rest_is_told_in_status(profile: Robot, number: int) -> None:
-    """Whether a program runs or not, and once wheels do not roll any more."""
+    """This holds with and without a program, once the wheels have stopped rolling."""
     robot, talk = started_robot("W(1)", profile=profile)
     talk.wait(2000)
     assert noise(talk) == (0, 0)
     Flicker(robot, number, 40)
-    before = noise(talk)
+    noise_before = noise(talk)
     talk.wait(2000)
-    after = noise(talk)
-    assert 75 <= after[number] - before[number] <= 90 and after[1 - number] == 0
+    noise_after = noise(talk)
+    assert 75 <= noise_after[number] - noise_before[number] <= 90 and noise_after[1 - number] == 0
     talk.upload("M(60, 60); W(0.5); M(0, 0); W(3)")
     talk.wait(1300)
-    before = noise(talk)
+    noise_before = noise(talk)
     talk.wait(2000)
-    after = noise(talk)
-    assert 40 <= after[number] - before[number] <= 90 and after[1 - number] == 0
+    noise_after = noise(talk)
+    assert 40 <= noise_after[number] - noise_before[number] <= 90 and noise_after[1 - number] == 0
 
 
 @pytest.mark.parametrize("text", [
     "F(60 CM, 60); W(0.4); R(90 DEG, 80); B(3 CM, 40)",
     "M(90, 90); W(0.3); S; W(0.1); M(0, 90); W(1)",
-    interrupted("F(60 CM, 60)", 3, "M(0, 0); W(0.4)"), interrupted("F(60 CM, 60)", 2, "B(0.3, 80)"),
+    interrupt_moves("F(60 CM, 60)", 3, "M(0, 0); W(0.4)"),
+    interrupt_moves("F(60 CM, 60)", 2, "B(0.3, 80)"),
 ])  # fmt: skip
 def test_edges_of_wheels_that_turn_and_roll_are_no_noise(text: str) -> None:
     for seed in (1, 2, 3):
@@ -412,20 +414,20 @@ def test_whatever_has_ended_a_way_the_next_program_goes_straight(
     for seed in (1, 2):
         robot, talk = started_robot(text.replace("60)", "80)", 1), seed)
         talk.wait(50)
-        with monkeypatch.context() as held:
-            hold(wheel(robot, number), held)
+        with monkeypatch.context() as patch:
+            hold(wheel(robot, number), patch)
             talk.wait(420 if how == "stopped" else 900)
         if how == "lost":
             robot.step(robot.now_ms + 1500)
         talk.session.stop(robot.now_ms)
         talk.wait_for(talk.session.clear())
         talk.wait(1000)
-        before = robot.pose
+        pose_before = robot.pose
         assert talk.upload("F(100 CM, 80)").status == OK
         talk.wait(7000)
         assert robot.fault == "" and not robot.is_running
-        along = math.radians(before.heading)
-        x, y = robot.pose.x_cm - before.x_cm, robot.pose.y_cm - before.y_cm
+        along = math.radians(pose_before.heading)
+        x, y = robot.pose.x_cm - pose_before.x_cm, robot.pose.y_cm - pose_before.y_cm
         assert abs(x * math.cos(along) + y * math.sin(along) - 100) <= 1.5
         assert abs(y * math.cos(along) - x * math.sin(along)) <= 3.2
 
@@ -438,16 +440,16 @@ def test_a_wheel_that_is_held_for_a_moment_bends_no_later_way(
     for seed in (1, 2):
         robot, talk = started_robot("F(60 CM, 80); W(2); F(100 CM, 80)", seed)
         talk.wait(300)
-        with monkeypatch.context() as held:
-            hold(wheel(robot, number), held)
+        with monkeypatch.context() as patch:
+            hold(wheel(robot, number), patch)
             talk.wait(450)
         talk.wait(3000)
         assert stands_for_a_while(robot) and robot.is_running
-        before = robot.pose
+        pose_before = robot.pose
         talk.wait(7000)
         assert robot.fault == "" and not robot.is_running
-        along = math.radians(before.heading)
-        x, y = robot.pose.x_cm - before.x_cm, robot.pose.y_cm - before.y_cm
+        along = math.radians(pose_before.heading)
+        x, y = robot.pose.x_cm - pose_before.x_cm, robot.pose.y_cm - pose_before.y_cm
         assert abs(y * math.cos(along) - x * math.sin(along)) <= 3.2
 
 
@@ -455,7 +457,7 @@ def test_a_wheel_that_is_held_for_a_moment_bends_no_later_way(
 def test_a_wheel_that_stands_while_its_two_channels_flicker_is_stuck(
     number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """They show an edge ahead and one back for ever: the wheel gets no further."""
+    """Its edges alternate forever, so the wheel makes no progress."""
     robot, talk = started_robot(WAY, profile=TWO_CHANNELS)
     Flicker(robot, number, 20)
     talk.wait(700)
@@ -484,7 +486,7 @@ def test_the_same_seed_gives_the_same_run_however_often_it_is_looked_at() -> Non
 
 
 def test_an_uno_with_discs_reads_no_text_but_a_typed_stop() -> None:
-    """And it stops for one at once, while it goes a way."""
+    """A typed stop works immediately, even during a move by distance."""
     robot, talk = started_robot("F(60 CM, 60); SHOW(1)", is_detached=True)
     hello_reply = talk.wait_for(talk.session.hello()).values
     assert TEXT_LEVELS[hello_reply.features & TEXT_LEVEL][0] == "NONE"
@@ -505,7 +507,7 @@ def test_a_mega_with_discs_reads_text() -> None:
 # -- without discs --------------------------------------------------------------------------------
 
 
-def traced(text: str, name: str) -> list[str]:
+def list_trace(text: str, name: str) -> list[str]:
     return [f"{event.ms} {event.text}" for event in run(text, robot=name).events]
 
 
@@ -516,7 +518,7 @@ def test_a_program_takes_as_long_as_the_profile_says(name: str, text: str) -> No
     talk = Talk(robot)
     assert talk.upload(text).status == OK
     talk.wait(6000)
-    assert trace(robot.take_events()) == traced(text, name)
+    assert trace(robot.take_events()) == list_trace(text, name)
     assert talk.wait_for(talk.session.status()).values.saved == SAVED_STORED
 
 
@@ -532,7 +534,7 @@ def test_a_simulated_body_goes_and_turns_as_its_kit_says(name: str) -> None:
 
 @pytest.mark.parametrize(("text", "needs"), [(ALONE, GO), (BESIDE, GO | TASKS), ("W(0.1)", 0)])
 def test_the_robot_finds_out_what_code_needs(text: str, needs: int) -> None:
-    """Of a program in one frame, and of a live line: its image is the compiler's."""
+    """For a program in one frame, and for a live line, its image equals the compiler's."""
     robot = robot_in(name="tinibot32")
     talk = Talk(robot)
     image = compile_text(text, robot.profile.kit).image
@@ -542,11 +544,11 @@ def test_the_robot_finds_out_what_code_needs(text: str, needs: int) -> None:
     assert talk.wait_for(talk.session.fetch()).values.image == image
     assert talk.wait_for(talk.session.live(unpack(image).code)).status == OK
     talk.wait(6000)
-    assert trace(robot.take_events()) == traced(text, "tinibot32")
+    assert trace(robot.take_events()) == list_trace(text, "tinibot32")
 
 
 def test_without_numbers_it_never_comes_there() -> None:
-    """A profile without `speed` is not asked for such programs; whoever sends one sees a fault."""
+    """A profile without `speed` rejects such programs; a program sent anyway faults."""
     robot = robot_in(name="grabber")
     kit = robot.profile.kit
     assert kit.go_ms(20_000, 60, is_turn=False)

@@ -28,8 +28,8 @@ from tiniscript.virtual.world import World
 TINIBOT = robots.load("tinibot")
 LINER = robots.load("liner")
 GRABBER = robots.load("grabber")
-RIGHT, LEFT, DISTANCE = range(3)  # of tinibot's sensors
-NOSE_CM = 13  # its distance sensor, from its wheels
+RIGHT, LEFT, DISTANCE = range(3)  # indexes of tinibot's sensors
+NOSE_CM = 13  # distance from its wheels to its distance sensor
 ACROSS = Segment(Point(10, -5), Point(10, 5))
 
 
@@ -53,7 +53,7 @@ def test_segments_cross_or_have_a_distance() -> None:
     ("heading", "half", "distance_cm"),
     [
         (0, 15, 10.0),
-        (20, 15, 10 / math.cos(math.radians(5))),  # its border is 5 degrees off
+        (20, 15, 10 / math.cos(math.radians(5))),  # the cone's border is 5 degrees off
         (90, 15, None),
         (180, 15, None),
         (45, 15, None),  # the end is at 26.6 degrees
@@ -65,7 +65,7 @@ def test_a_cone_sees_the_nearest_point_inside(
 ) -> None:
     least = nearest_seen([ACROSS], Point(0, 0), math.radians(heading), math.radians(half))
     assert least == pytest.approx(distance_cm)
-    for y in (-5, 5):  # what ends on the border
+    for y in (-5, 5):  # walls that end on the border
         assert nearest_seen([Segment(Point(10, 0), Point(10, y))], Point(0, 0), 0, 0) == 10
 
 
@@ -144,16 +144,16 @@ def test_nothing_is_driven_through(robot: Robot, powers: tuple[int, int]) -> Non
     for heading in range(0, 360, 40):
         drive = driving(world, Pose(60, 100, heading), robot)
         drive.set_motors(0, *powers)
-        before = drive.advance_to(0)
+        advance_to_before = drive.advance_to(0)
         for now_ms in range(250, 15_000, 250):
             pose = drive.advance_to(now_ms)
             contact = drive.hull.contact(pose, drive.obstacles)
             assert contact and contact.gap_cm > -0.01
             assert not any(
-                crosses(Segment(Point(*before[:2]), Point(*pose[:2])), obstacle)
+                crosses(Segment(Point(*advance_to_before[:2]), Point(*pose[:2])), obstacle)
                 for obstacle in drive.obstacles
             )
-            before = pose
+            advance_to_before = pose
 
 
 def test_looking_changes_nothing() -> None:
@@ -222,11 +222,15 @@ def test_a_lamp_is_brighter_near_and_ahead_and_not_through_a_wall() -> None:
     assert read(world, LEFT, Pose(100, 100, 0)) == round(1023 * expected)
     assert read(world, RIGHT, Pose(100, 100, 0)) == 0  # 120 degrees off
     wall = "[[walls]]\npoints = [[60, 150], [160, 150]]\n"
-    # turned round, it is behind: no brighter than without a lamp, and no darker
+    # Turned round, the lamp is out of sight: as bright as without a lamp.
     assert read(world, LEFT, Pose(112, 150, 180)) == 0
     dim = "[light]\nambient_percent = 20\n"
-    after = floor(lamp.replace("[light]\nambient_percent = 0\n", dim))
-    assert read(after, LEFT, Pose(112, 150, 180)) == read(floor(dim), LEFT, Pose(112, 150, 180)) > 0
+    floor_after = floor(lamp.replace("[light]\nambient_percent = 0\n", dim))
+    assert (
+        read(floor_after, LEFT, Pose(112, 150, 180))
+        == read(floor(dim), LEFT, Pose(112, 150, 180))
+        > 0
+    )
     assert read(floor(lamp + wall), LEFT, Pose(100, 100, 0)) == 0
     bright = floor(lamp.replace("ambient_percent = 0", "ambient_percent = 100"))
     assert read(bright, LEFT, Pose(100, 100, 0)) == 1023

@@ -1,4 +1,4 @@
-"""What a browser begins with never reaches a virtual robot; what `tsc` or a person says, does."""
+"""The first bytes of a browser never reach a virtual robot; those of `tsc` or a person do."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 
 from tests.support.foreign_protocols import FOREIGN_GREETINGS, tls_hello
 from tests.support.rows import each_row
-from tests.support.simulator_visits import PING, received, until, until_answered, visit
+from tests.support.simulator_visits import PING, receive, until, until_answered, visit
 from tests.support.virtual_robot import floor, robot_in
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
@@ -26,7 +26,7 @@ from tiniscript.virtual.transports import MOST_CALLERS
 
 
 def verdicts(data: bytes) -> list[bool | None]:
-    """Return what is found of all beginnings of data, the shortest first."""
+    """Return the verdicts on all prefixes of data, the shortest first."""
     return [sniff_robot_client(data[:k]) for k in range(len(data) + 1)]
 
 
@@ -81,7 +81,7 @@ def test_all_frames_of_a_computer_are_for_a_robot() -> None:
 
 @each_row("text, after", [
     ("SI|F(2,80)\n", 5), ("W(1)\r\n", 2), ("POST = 5\n", 6), ("S // stop\n", 10), ("S\r", 2),
-    ("PING|\n", 6),  # a method may be called so: at the end of the line it is none
+    ("PING|\n", 6),  # a method may have this name: at the end of the line it is not one
     ("// HTTP/1.1\n", 1), ("año = 5\n", 2), ("SHOW(1) \n", 5), ("S\0", 2), ("1\n", 2), (" S", 1),
     ("\x1b[A", 3), ("\3\3\3", 3), ("\0F(1)\n", 3), ("\0S\n", 3), ("\ufeffS", 1), ("\t\tS", 3),
     ('SHOW("GET / HTTP/1.1")\n', 5),
@@ -183,15 +183,16 @@ def crowd(simulator: Simulator, count: int, says: bytes = b"") -> list[socket.so
 def test_many_who_say_nothing_keep_nobody_out(simulator: Simulator, says: bytes) -> None:
     idle = crowd(simulator, 300, says)
     [client] = crowd(simulator, 1)
-    is_said, most, heard = False, 0, bytearray()
+    is_said, most, heard_bytes = False, 0, bytearray()
 
     def ask_and_look() -> bool:
         nonlocal is_said, most
         most = max(most, len(simulator.transports._callers))
-        with contextlib.suppress(BlockingIOError, BrokenPipeError):  # it does not stand yet
+        # The server may not be ready yet.
+        with contextlib.suppress(BlockingIOError, BrokenPipeError):
             if not is_said:
                 is_said = client.send(PING) > 0
-        return is_said and b"\0" in received(client, heard)
+        return is_said and b"\0" in receive(client, heard_bytes)
 
     until(simulator, ask_and_look)
     assert MOST_CALLERS / 2 < most <= MOST_CALLERS
@@ -220,7 +221,7 @@ def test_a_silent_client_leaves_its_place_to_one_who_speaks(
         now_s = [monotonic()]
         monkeypatch.setattr(limits, "monotonic", lambda: now_s[0])
         second.sendall(PING)
-        for _ in range(5):  # who speaks keeps it, for however long
+        for _ in range(5):  # a client that sends stays connected
             first.sendall(PING)
             for _ in range(10):
                 simulator.turn(0.01)

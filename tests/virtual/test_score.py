@@ -16,7 +16,7 @@ from tiniscript.virtual.worlds import read
 FLOOR = "[floor]\nwidth_cm = 300\nheight_cm = 100\n[start]\nx_cm = 40\ny_cm = 50\n"
 FLAGS = FLOOR + "[task]\nseconds = 6\n[[flags]]\nx_cm = 90\ny_cm = 50\n[[flags]]\nx_cm = 140\n"
 TWO = FLAGS + "y_cm = 50\n"
-# Where a robot goes straight to, one after the other.
+# Targets that a robot drives to in sequence.
 WAYS = {
     "maze": [(25, 75), (75, 75), (75, 25), (125, 25), (125, 175), (175, 175), (175, 25)],
     "parking": [(125, 50), (125, 105)],
@@ -30,7 +30,7 @@ WAYS = {
 }  # fmt: skip
 
 
-def scored(text: str, program: str, ms: int = 9000) -> dict[str, int] | None:
+def run_to_score(text: str, program: str, ms: int = 9000) -> dict[str, int] | None:
     simulation = Simulation("tinibot", read(text, "own"), compile(program).image)
     for part in (ms // 3, ms // 3, ms // 3):
         simulation.go(part)
@@ -38,47 +38,47 @@ def scored(text: str, program: str, ms: int = 9000) -> dict[str, int] | None:
     return score
 
 
-def counted(text: str, program: str, ms: int = 9000) -> tuple[int, int]:
-    """Return how many flags are taken, and the stars."""
-    score = scored(text, program, ms)
+def count_flags_and_stars(text: str, program: str, ms: int = 9000) -> tuple[int, int]:
+    """Return the number of flags taken, and of stars."""
+    score = run_to_score(text, program, ms)
     assert score is not None
     return score["taken"], score["stars"]
 
 
 def test_a_world_without_flags_has_no_score() -> None:
-    assert scored(FLOOR, "F(1, 80)", 900) is None
+    assert run_to_score(FLOOR, "F(1, 80)", 900) is None
 
 
 def test_flags_are_taken_in_their_order_and_give_points_as_seconds_that_are_left_do() -> None:
-    at_once = scored(TWO, "F(100 CM, 80)") or {}
+    at_once = run_to_score(TWO, "F(100 CM, 80)") or {}
     assert (at_once["taken"], at_once["of"], at_once["stars"]) == (2, 2, 3)
-    later = scored(TWO, "W(2);F(100 CM, 80)") or {}
+    later = run_to_score(TWO, "W(2);F(100 CM, 80)") or {}
     assert at_once["points"] == later["points"] + 10
-    turned = TWO.replace("x_cm = 90", "x_cm = 200").replace("x_cm = 140", "x_cm = 90")
-    score = scored(turned.replace("x_cm = 200", "x_cm = 140"), "F(100 CM, 80)") or {}
+    turned_text = TWO.replace("x_cm = 90", "x_cm = 200").replace("x_cm = 140", "x_cm = 90")
+    score = run_to_score(turned_text.replace("x_cm = 200", "x_cm = 140"), "F(100 CM, 80)") or {}
     assert (score["taken"], score["stars"], score["points"]) == (1, 0, 100)
 
 
 def test_a_collision_and_a_late_end_cost_a_star_each() -> None:
-    assert counted(TWO, "W(5);F(100 CM, 80)", 12_000) == (2, 2)
+    assert count_flags_and_stars(TWO, "W(5);F(100 CM, 80)", 12_000) == (2, 2)
     wall = "[[walls]]\npoints = [[20, 80], [20, 20]]\n"
-    crashed = TWO.replace("seconds = 6", "seconds = 60") + wall
-    assert counted(crashed, "B(1, 80);F(4, 80)") == (2, 2)
+    crashed_text = TWO.replace("seconds = 6", "seconds = 60") + wall
+    assert count_flags_and_stars(crashed_text, "B(1, 80);F(4, 80)") == (2, 2)
     late = TWO.replace("seconds = 6", "seconds = 4") + wall
-    assert counted(late, "B(1, 80);W(3);F(4, 80)") == (2, 1)
-    # What happens after the last flag no longer counts.
-    assert counted(TWO, "F(9, 80)", 12_000) == (2, 3)
+    assert count_flags_and_stars(late, "B(1, 80);W(3);F(4, 80)") == (2, 1)
+    # Events after the last flag do not count.
+    assert count_flags_and_stars(TWO, "F(9, 80)", 12_000) == (2, 3)
 
 
 def test_where_it_is_to_rest_it_stands() -> None:
     rests = TWO + "rests = true\nreach_cm = 20\n"
-    assert counted(rests, "F(9, 80)")[0] == 1
-    assert counted(rests, "F(100 CM, 80)")[0] == 2  # its program has ended there
+    assert count_flags_and_stars(rests, "F(9, 80)")[0] == 1
+    assert count_flags_and_stars(rests, "F(100 CM, 80)")[0] == 2  # the program ends there
 
 
 @pytest.mark.parametrize("name", [name for name in worlds.names() if worlds.load(name).flags])
 def test_each_task_has_three_stars(name: str) -> None:
-    """One that always sees where it is drives a way at two thirds of its power."""
+    """A program that always knows its place drives at two thirds of the allowed power."""
     world = worlds.load(name)
     robot = robot_in(world, "liner" if name in ("line", "gaps", "ring") else "tinibot")
     score = Score(world)

@@ -1,4 +1,4 @@
-"""What a virtual robot does after anything is what one does that was switched on where it stands.
+"""After any history, a virtual robot acts like one that was just switched on in its place.
 
 A random program ends, or is ended in a random way at any moment; then comes another one. A second
 robot begins in a world whose start is the place where the first one stands by then: both do the
@@ -19,7 +19,7 @@ from typing import NamedTuple
 import pytest
 
 from tests.oracle.task_programs import task_program
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.virtual_robot import Talk, floor, robot_in, trace
 from tiniscript.link.messages import STOP_BYTES
 from tiniscript.robots.kinematics import Pose
@@ -97,23 +97,24 @@ def check(seed: int) -> str:
     ENDS[ends](talk)
     assert ends not in OFF or (not robot.is_running and robot.offset is None), seed
     robot.step(robot.now_ms + 20, b"\0S\n")
-    robot.step(robot.now_ms + 1500)  # until it stands
+    robot.step(robot.now_ms + 1500)  # until the robot stops
     pose = robot.pose
     is_done = "DONE" in [event.kind for event in robot.take_events()][-2:]
     text = program(rng, name)
     other = robot_in(floor(WALL)._replace(start=pose), name, baud=0)
     other.step(1500)
-    did, want = does(Talk(robot, 7), text), does(Talk(other, 7), text)
-    explanation = f"seed {seed} {ends} {name} {text}\n{did}\nnot\n{want}"
-    assert did[:2] == want[:2], explanation
-    did_pose, want_pose = did.pose, want.pose
+    actions, want = does(Talk(robot, 7), text), does(Talk(other, 7), text)
+    explanation = f"seed {seed} {ends} {name} {text}\n{actions}\nnot\n{want}"
+    assert actions[:2] == want[:2], explanation
+    did_pose, want_pose = actions.pose, want.pose
     assert hypot(did_pose.x_cm - want_pose.x_cm, did_pose.y_cm - want_pose.y_cm) < NEAR_CM, (
         explanation
     )
     assert abs(did_pose.heading - want_pose.heading) < NEAR_DEGREES, explanation
-    left = {k: value for k, value in did.actuators.items() if k not in want.actuators}
-    assert {**want.actuators, **left} == did.actuators, explanation
-    assert is_done or not any(left.values()), explanation  # what a program's own end leaves on
+    left = {k: value for k, value in actions.actuators.items() if k not in want.actuators}
+    assert {**want.actuators, **left} == actions.actuators, explanation
+    # Outputs that the program's own end leaves on.
+    assert is_done or not any(left.values()), explanation
     return ends if len(want.trace) > 3 else "little"
 
 
@@ -125,4 +126,4 @@ def test_a_second_run_is_as_on_a_robot_that_was_switched_on_there(part: int) -> 
 
 
 if __name__ == "__main__":
-    each_seed(check, wanted(500, 5_000))
+    each_seed(check, make_options(500, 5_000))

@@ -1,11 +1,11 @@
-"""What robots show names the SHOW that it is of, also where it had to wait for the wire."""
+"""Shown values name their SHOW, even if it had to wait for the wire."""
 
 from __future__ import annotations
 
 import pytest
 
 from tests.support.rows import each_row
-from tests.support.source_maps import mapped
+from tests.support.source_maps import make_source_map
 from tests.support.virtual_robot import robot_in
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import checksum, unpack
@@ -40,11 +40,11 @@ class Desk:
     def send(self, text: str) -> None:
         compilation = compile_text(text, robots.load(self.robot.profile.name).kit)
         assert compilation.is_right and compilation.image
-        self.maps[checksum(compilation.image)] = mapped(compilation)
+        self.maps[checksum(compilation.image)] = make_source_map(compilation)
         request = self.computer.session.upload(unpack(compilation.image), runs=True)
         assert self.computer.wait_for(request).status == OK
 
-    def shown(self, limit_ms: int) -> list[tuple[int, str]]:
+    def list_shown_values(self, limit_ms: int) -> list[tuple[int, str]]:
         """Return values and their names, until a program ends or for so long."""
         values: list[tuple[int, str]] = []
         for _ in range(limit_ms):
@@ -63,7 +63,7 @@ class Desk:
 def test_values_of_one_task_have_the_names_of_their_shows(kind: str, baud: int) -> None:
     desk = Desk(kind, baud)
     desk.send(ONE)
-    assert desk.shown(30_000) == [(1, "A"), (2, "A + 1")] * 4 + [(3, "A + 2")]
+    assert desk.list_shown_values(30_000) == [(1, "A"), (2, "A + 1")] * 4 + [(3, "A + 2")]
 
 
 @each_row("kind", KINDS)
@@ -73,7 +73,7 @@ def test_values_of_tasks_that_wait_for_the_line_have_the_names_of_their_shows(
 ) -> None:
     desk = Desk(kind, baud)
     desk.send(SEVERAL)
-    values = desk.shown(60_000)
+    values = desk.list_shown_values(60_000)
     assert dict(values) == NAMES
     assert all(NAMES[value] == name for value, name in values)
     assert [value for value, _ in values].count(3) == 5
@@ -83,7 +83,7 @@ def test_values_of_tasks_that_wait_for_the_line_have_the_names_of_their_shows(
 def test_the_copies_of_a_def_have_one_name(kind: str) -> None:
     desk = Desk(kind, SLOW)
     desk.send(DEFS)
-    assert desk.shown(30_000) == [(1, "V")] * 2
+    assert desk.list_shown_values(30_000) == [(1, "V")] * 2
 
 
 @each_row("kind", KINDS)
@@ -94,22 +94,22 @@ def test_what_follows_a_program_that_waits_to_show_has_names_of_its_own(
     """Both have their SHOWs at the same places."""
     desk = Desk(kind, SLOW)
     desk.send("SI|NEAR = 1; LOOP(FOREVER); SHOW(NEAR); END_LOOP")
-    before = desk.shown(700)
-    assert before and set(before) == {(1, "NEAR")}
+    shown_before = desk.list_shown_values(700)
+    assert shown_before and set(shown_before) == {(1, "NEAR")}
     if stops:
         desk.computer.session.stop(desk.robot.now_ms)
-        before += desk.shown(1500)
+        shown_before += desk.list_shown_values(1500)
     desk.send("SI|FAR = 2; LOOP(3); SHOW(FAR); END_LOOP")
-    values = desk.shown(10_000)
+    values = desk.list_shown_values(10_000)
     assert [row for row in values if row[0] == 2] == [(2, "FAR")] * 3
-    assert {*before, *values} == {(1, "NEAR"), (2, "FAR")}
+    assert {*shown_before, *values} == {(1, "NEAR"), (2, "FAR")}
 
 
 @each_row("kind", KINDS)
 def test_the_robot_s_own_trace_says_the_same(kind: str) -> None:
     desk = Desk(kind, 0)
     desk.send(SEVERAL)
-    desk.shown(60_000)
+    desk.list_shown_values(60_000)
     [places] = desk.maps.values()
     for event in desk.robot.take_events():
         if event.kind == "SHOW":

@@ -1,4 +1,4 @@
-"""A virtual robot in time: whoever talks to it, however badly, the robot goes on."""
+"""A virtual robot in time: whatever its clients do, the robot goes on."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import contextlib
 
 import pytest
 
-from tests.support.simulator_visits import PING, received, until, visit
+from tests.support.simulator_visits import PING, receive, until, visit
 from tiniscript.virtual import transports as limits
 from tiniscript.virtual.simulator import (
     HEARTBEAT_MS,
@@ -20,7 +20,7 @@ REST = b"the rest"
 
 
 def test_a_flood_waits_outside(simulator: Simulator) -> None:
-    """The line is as slow as it is; what has no room on it stays with whoever sends."""
+    """The line keeps its speed; data without room on it stays with the sender."""
     flood = b"\0\0" + bytes(range(1, 256)) * 400
     with visit(simulator) as client:
         sent, most = 0, 0
@@ -53,21 +53,22 @@ def test_clients_come_and_go(simulator: Simulator) -> None:
             until(simulator, lambda: simulator.transports.is_connected)
         until(simulator, lambda: not simulator.transports.is_connected)
     assert simulator.transports.visit_count == 30
-    assert simulator.transports._server.getsockname()[0] == "127.0.0.1"  # only this computer
+    # Only reachable from this computer.
+    assert simulator.transports._server.getsockname()[0] == "127.0.0.1"
 
 
 def test_many_at_once_are_all_told_but_one(simulator: Simulator) -> None:
     crowd = [visit(simulator) for _ in range(6)]
     for client in crowd:
         client.sendall(PING)
-    heard = [bytearray() for _ in crowd]
+    heard_bytes = [bytearray() for _ in crowd]
     refused_count = 0
 
     def all_are_told() -> bool:
         nonlocal refused_count
         refused_count = sum(
-            bytes(received(client, into)) == limits.PORT_TAKEN
-            for client, into in zip(crowd, heard, strict=True)
+            bytes(receive(client, into)) == limits.PORT_TAKEN
+            for client, into in zip(crowd, heard_bytes, strict=True)
         )
         return refused_count == 5
 
@@ -81,7 +82,7 @@ def test_many_at_once_are_all_told_but_one(simulator: Simulator) -> None:
 def test_a_new_client_hears_nothing_that_is_under_way_to_the_one_before(
     simulator: Simulator, late_ms: int
 ) -> None:
-    """On a bad line, whose bytes come late."""
+    """The line is bad, and its bytes are late."""
     for _ in range(3):
         assert REST not in heard_by_a_client(simulator, 1)
         simulator.from_robot.send_bytes(REST, simulator.robot.now_ms + late_ms)
@@ -89,15 +90,15 @@ def test_a_new_client_hears_nothing_that_is_under_way_to_the_one_before(
 
 
 def heard_by_a_client(simulator: Simulator, stays_ms: int) -> bytes:
-    """Return what somebody hears who comes, asks for something, and leaves after a while."""
+    """Return the bytes that a client receives who connects, asks, and leaves after a while."""
     visits, end_ms = simulator.transports.visit_count, simulator.robot.now_ms + stays_ms
     with visit(simulator) as client:
         client.sendall(PING)
         until(simulator, lambda: simulator.transports.visit_count > visits)
-        heard = bytearray()
-        until(simulator, lambda: b"\0" in received(client, heard))
+        heard_bytes = bytearray()
+        until(simulator, lambda: b"\0" in receive(client, heard_bytes))
         until(simulator, lambda: simulator.robot.now_ms > end_ms)
-        return bytes(received(client, heard))
+        return bytes(receive(client, heard_bytes))
 
 
 # -- the heartbeat of a hurried robot -------------------------------------------------------------
@@ -105,9 +106,9 @@ def heard_by_a_client(simulator: Simulator, stays_ms: int) -> bytes:
 
 def test_a_hurried_robot_hears_the_last_whole_frame_again() -> None:
     heart = Heartbeat()
-    assert heart.bytes_due(10_000, 5.0) == b""  # there was none
+    assert heart.bytes_due(10_000, 5.0) == b""  # no heartbeat was sent
     heart.on_bytes(b"\0" + PING[:3], 5.0)
-    assert heart.bytes_due(10_000, 5.0) == b""  # one is on its way
+    assert heart.bytes_due(10_000, 5.0) == b""  # one heartbeat is under way
     heart.on_bytes(PING[3:], 5.0)
     assert heart.bytes_due(10_000, 5.0) == PING
     assert heart.bytes_due(10_000 + HEARTBEAT_MS - 1, 5.0) == b""

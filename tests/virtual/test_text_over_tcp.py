@@ -14,7 +14,7 @@ SILENT_S = 3  # longer than the second that a robot waits for, whose clock may g
 
 
 def lines_until(client: socket.socket, end: str) -> list[str]:
-    """Return what is answered, up to a line that ends so."""
+    """Return the answer up to a line with this end."""
     client.settimeout(HANGS_S)
     data = b""
     while not data.endswith(end.encode() + b"\r\n"):
@@ -43,7 +43,7 @@ def test_lines_are_answered_and_the_robot_drives() -> None:
         assert lines_until(client, "OK") == ["// OK"]
         client.sendall(b"s\n")
         assert lines_until(client, "STOPPED") == ["// STOPPED"]
-        time.sleep(SILENT_S)  # what comes sooner is not done
+        time.sleep(SILENT_S)  # earlier text would be ignored
         client.sendall(b"F(1,50)\n")
         assert lines_until(client, "SI|") == ["// It was stopped. Begin with SI|"]
         client.sendall(b"SI|F(0.1,50)\n")

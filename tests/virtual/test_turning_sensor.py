@@ -28,19 +28,22 @@ def with_neck(low: int = 0, high: int = 180) -> Robot:
 @pytest.mark.parametrize(("low", "high"), [(0, 180), (-90, 90), (20, 160)])
 def test_it_reads_what_a_sensor_reads_that_looks_there(low: int, high: int) -> None:
     """Anywhere in a world, and whatever its range is called: the middle is where it looks ahead."""
-    necked, world = with_neck(low, high), worlds.load("obstacles")
+    necked_robot, world = with_neck(low, high), worlds.load("obstacles")
     draw = random.Random(3)
     readings = set()
     for _ in range(60):
         pose = Pose(draw.uniform(20, 200), draw.uniform(20, 180), draw.uniform(0, 360))
         value = draw.randint(low, high)
-        place = necked.body.places["DISTANCE"]
-        fixed = place._replace(heading=value - (low + high) / 2, turns_with="")
-        body = necked.body._replace(places={"DISTANCE": fixed})
-        turned, looks = Sensing(necked, world), Sensing(necked._replace(body=body), world)
-        turned.turn(0, value * 1000)
-        assert turned.peek(0, pose) == looks.peek(0, pose)
-        readings.add((turned.peek(0, pose), Sensing(necked, world).peek(0, pose)))
+        place = necked_robot.body.places["DISTANCE"]
+        fixed_place = place._replace(heading=value - (low + high) / 2, turns_with="")
+        body = necked_robot.body._replace(places={"DISTANCE": fixed_place})
+        turned_sensing, looks = (
+            Sensing(necked_robot, world),
+            Sensing(necked_robot._replace(body=body), world),
+        )
+        turned_sensing.turn(0, value * 1000)
+        assert turned_sensing.peek(0, pose) == looks.peek(0, pose)
+        readings.add((turned_sensing.peek(0, pose), Sensing(necked_robot, world).peek(0, pose)))
     assert sum(a != b for a, b in readings) > 30, "it turns, and sees something else"
 
 

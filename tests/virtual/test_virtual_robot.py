@@ -38,7 +38,7 @@ LARGEST = {"grabber": 1900, "tinibot32": 8192, "tinibotc3": 8192}  # bytes of co
 PROGRAMS = {
     "drive": "SI|F(5,80)",
     "loop": "SI|LOOP(3);F(2,50);END_LOOP",
-    # in one frame, whose receipt is on its way while the first milliseconds run
+    # One frame, whose receipt is under way during the first milliseconds.
     "values": "SI|W(0.01);A = 1.5;SHOW(A * 2);SHOW(A > 1);BEEP(0.2, 440);B(0.3, 40);L(0.25, 70)",
     "until": "SI|F(5, 80) UNTIL(DISTANCE < 40);SHOW(TIME);R(0.5, 60)",
     "fault": "SI|F(0.2, 50);X = 0;SHOW(1 / X)",
@@ -48,7 +48,7 @@ PROGRAMS = {
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_it_does_what_tsc_run_says(name: str) -> None:
-    """With the readings that it had itself, each line of the trace and each time.
+    """With the same readings, each line of the trace and each time agree.
 
     On a line that takes no time: else what it shows waits until the receipt is gone.
     """
@@ -202,7 +202,7 @@ def test_a_saved_program_is_there_after_a_power_cycle() -> None:
     robot.step(robot.now_ms + 200)
     expected = ["0 MOTORS 50 50", "100 MOTORS 0 0", "100 DONE"]
     assert trace(robot.take_events()) == expected
-    # and in another robot with the same memory
+    # The same in another robot with the same memory.
     other = robot_in(memory=memory)
     other.step(300)
     push(other)
@@ -278,20 +278,20 @@ def test_a_bad_line_is_the_same_with_the_same_seed_and_loses_nothing_in_order() 
 
 
 def test_a_running_robot_goes_on_by_itself() -> None:
-    """Nothing is asked of Python while nothing happens."""
+    """Python is not called while nothing happens."""
     robot = robot_in(worlds.load("obstacles"))
     Talk(robot).upload("SI|F(50, 1)", is_detached=True)
-    asked = 0
+    request_count = 0
     run_on = robot._firmware.call
 
-    def counted(name: str, *values: int) -> int:
-        nonlocal asked
-        asked += name == "run"
+    def count_run(name: str, *values: int) -> int:
+        nonlocal request_count
+        request_count += name == "run"
         return run_on(name, *values)
 
-    robot._firmware.call = counted
+    robot._firmware.call = count_run
     robot.step(robot.now_ms + 40_000)
-    assert asked == 1
+    assert request_count == 1
 
 
 # -- its chip -------------------------------------------------------------------------------------

@@ -23,7 +23,7 @@ def wait(robot: VirtualRobot, milliseconds: int, data: bytes = b"") -> None:
 
 
 def test_the_next_client_begins_a_line(simulator: Simulator) -> None:
-    """What the one before has begun ends with its connection."""
+    """Unfinished text of the previous client ends with its connection."""
     with visit(simulator) as client:
         client.sendall(RUNS)
         until(simulator, lambda: simulator.robot.is_running)
@@ -66,7 +66,7 @@ def test_the_host_knows_such_lines_as_a_robot_does() -> None:
     for _ in range(200):
         word = b"".join(chance.choices(parts, k=chance.randrange(1, 4)))
         word += chance.choice((b"S", b"S", b"Stop", b"Halt!", b"now"))
-        wait(robot, TEXT_MS + SILENCE_MS)  # what the robot has to say comes after its frames
+        wait(robot, TEXT_MS + SILENCE_MS)  # the robot's text comes after its frames
         wait(robot, 100, RUNS)
         assert robot.is_running
         wait(robot, SILENCE_MS + 100, b"\n" + word)

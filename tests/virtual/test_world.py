@@ -26,8 +26,8 @@ from tiniscript.virtual.worlds import read
 RIGHT = "[floor]\nwidth_cm = 200\nheight_cm = 100\n[start]\nx_cm = 50\ny_cm = 50\n"
 
 
-def refused(text: str) -> list[str]:
-    """Return what is said of a world, in English; it is said in Spanish, too."""
+def refusals_of(text: str) -> list[str]:
+    """Return the English messages about a world; there are Spanish ones as well."""
     with pytest.raises(WorldRefused) as exception_info:
         read(text, "some")
     lines = {language: describe(exception_info.value, language) for language in ("en", "es")}
@@ -89,8 +89,8 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
     assert dict(world.labels) == {"en": "my classroom", "es": "mi aula"}
     parts = (world.walls, world.boxes, world.lines, world.lamps)
     assert [len(part) for part in parts] == [1, 1, 1, 1]
-    for shipped in worlds.names():
-        assert f"| `{shipped}` |" in text
+    for shipped_text in worlds.names():
+        assert f"| `{shipped_text}` |" in text
     for command in re.findall(r"`tsc (upload examples/[^`]*)`", text):
         options = command.split()
         assert (ROOT / options[1]).exists()
@@ -144,12 +144,14 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
     ],
 )
 def test_what_is_wrong_in_a_world_is_said_with_its_place(text: str, message: str) -> None:
-    assert any(message in line for line in refused(text)), refused(text)
+    assert any(message in line for line in refusals_of(text)), refusals_of(text)
 
 
 def test_all_that_is_wrong_is_said_at_once() -> None:
     text = RIGHT.replace("x_cm = 50", "x_cm = true") + "[[lamps]]\nz_cm = 1\n"
-    assert len(refused(text)) == 3  # the start, y of the lamp, and z, which is meant to be its x
+    assert (
+        len(refusals_of(text)) == 3
+    )  # the start, y of the lamp, and z, which is meant to be its x
 
 
 def test_a_robot_that_does_not_fit_is_refused() -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from tests.machines import MACHINES, ONE_IN, Machine
 from tests.oracle import interpreter, programs
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.kits import KITS
 from tests.support.random_programs import MAX_MS, MAX_STEPS, RandomProgram, random_program
 from tests.support.vm_agreement import same
@@ -26,7 +26,7 @@ from tiniscript.syntax.formatter import format_source
 
 BATCH = 125
 PUSH32_BYTES = BY_NAME["PUSH32"].size
-BATCHES = 160  # in the tests, of which a commit runs one; a campaign runs more
+BATCHES = 160  # batches of the tests, of which a commit runs one; a campaign runs more
 
 
 def check_machine(program: RandomProgram, name: str, machine: Machine) -> None:
@@ -56,26 +56,26 @@ def check_broken(seed: int) -> None:
     """A broken text is refused by both, or by neither, and always said in words."""
     rng = random.Random(seed)
     oracle_kit, kit = KITS[seed % len(KITS)]
-    text = programs.broken(rng, programs.program(rng, oracle_kit))
+    text = programs.break_text(rng, programs.program(rng, oracle_kit))
     try:
         want = interpreter.run(text, oracle_kit, {}, MAX_MS, MAX_STEPS, 1)
     except interpreter.Mistake:
         want = None
-    compiled = compile_text(text, kit)
+    compilation = compile_text(text, kit)
     for language in ("en", "es"):
-        for diagnostic in compiled.diagnostics[:5]:
+        for diagnostic in compilation.diagnostics[:5]:
             assert as_text(
-                message(diagnostic, compiled.source, language), compiled.source, language
+                message(diagnostic, compilation.source, language), compilation.source, language
             )
     if want is None:
-        assert not compiled.is_right or reads_more(text), f"seed {seed}, oracle refuses:\n{text}"
+        assert not compilation.is_right or reads_more(text), f"seed {seed}, oracle refuses:\n{text}"
     else:
-        assert compiled.is_right, f"seed {seed}, oracle accepts:\n{text}"
-        verify(compiled.code, len(kit.readings), len(kit.actuators))
+        assert compilation.is_right, f"seed {seed}, oracle accepts:\n{text}"
+        verify(compilation.code, len(kit.readings), len(kit.actuators))
 
 
 def reads_more(text: str) -> bool:
-    """Whether a text has dashes and blanks that the compiler reads and the oracle leaves alone."""
+    """Return whether a text has dashes and blanks that only the compiler reads."""
     dashes, blanks = "\u2010\u2011\u2012\u2013\u2014\u2015\u2212", "\f\v\u200b\u2028\u3000\ufeff"
     return any(letter in text for letter in dashes + blanks)
 
@@ -106,9 +106,9 @@ def test_the_compiler_never_makes_what_verify_refuses(part: int) -> None:
         seed = 1_000_000 + part * 782 + number
         rng = random.Random(seed)
         oracle_kit, kit = KITS[seed % len(KITS)]
-        compiled = compile_text(programs.program(rng, oracle_kit), kit, optimize=seed % 3 > 0)
-        assert compiled.is_right
-        verify(compiled.code, len(kit.readings), len(kit.actuators))
+        compilation = compile_text(programs.program(rng, oracle_kit), kit, optimize=seed % 3 > 0)
+        assert compilation.is_right
+        verify(compilation.code, len(kit.readings), len(kit.actuators))
 
 
 def check_both(seed: int) -> None:
@@ -117,4 +117,4 @@ def check_both(seed: int) -> None:
 
 
 if __name__ == "__main__":
-    each_seed(check_both, wanted(100_000, BATCH * BATCHES))
+    each_seed(check_both, make_options(100_000, BATCH * BATCHES))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.machines import MACHINES, Machine
-from tests.support.case_runs import compiled, robot_and_senses
+from tests.support.case_runs import compile_case, robot_and_senses
 from tests.support.casefile import Case, accept
 from tests.support.images import image_for
 from tests.support.rows import each_row
@@ -18,10 +18,10 @@ from tiniscript.syntax.formatter import format_source
 
 
 def trace_of(case: Case, machine: Machine) -> str:
-    """Return what a program or a disassembly that stands alone does on a machine."""
+    """Return the trace of a program or a separate disassembly on a machine."""
     robot, senses = robot_and_senses(case)
     if "tiniscript" in case.parts:
-        image = compiled(case).image
+        image = compile_case(case).image
     else:
         image = image_for(assemble(case.parts["bytecode"]), robot.kit)
     return machine(image, robot.kit, senses)
@@ -37,7 +37,7 @@ def expect(case: Case, part: str, actual: str, request: pytest.FixtureRequest) -
 @each_row("case", having("tiniscript"))
 def test_program_compiles_or_its_mistake_is_stated(case: Case) -> None:
     """A program without a `mistake` fence has none; nothing in a document is wrong by accident."""
-    compilation = compiled(case)
+    compilation = compile_case(case)
     assert compilation.is_right == ("mistake" not in case.parts), [
         p.code for p in compilation.diagnostics
     ]
@@ -51,24 +51,24 @@ def test_robot(case: Case, machine: str, request: pytest.FixtureRequest) -> None
 
 @pytest.mark.parametrize("case", having("tiniscript", "bytecode"))
 def test_bytecode_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
-    expect(case, "bytecode", disassemble(compiled(case).code), request)
+    expect(case, "bytecode", disassemble(compile_case(case).code), request)
 
 
 @pytest.mark.parametrize("case", having("tiniscript", "plain"))
 def test_plain_code_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
-    program = compiled(case).program
+    program = compile_case(case).program
     assert program is not None
     expect(case, "plain", disassemble(plain_code(program).code), request)
 
 
 @pytest.mark.parametrize("case", having("tiniscript", "line"))
 def test_line_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
-    expect(case, "line", line_of(compiled(case).source) + "\n", request)
+    expect(case, "line", line_of(compile_case(case).source) + "\n", request)
 
 
 @each_row("case", [*having("tiniscript", "mistake"), *having("tiniscript", "warning")])
 def test_what_is_said(case: Case, request: pytest.FixtureRequest) -> None:
-    compilation = compiled(case)
+    compilation = compile_case(case)
     for part, is_mistake in (("mistake", True), ("warning", False)):
         if part in case.parts:
             sentences = [
@@ -85,7 +85,7 @@ def test_what_is_said(case: Case, request: pytest.FixtureRequest) -> None:
 
 @pytest.mark.parametrize("case", having("tiniscript", "formatted"))
 def test_formatted(case: Case, request: pytest.FixtureRequest) -> None:
-    expect(case, "formatted", format_source(compiled(case).source), request)
+    expect(case, "formatted", format_source(compile_case(case).source), request)
 
 
 @pytest.mark.parametrize("machine", MACHINES)
@@ -98,9 +98,9 @@ def test_disassembly_runs_or_is_refused(
     expect(case, "bytecode", disassemble(code), request)
     if "refused" in case.parts:
         robot, _ = robot_and_senses(case)
-        with pytest.raises(Refused) as refused:
+        with pytest.raises(Refused) as exception_info:
             verify(code, len(robot.kit.readings), len(robot.kit.actuators))
-        error = refused.value
+        error = exception_info.value
         expect(case, "refused", f"{error.number} {error.name} at {error.offset:04x}\n", request)
         return
     if "robot" in case.parts:

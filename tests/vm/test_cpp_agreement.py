@@ -20,7 +20,7 @@ import pytest
 from tests.machines import Senses
 from tests.machines.host import host
 from tests.support import cpp_checks
-from tests.support.campaign import wanted
+from tests.support.campaign import make_options
 from tests.support.case_runs import robot_and_senses
 from tests.support.casefile import Case
 from tests.support.cpp_checks import (
@@ -59,7 +59,7 @@ from tiniscript.bytecode.verify import RULES, load_image
 from tiniscript.vm.tasks import machine_of
 
 BATCH = 12_500
-BATCHES = 80  # in the tests
+BATCHES = 80  # batches of the tests
 
 
 # -- code ---------------------------------------------------------------------------------------
@@ -67,7 +67,7 @@ BATCHES = 80  # in the tests
 
 @each_row("case", disassemblies_alone())
 def test_disassembly_has_the_same_verdict(case: Case) -> None:
-    """And so has each beginning of it."""
+    """This also holds for each of its prefixes."""
     kit = robot_and_senses(case)[0].kit
     code = assemble(case.parts["bytecode"])
     beginnings = [code[:length] for length in range(len(code) + 1)]
@@ -112,10 +112,10 @@ def test_codes_of_three_bytes_with_two_opcodes(few_at: int) -> None:
 
 @pytest.mark.parametrize("first", range(0, 256, 16), ids=lambda first: f"from {first:02x}")
 def test_all_codes_of_three_bytes_run_safely(first: int) -> None:
-    """In C++ alone: what its verifier accepts never fails a run-time check."""
+    """In C++ alone: code accepted by its verifier never fails a run-time check."""
     for byte in range(first, first + 16):
-        accepted, bad, _ = host().all_of_three(byte, 3, 2)
-        assert bad == 0, f"{bad} of {accepted} codes that begin with {byte:02x}"
+        accepted_count, bad, _ = host().all_of_three(byte, 3, 2)
+        assert bad == 0, f"{bad} of {accepted_count} codes that begin with {byte:02x}"
 
 
 def check_three(first: int) -> int:
@@ -123,13 +123,13 @@ def check_three(first: int) -> int:
 
     Return how many are accepted.
     """
-    accepted, bad, checksum = host().all_of_three(first, 3, 2)
+    accepted_count, bad, checksum = host().all_of_three(first, 3, 2)
     ours = 0
     for rest in product(range(256), repeat=2):
         verdict = python_verdict(bytes((first, *rest)), 3, 2)
         ours = zlib.crc32(struct_pack("<BH", *verdict), ours)
     assert (bad, checksum) == (0, ours), f"{first:02x}"
-    return accepted
+    return accepted_count
 
 
 @pytest.mark.sampled("name", keep=3)
@@ -158,8 +158,8 @@ def test_whatever_the_code_the_machine_keeps_to_its_memory() -> None:
     """Code that no verifier has seen: it ends, waits or faults; sanitizers see what else."""
     endings: Counter[str] = Counter()
     for code in random_codes(1, 20_000):
-        ran = host().run_unverified(code, WIDE, Senses(max_ms=MAX_MS, max_steps=MAX_STEPS))
-        endings[ran.trace.split()[-1]] += 1
+        run = host().run_unverified(code, WIDE, Senses(max_ms=MAX_MS, max_steps=MAX_STEPS))
+        endings[run.trace.split()[-1]] += 1
     assert endings["BAD_CODE"] > 1000, endings
     assert endings["DONE"] > 1000, endings
 
@@ -169,9 +169,9 @@ def test_whatever_the_code_the_machine_keeps_to_its_memory() -> None:
 
 def test_the_clock_may_begin_anywhere_and_wrap_around() -> None:
     for image, kit, senses in some_programs():
-        ran = host().run(image, kit, senses)
+        run = host().run(image, kit, senses)
         for begin_ms in (1, 2**31 - 500, 2**31, 2**32 - 1, 2**32 - 1500):
-            assert host().run(image, kit, senses, begin_ms=begin_ms) == ran, (begin_ms, ran.trace)
+            assert host().run(image, kit, senses, begin_ms=begin_ms) == run, (begin_ms, run.trace)
 
 
 @pytest.mark.parametrize("late_ms", [0, 1, 19, 20, 21, 25, 100, 3000])
@@ -189,8 +189,9 @@ def test_a_watched_move_may_last_longer_than_the_clock() -> None:
 
 @pytest.mark.sampled(of="weeks between two turns")
 def test_weeks_may_pass_between_two_ticks() -> None:
-    """Programs go on where a tick comes up to 2^30 ms after the one before: what it finds over may
-    have ended as long before that one."""
+    """Programs continue if a tick comes up to 2^30 ms after the previous one: an ended wait may
+    have been over for as long.
+    """
     for number, (image, kit, senses) in enumerate(some_programs()):
         rng = random.Random(number)
         late_ms = [rng.choice((0, 7, 30, rng.randrange(2**30 - 10**6))) for _ in range(60)]
@@ -227,9 +228,9 @@ def test_random_programs_with_tasks(first: int) -> None:
 
 def test_the_clock_of_tasks_may_begin_anywhere_and_wrap_around() -> None:
     for image, senses in some_task_programs(0, 200):
-        ran = host().run(image, KIT, senses)
+        run = host().run(image, KIT, senses)
         for begin_ms in (2**31 - 100, 2**32 - 100):
-            assert host().run(image, KIT, senses, begin_ms=begin_ms) == ran, (begin_ms, ran.trace)
+            assert host().run(image, KIT, senses, begin_ms=begin_ms) == run, (begin_ms, run.trace)
 
 
 def check_late_turns(late_of: Callable[[random.Random], int]) -> None:
@@ -255,10 +256,10 @@ def test_weeks_may_pass_between_two_turns() -> None:
 
 @pytest.mark.parametrize("not_ready", [2, 3])
 def test_a_task_whose_reading_is_not_ready_lets_the_others_go_on(not_ready: int) -> None:
-    """The same where a SHOW is not ready."""
+    """The same holds for a SHOW that is not ready."""
     for image, senses in some_task_programs(0, 200):
-        ran = host().run(image, KIT, senses, not_ready=not_ready)
-        assert ran.trace == cpp_checks.slow_run(image, senses, not_ready), ran.trace
+        run = host().run(image, KIT, senses, not_ready=not_ready)
+        assert run.trace == cpp_checks.slow_run(image, senses, not_ready), run.trace
 
 
 # -- ways ---------------------------------------------------------------------------------------
@@ -288,7 +289,9 @@ def test_images(seed: int) -> None:
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(2))
 def test_images_of_programs(seed: int) -> None:
-    """Header, code and devices, in this order, for robots of which some have other devices."""
+    """Check the header, code and devices, in this order, for robots of which some have other
+    devices.
+    """
     cpp_checks.check_whole_images(host(), seed, 2000)
 
 
@@ -299,9 +302,9 @@ def test_needs_count_and_not_the_minor_version() -> None:
         assert (whole[2:4], whole[14]) == (b"\2\1", bit)
         for minor in range(ISA_MINOR + 2):
             for needs in (bit, 0):
-                changed = bytearray(whole)
-                changed[3], changed[14] = minor, needs
-                image = with_checksum(bytes(changed))
+                changed_bytes = bytearray(whole)
+                changed_bytes[3], changed_bytes[14] = minor, needs
+                image = with_checksum(bytes(changed_bytes))
                 ours = cpp_checks.refusal_of(partial(load_image, image, KIT))
                 theirs = cpp_checks.refusal_of(partial(host().run, image, KIT, Senses()))
                 want = "OTHER_VERSION" if minor > ISA_MINOR else "" if needs else "UNKNOWN_OPCODE"
@@ -309,7 +312,7 @@ def test_needs_count_and_not_the_minor_version() -> None:
 
 
 def test_long_images() -> None:
-    """What a header may say of the code is known before the code is."""
+    """The header's statements about the code are known before the code."""
     longest = pack("SI", 0, bytes(CODE_BYTES))
     for length in (CODE_BYTES, CODE_BYTES + 1, 40_000, 65_535):
         for header_length in (HEADER_BYTES, 0xFF):
@@ -334,14 +337,15 @@ def test_arithmetic(name: str) -> None:
 
 
 def campaign(count: int, first: int) -> None:
-    begun = time.monotonic()
+    start_s = time.monotonic()
     total: Counter[str] = Counter()
     judged_count = 0
     for seed in range(first, first + -(-count // BATCH)):
         total += check_codes(host(), seed, BATCH)
         judged_count += BATCH
         print(
-            f"{judged_count} codes agree, {judged_count / (time.monotonic() - begun):.0f} a second",
+            f"{judged_count} codes agree, "
+            f"{judged_count / (time.monotonic() - start_s):.0f} a second",
             flush=True,
         )
     print(", ".join(f"{what}: {times}" for what, times in sorted(total.items())))
@@ -349,10 +353,10 @@ def campaign(count: int, first: int) -> None:
 
 def all_of_three() -> None:
     for first in range(256):
-        accepted = check_three(first)
-        print(f"{first:02x}: {accepted} accepted", flush=True)
+        accepted_count = check_three(first)
+        print(f"{first:02x}: {accepted_count} accepted", flush=True)
 
 
 if __name__ == "__main__":
-    given = wanted(1_000_000, BATCHES, "three")
-    all_of_three() if given.three else campaign(given.count, given.seed)
+    options = make_options(1_000_000, BATCHES, "three")
+    all_of_three() if options.three else campaign(options.count, options.seed)

@@ -20,7 +20,7 @@ from tiniscript.base import fixed_point
 from tiniscript.bytecode.opcodes import BY_NAME
 from tools.bench import avr_bench
 
-BLOCK, BLOCKS = 500, 50  # of one seed
+BLOCK, BLOCKS = 500, 50  # codes per seed, and number of seeds
 NO_BLOCK = 0xFFFF
 
 needs_chip = pytest.mark.skipif(
@@ -80,7 +80,7 @@ def checksum(block: Sequence[Operation]) -> int:
 
 
 def compare(seed: int, blocks: int = BLOCKS) -> None:
-    """Assert that the chip calculates what Python does; name the operation where it does not."""
+    """Assert that the chip calculates what Python does; name the operation if it does not."""
     every = operations(seed, blocks)
     results = [int(line) for line in chip(seed, blocks)]
     assert len(results) == blocks

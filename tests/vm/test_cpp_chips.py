@@ -20,14 +20,14 @@ import pytest
 from tests.machines import Senses, avr
 from tests.machines import board as boards
 from tests.machines.chips import Chip, agrees
-from tests.machines.host import Ran, ran, run_request
+from tests.machines.host import Ran, parse_run, run_request
 from tests.machines.pace import Pace
 from tests.machines.python import ran_python
-from tests.machines.qemu import emulated
 from tests.machines.qemu import missing as emulator_missing
+from tests.machines.qemu import start_emulator
 from tests.oracle import programs
 from tests.support import avr_tasks, cpp_checks
-from tests.support.case_runs import compiled, robot_and_senses
+from tests.support.case_runs import compile_case, robot_and_senses
 from tests.support.casefile import Case
 from tests.support.edge_codes import kit_with_sensors, unverified_code
 from tests.support.images import image_for, needs_of
@@ -43,7 +43,7 @@ from tools.builds import chips
 
 
 def _run_emulated(name: str, image: bytes, kit: Kit, senses: Senses) -> Ran:
-    return emulated(name).run(image, kit, senses)
+    return start_emulator(name).run(image, kit, senses)
 
 
 CHIPS = {name: Chip(avr.missing(), partial(avr.ran_on, name), 620) for name in avr.BUILT}
@@ -51,7 +51,7 @@ CHIPS |= {name: Chip(emulator_missing(name), partial(_run_emulated, name)) for n
 
 
 def some_chips(*names: str) -> pytest.MarkDecorator:
-    """Run a test once for each of these chips, or skip it and say what is missing."""
+    """Run a test once for each of these chips, or skip it with the missing part."""
     marks = {
         name: pytest.mark.skipif(bool(CHIPS[name].missing), reason=CHIPS[name].missing or "here")
         for name in names
@@ -59,10 +59,10 @@ def some_chips(*names: str) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("chip", [pytest.param(n, marks=marks[n]) for n in names])
 
 
-VARIABLES_AT = 37  # bytes: where `layout_avr.h` says that the variables of a machine begin
-SENSORS = 3  # of the kit of code that no verifier accepts: there is room for that many
-# What the AVR does not look at: a statement on an empty stack empties it, the second of two values
-# that is not there means nothing, and so does what NEXT counts without a loop.
+VARIABLES_AT = 37  # bytes: start of a machine's variables in `layout_avr.h`
+SENSORS = 3  # sensors in the kit for code that no verifier accepts
+# Errors that the AVR ignores: a statement on an empty stack empties it, the missing second of two
+# values means nothing, and so does the counter of NEXT without a loop.
 LENIENT = (
     simple("SHOW"),
     simple("PUSH_TRUE") + simple("ADD") + simple("SHOW"),
@@ -73,11 +73,11 @@ LENIENT = (
 
 each_chip = some_chips(*CHIPS)
 each_emulated = some_chips(*chips.CHIPS)
-one_chip = pytest.mark.sampled("chip")  # of each row; with `--whole` all
+one_chip = pytest.mark.sampled("chip")  # draws one chip per row; `--whole` runs all
 
 
 def has(chip: str) -> int:
-    """Return what a chip has of `needs`: a Nano has no tasks."""
+    """Return the features of a chip, as in `needs`: a Nano has no tasks."""
     return ALL_NEEDS & ~TASKS if chip == avr.NANO else ALL_NEEDS
 
 
@@ -87,12 +87,12 @@ def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
     actual: Ran | str
     try:
         want = ran_python(image, kit, senses, has=has(chip))
-    except (Refused, ImageRefused) as refused:
-        want = repr(refused)
+    except (Refused, ImageRefused) as refusal:
+        want = repr(refusal)
     try:
         actual = CHIPS[chip].run(image, kit, senses)
-    except (Refused, ImageRefused) as refused:
-        actual = repr(refused)
+    except (Refused, ImageRefused) as refusal:
+        actual = repr(refusal)
     if isinstance(actual, str) or isinstance(want, str):
         assert actual == want, image.hex(" ")
         return str(want)
@@ -105,12 +105,12 @@ def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
 @pytest.mark.parametrize("case", having("tiniscript", "robot"))
 def test_robot(case: Case, chip: str) -> None:
     robot, senses = robot_and_senses(case)
-    if needs_of(compiled(case).code) & ~has(chip):
+    if needs_of(compile_case(case).code) & ~has(chip):
         with pytest.raises(ImageRefused, match="UNKNOWN_NEEDS"):
-            CHIPS[chip].run(compiled(case).image, robot.kit, senses)
+            CHIPS[chip].run(compile_case(case).image, robot.kit, senses)
         return
-    ran = CHIPS[chip].run(compiled(case).image, robot.kit, senses)
-    assert ran.trace == case.parts["robot"], case.id
+    run = CHIPS[chip].run(compile_case(case).image, robot.kit, senses)
+    assert run.trace == case.parts["robot"], case.id
 
 
 @one_chip
@@ -119,8 +119,8 @@ def test_robot(case: Case, chip: str) -> None:
 def test_disassembly_runs_or_is_refused(case: Case, chip: str) -> None:
     robot, senses = robot_and_senses(case)
     image = image_for(assemble(case.parts["bytecode"]), robot.kit)
-    limited = senses._replace(max_ms=min(senses.max_ms, 5000), max_steps=5000)
-    ending = same_on_the_chip(chip, image, robot.kit, limited)
+    limited_senses = senses._replace(max_ms=min(senses.max_ms, 5000), max_steps=5000)
+    ending = same_on_the_chip(chip, image, robot.kit, limited_senses)
     is_refused = "refused" in case.parts
     lacks = not is_refused and needs_of(assemble(case.parts["bytecode"])) & ~has(chip)
     assert ("Refused" in ending) == (is_refused or bool(lacks))
@@ -156,29 +156,29 @@ def test_some_random_codes(chip: str, seed: int) -> None:
 
 @some_chips(avr.UNO)
 def test_code_that_changed_after_it_was_verified(chip: str) -> None:
-    """It ends in BAD_CODE at each edge, and not too early."""
+    """It ends in BAD_CODE at each edge, and not earlier."""
     kit, senses = kit_with_sensors(SENSORS), Senses(max_ms=100, max_steps=100)
     endings = set()
-    for code, caught in unverified_code(len(kit.readings)):
+    for code, caught_at in unverified_code(len(kit.readings)):
         if code not in LENIENT:
-            want = "DONE" if caught is None else "BAD_CODE"
+            want = "DONE" if caught_at is None else "BAD_CODE"
             answer = avr.answer(chip, b"U" + run_request(code, kit, senses))
-            assert ran(answer).trace.split()[-1] == want, f"{code.hex()}: {answer}"
+            assert parse_run(answer).trace.split()[-1] == want, f"{code.hex()}: {answer}"
             endings.add(want)
     assert endings == {"DONE", "BAD_CODE"}
 
 
 @some_chips(avr.UNO)
 def test_loops_count_beyond_65535(chip: str) -> None:
-    """With a loop in it, and with a long body: a counter has 24 bits, in registers and memory."""
+    """With a nested loop, and with a long body: a counter has 24 bits, in registers and memory."""
     kit = KITS[0][1]
     far = f"IF(X < 0); {'Y = Y + 1; ' * 130} ENDIF; Y = X;"
     for body in ("LOOP(1); Y = X; END_LOOP;", far):
         text = f"X = 0; Y = 0; LOOP(70000); X = X + 1; {body} END_LOOP; SHOW(Y)"
         image = compile_text(text, kit).image
         same_on_the_chip(chip, image, kit, Senses())
-        ran = avr.ran_on(chip, image, kit, Senses(), not_ready=2)
-        assert ran.trace == ran_python(image, kit, Senses()).trace, body
+        run = avr.ran_on(chip, image, kit, Senses(), not_ready=2)
+        assert run.trace == ran_python(image, kit, Senses()).trace, body
 
 
 @some_chips(avr.MEGA)
@@ -214,7 +214,7 @@ def test_a_robot_that_is_not_ready_is_asked_again(chip: str) -> None:
 @pytest.mark.parametrize("seed", range(2))
 def test_random_codes(chip: str, seed: int) -> None:
     """Rules and offsets of random and mutated codes; those that are accepted run."""
-    counts = cpp_checks.check_codes(emulated(chip), seed, 8000)
+    counts = cpp_checks.check_codes(start_emulator(chip), seed, 8000)
     assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(counts)
     assert counts["accepted"] > 500
 
@@ -222,8 +222,8 @@ def test_random_codes(chip: str, seed: int) -> None:
 @one_chip
 @each_emulated
 def test_programs_with_tasks(chip: str) -> None:
-    cpp_checks.check_task_codes(emulated(chip), 4, 2000)
-    cpp_checks.check_task_programs(emulated(chip), 2000, 100)
+    cpp_checks.check_task_codes(start_emulator(chip), 4, 2000)
+    cpp_checks.check_task_programs(start_emulator(chip), 2000, 100)
 
 
 @pytest.mark.sampled("chip")
@@ -231,15 +231,15 @@ def test_programs_with_tasks(chip: str) -> None:
 def test_programs_with_tasks_on_an_avr(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(3000, 60)):
         same_on_the_chip(chip, image, cpp_checks.KIT, senses)
-        ran = avr.ran_on(chip, image, cpp_checks.KIT, senses, 2 + number % 3)
-        assert ran.trace == cpp_checks.slow_run(image, senses, 2 + number % 3), ran.trace
+        run = avr.ran_on(chip, image, cpp_checks.KIT, senses, 2 + number % 3)
+        assert run.trace == cpp_checks.slow_run(image, senses, 2 + number % 3), run.trace
 
 
 @pytest.mark.sampled("first")
 @some_chips(avr.UNO)
 @pytest.mark.parametrize("first", range(5000, 5400, 100))
 def test_assembly_and_its_twin_do_the_same(chip: str, first: int) -> None:
-    """On one chip, instruction by instruction: turns, moves and the inner loop are there twice."""
+    """On one chip, instruction by instruction: turns, moves and the inner loop exist twice."""
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(first, 100)):
         not_ready, pace = (0, 2, 3)[number % 3], Pace(every_ms=(1, 8, 37, 2)[number % 4])
         begin_ms = (0, 2**31 - 100, 2**32 - 100)[number // 3 % 3]
@@ -258,19 +258,21 @@ def test_hard_programs_with_tasks(chip: str, name: str) -> None:
     for not_ready, late_ms, begin_ms, max_ms in program.how:
         senses = Senses(program.readings, max_ms)
         pace = Pace(every_ms=late_ms + 1)
-        ran = avr.ran_on(chip, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
-        assert ran.trace == cpp_checks.slow_run(image, senses, not_ready, late_ms), ran.trace
+        run = avr.ran_on(chip, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
+        assert run.trace == cpp_checks.slow_run(image, senses, not_ready, late_ms), run.trace
 
 
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
 def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
-    """Nothing else ends a tick there. They lie at all low bytes of an address, in a long loop."""
+    """Nothing else ends a tick there. The calls have all low bytes of an address, in a long
+    loop.
+    """
     calls = "D;" * 130
     text = f"A = 0;DEF D;A = A + 1;END_DEF;TASK;LOOP(2);{calls}END_LOOP;SHOW(A);END_TASK"
     image = compile_text(text, cpp_checks.KIT).image
     for most, want in ((100, ("0 LIMIT\n", 100)), (150, ("1 SHOW 260\n1 DONE\n", 261))):
-        ran = avr.ran_on(chip, image, cpp_checks.KIT, Senses(max_steps=most))
-        assert (ran.trace, ran.steps) == want
+        run = avr.ran_on(chip, image, cpp_checks.KIT, Senses(max_steps=most))
+        assert (run.trace, run.steps) == want
 
 
 @pytest.mark.sampled("chip")
@@ -279,15 +281,15 @@ def test_late_tasks_after_byte_256(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(0, 40, cpp_checks.FAR)):
         late_ms = (0, 7, 36)[number % 3]
         pace = Pace(every_ms=late_ms + 1)
-        ran = avr.ran_on(chip, image, cpp_checks.KIT, senses, pace=pace, begin_ms=2**32 - 100)
-        assert ran.trace == cpp_checks.slow_run(image, senses, 0, late_ms), ran.trace
+        run = avr.ran_on(chip, image, cpp_checks.KIT, senses, pace=pace, begin_ms=2**32 - 100)
+        assert run.trace == cpp_checks.slow_run(image, senses, 0, late_ms), run.trace
 
 
 @one_chip
 @each_emulated
 def test_programs_with_ways(chip: str) -> None:
-    cpp_checks.check_way_codes(emulated(chip), 5, 1500)
-    cpp_checks.check_way_programs(emulated(chip), 2000, 100)
+    cpp_checks.check_way_codes(start_emulator(chip), 5, 1500)
+    cpp_checks.check_way_programs(start_emulator(chip), 2000, 100)
 
 
 @pytest.mark.sampled("chip")
@@ -301,12 +303,12 @@ def test_programs_with_ways_on_an_avr(chip: str) -> None:
 @one_chip
 @each_emulated
 def test_images(chip: str) -> None:
-    cpp_checks.check_images(emulated(chip), 0, 10_000)
-    cpp_checks.check_whole_images(emulated(chip), 0, 300)
+    cpp_checks.check_images(start_emulator(chip), 0, 10_000)
+    cpp_checks.check_whole_images(start_emulator(chip), 0, 300)
 
 
 @one_chip
 @each_emulated
 @pytest.mark.parametrize("name", cpp_checks.OPERATIONS)
 def test_arithmetic(chip: str, name: str) -> None:
-    cpp_checks.check_arithmetic(emulated(chip), name, 10_000)
+    cpp_checks.check_arithmetic(start_emulator(chip), name, 10_000)

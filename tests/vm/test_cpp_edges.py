@@ -1,4 +1,4 @@
-"""What holds at the limits of the C++ machine: that it has so much room and uses no other.
+"""The limits of the C++ machine: it has exactly so much room and uses no other.
 
 Each test is of code that is made to come to one limit.
 """
@@ -41,7 +41,7 @@ def loops(inner: bytes, count: int) -> bytes:
 
 
 def calls_in_calls(count: int) -> bytes:
-    """Return procedures, each of which calls the one before it and then shows a number."""
+    """Return procedures, each of which calls the previous one and then shows a number."""
     code, distance = b"", 0
     for number in range(count):
         body = jump("CALL", True, distance + 6) if number else b""
@@ -68,7 +68,7 @@ def test_what_is_closed_takes_no_room() -> None:
     for piece in pieces:
         compare_verdicts(host(), [piece * count for count in range(40)], 3, 2)
         compare_runs(host(), piece * 40, WIDE, Senses(max_ms=1000, max_steps=1000))
-    # what one procedure needs is not what the next one needs
+    # Needs of one procedure are not needs of the next.
     for needs in (0, 8, COUNTERS):
         for around in range(COUNTERS + 1):
             code = procedure(loops(stop, needs)) + procedure(stop)
@@ -133,12 +133,12 @@ def test_an_instruction_of_one_byte_means_what_is_in_its_code() -> None:
     devices = kit_with_sensors(SHORTS).sensors
     kit = Kit(devices, tuple(device._replace(name=f"A{device.name}") for device in devices))
     code = b""
-    for family, before, after in (
+    for family, text_before, text_after in (
         ("SET_VAR", "PUSH_NUM_{}", ""), ("PUSH_VAR", "", "SHOW"), ("READ", "", ""),
         ("PUSH_SENSOR", "", "SHOW"), ("PUSH_READ", "", "SHOW"), ("SET", "PUSH_NUM_{}", ""),
     ):  # fmt: skip
         for n in range(SHORTS):
-            words = (before.format(n + 1), f"{family}_{n}", after)
+            words = (text_before.format(n + 1), f"{family}_{n}", text_after)
             code += b"".join(simple(word) for word in words if word)
     readings = {device.name: (1000 * k + 1, 1000 * k + 2) for k, device in enumerate(devices)}
     compare_verdicts(host(), [code], SHORTS, SHORTS)
@@ -155,18 +155,20 @@ def test_a_program_may_run_for_24_days() -> None:
     assert ending == "OVERFLOW", ending
     for code in (most * 2 + simple("WAIT8") + b"\x78", most * 5):
         image = image_for(code + time, WIDE)
-        ran = host().run(image, WIDE, senses._replace(max_ms=2**32 - 1))
-        assert ran.trace.splitlines()[-1].endswith(" FAULT OVERFLOW"), ran.trace
+        run = host().run(image, WIDE, senses._replace(max_ms=2**32 - 1))
+        assert run.trace.splitlines()[-1].endswith(" FAULT OVERFLOW"), run.trace
 
 
 def test_code_that_changed_after_it_was_verified() -> None:
     """Code that changed after it was verified ends in BAD_CODE, and not too early."""
-    # a robot may say that it has more sensors than a machine remembers
+    # A robot may report more sensors than a machine remembers.
     for many in (3, MOST_DEVICES - 1, MOST_DEVICES, MOST_DEVICES + 1, 2 * MOST_DEVICES):
         kit = kit_with_sensors(many)
-        for code, caught in unverified_code(min(len(kit.readings), MOST_DEVICES)):
-            ran = host().run_unverified(code, kit, Senses(max_ms=100, max_steps=100))
-            ending = ran.trace.splitlines()[-1].split()[-1]
-            wanted = "DONE" if caught is None else "BAD_CODE"
-            assert ending == wanted, f"{code.hex(' ')}: {ending}, not {wanted}"
-            assert caught in (None, ran.offset), f"{code.hex(' ')}: at {ran.offset}, not {caught}"
+        for code, caught_at in unverified_code(min(len(kit.readings), MOST_DEVICES)):
+            run = host().run_unverified(code, kit, Senses(max_ms=100, max_steps=100))
+            ending = run.trace.splitlines()[-1].split()[-1]
+            wanted_text = "DONE" if caught_at is None else "BAD_CODE"
+            assert ending == wanted_text, f"{code.hex(' ')}: {ending}, not {wanted_text}"
+            assert caught_at in (None, run.offset), (
+                f"{code.hex(' ')}: at {run.offset}, not {caught_at}"
+            )

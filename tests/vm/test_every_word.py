@@ -55,30 +55,30 @@ def check(text: str) -> bool:
         want = interpreter.run(text, ORACLE_KIT, SENSES.readings, SENSES.max_ms, SENSES.max_steps)
     except interpreter.Mistake:
         want = None
-    compiled = compile_text(text, KIT)
-    assert compiled.is_right == (want is not None), (text, compiled.diagnostics)
+    compilation = compile_text(text, KIT)
+    assert compilation.is_right == (want is not None), (text, compilation.diagnostics)
     if want is None:
         check_bytes(text.encode(), KIT)
         return False
-    for image in (compiled.image, compile_text(text, KIT, optimize=False).image):
+    for image in (compilation.image, compile_text(text, KIT, optimize=False).image):
         for run in (run_python, run_host):
             actual = run(image, KIT, SENSES)
             assert same(want, actual), f"{text}\n{actual}not\n{want}"
-    assert compile_text(format_source(Source(text)), KIT).image == compiled.image, text
+    assert compile_text(format_source(Source(text)), KIT).image == compilation.image, text
     check_blocks(text, KIT)
     check_line(text, KIT)
     check_program(text.encode(), KIT, SENSES)
-    program = compiled.program
+    program = compilation.program
     assert program is not None
     if missing_feature(program, KIT) is None:
-        assert sketch_of(compiled.source, program, ROBOT, "en")
+        assert sketch_of(compilation.source, program, ROBOT, "en")
     return True
 
 
 # -- where a word may stand ------------------------------------------------------------------------
 
 
-def nested(head: str, end: str, times: int) -> str:
+def nest(head: str, end: str, times: int) -> str:
     return f"{head};" * times + "{}" + f";{end}" * times
 
 
@@ -97,18 +97,18 @@ BLOCKS_OF = [
 
 
 def frames() -> Iterator[str]:
-    loops = [nested("LOOP(1)", "END_LOOP", times) for times in (*range(BLOCKS - 2, BLOCKS + 2),)]
+    loops = [nest("LOOP(1)", "END_LOOP", times) for times in (*range(BLOCKS - 2, BLOCKS + 2),)]
     yield from ("{}", "SI|{}", "SB|{}", "PING|{}", "X = 1;{};SHOW(X)")
     for head, end in BLOCKS_OF:
-        yield from (nested(head, end, times) for times in (BLOCKS - 1, BLOCKS, BLOCKS + 1))
+        yield from (nest(head, end, times) for times in (BLOCKS - 1, BLOCKS, BLOCKS + 1))
     yield from loops
     for task in ("TASK;{};END_TASK", "WHEN(DISTANCE < 10);{};END_WHEN"):
         yield from (task.format(frame) for frame in ("{}", *loops[:-1]))
         yield task.format("W(0.1)") + ";W(FOREVER) UNTIL(TIME > 0.05);{}"
     for depth in (1, BLOCKS - 2):  # all tasks together have as many blocks open as one
-        busy = nested("LOOP(1)", "END_LOOP", depth).format("S")
+        busy = nest("LOOP(1)", "END_LOOP", depth).format("S")
         for rest in (BLOCKS - depth, BLOCKS - depth + 1):
-            its = nested("LOOP(1)", "END_LOOP", rest)
+            its = nest("LOOP(1)", "END_LOOP", rest)
             yield f"TASK;{its};END_TASK;{busy}"
             yield f"TASK;{busy};END_TASK;{its}"
     for frame in ("{}", *loops):
@@ -173,7 +173,7 @@ USES += [
     for actuator in KIT.actuators
     for use in (actuator.word.example, actuator.name)
 ]
-PARTS = 24  # of which a commit tries one in each frame, another in the next
+PARTS = 24  # parts of which a commit tries one in each frame, another in the next
 
 
 def test_every_word_in_every_frame(request: pytest.FixtureRequest) -> None:
@@ -201,7 +201,7 @@ def deep(value: str, values: int) -> str:
 
 
 def edges(argument: Argument) -> Iterator[str]:
-    """Give what may stand at the place of an argument, and what may not."""
+    """Yield allowed and forbidden values of an argument."""
     for values in range(STACK_VALUES - 2, STACK_VALUES + 2):
         for value in ("V", "1"):
             is_question = argument in (

@@ -20,7 +20,7 @@ def units(value: int) -> Decimal:
 
 
 def milli(value: Decimal) -> int:
-    """Return a result rounded to thousandths, or the fault where it does not fit."""
+    """Return a result rounded to thousandths, or the fault if it does not fit."""
     result = int(value.quantize(MILLI, context=EXACT).scaleb(3, EXACT))
     if not LOWEST <= result <= HIGHEST:
         raise Fault("OVERFLOW")
@@ -29,35 +29,35 @@ def milli(value: Decimal) -> int:
 
 def remainder(a: Decimal, b: Decimal) -> Decimal:
     """Return a - b * floor(a / b)."""
-    rest = EXACT.remainder(a, b)  # takes the sign of a
+    rest = EXACT.remainder(a, b)  # has the sign of a
     return rest + b if rest and (rest < 0) != (b < 0) else rest
 
 
-def rounded(a: Decimal, places: Decimal) -> Decimal:
+def round_decimal(a: Decimal, places: Decimal) -> Decimal:
     decimals = int(places.quantize(Decimal(1), context=EXACT))
     if decimals >= 3:
         return a
     return a.quantize(Decimal(1).scaleb(-max(decimals, -20)), context=EXACT)
 
 
-def divided(
+def check_divisor(
     operation: Callable[[Decimal, Decimal], Decimal],
 ) -> Callable[[Decimal, Decimal], Decimal]:
-    def checked(a: Decimal, b: Decimal) -> Decimal:
+    def operate(a: Decimal, b: Decimal) -> Decimal:
         if b == 0:
             raise Fault("DIVIDE_BY_ZERO")
         return operation(a, b)
 
-    return checked
+    return operate
 
 
 OPERATIONS: dict[str, tuple[Callable[[int, int], int], Callable[[Decimal, Decimal], Decimal]]] = {
     "+": (t.add, EXACT.add),
     "-": (t.subtract, EXACT.subtract),
     "*": (t.multiply, EXACT.multiply),
-    "/": (t.divide, divided(EXACT.divide)),
-    "%": (t.modulo, divided(remainder)),
-    "ROUND": (t.round_to, rounded),
+    "/": (t.divide, check_divisor(EXACT.divide)),
+    "%": (t.modulo, check_divisor(remainder)),
+    "ROUND": (t.round_to, round_decimal),
 }
 
 EDGES = (LOWEST, LOWEST + 1, -(2**31 // 1000), -1_000_000, -1001, -1000, -999, -501, -500, -499, -2,

@@ -1,4 +1,5 @@
-"""What a release compiled compiles still, and a robot does the same, but for what Breaking names.
+"""Programs of earlier releases still compile and act the same, except for changes listed as
+Breaking.
 
 `programs_of_0_2_0.txt` has the programs of the documents, examples, cases, lessons and pupils of
 that version, with the trace that its `tsc run` printed: a row `= robot`, the program, and rows of
@@ -32,8 +33,8 @@ from tiniscript.base.words import VERSION_OF_WORD, WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.library.named_robot import shipped_name_in
 
-READINGS = (50, 9, 300, 20)  # of each sensor, as far as it reaches
-ROWS = 12  # of a trace that are written out
+READINGS = (50, 9, 300, 20)  # values of each sensor within its range
+ROWS = 12  # rows of a trace that are printed
 
 
 def versions() -> list[str]:
@@ -52,8 +53,8 @@ def trace_of(old: ReleasedProgram) -> str:
     }  # fmt: skip
     trace = str(run(old.text, old.robot, sensors=sensors, max_time=20, max_steps=100_000))
     rows = trace.splitlines()
-    shown = "".join(f"> {row}\n" for row in rows[:ROWS])
-    return shown + f"> ... {len(rows)} rows, {zlib.crc32(trace.encode()):08x}\n" * (
+    shown_text = "".join(f"> {row}\n" for row in rows[:ROWS])
+    return shown_text + f"> ... {len(rows)} rows, {zlib.crc32(trace.encode()):08x}\n" * (
         len(rows) > ROWS
     )
 
@@ -67,9 +68,9 @@ def of_this_version() -> Iterator[ReleasedProgram]:
     for path in sorted((ROOT / "examples").glob("*.ts")):
         yield ReleasedProgram(example_robot(path), path.read_text(encoding="utf-8"), "")
     for case in all_cases():
-        named = re.search(r"(?m)^robot = (\w+)", case.parts.get("senses", ""))
+        named_match = re.search(r"(?m)^robot = (\w+)", case.parts.get("senses", ""))
         yield ReleasedProgram(
-            named[1] if named else "tinibot", case.parts.get("tiniscript", ""), ""
+            named_match[1] if named_match else "tinibot", case.parts.get("tiniscript", ""), ""
         )
     for folder in catalogue.folders():
         robot = catalogue.load(folder).robot
@@ -77,7 +78,7 @@ def of_this_version() -> Iterator[ReleasedProgram]:
             yield from (ReleasedProgram(robot, answer.program, "") for answer in answers)
 
 
-def written() -> str:
+def write_release_file() -> str:
     """Return the file of this version."""
     before = [version for version in versions() if version != __version__]
     earlier = {old[:2] for version in before for old in released_programs(version)}
@@ -128,7 +129,8 @@ def test_of_those_with_a_newer_word_as_a_name_it_is_told_since_when() -> None:
         )
         word = message.message.split()[0]
         assert message.fix.startswith(f"{word}_1")
-        new = re.sub(rf"(?i)\b{word}\b", f"{word}_1", old.text)  # as it says
+        # The rename that the message suggests.
+        new = re.sub(rf"(?i)\b{word}\b", f"{word}_1", old.text)
         assert trace_of(old._replace(text=new)) == old.trace
 
 
@@ -153,4 +155,4 @@ def test_each_release_has_its_programs() -> None:
 
 
 if __name__ == "__main__":
-    file_of_version(__version__).write_text(written(), encoding="utf-8")
+    file_of_version(__version__).write_text(write_release_file(), encoding="utf-8")

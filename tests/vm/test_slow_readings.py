@@ -19,7 +19,7 @@ from tests.machines.host import host as host_machine
 from tests.machines.pace import ECHO, Pace, a_pace, trace_at
 from tests.oracle.interpreter import PAPER_KIT, run
 from tests.oracle.task_programs import rival_program, task_program
-from tests.support.campaign import each_seed, wanted
+from tests.support.campaign import each_seed, make_options
 from tests.support.kits import KITS
 from tiniscript import compile_text
 from tiniscript.vm.tasks import machine_of
@@ -120,7 +120,7 @@ TASK;M(20, 30);F(FOREVER, 40) UNTIL(LIGHT_L > 5 AND DISTANCE < 10);SHOW(1);END_T
 
 @each_machine
 def test_a_wait_is_looked_at_whoever_has_the_motors(machine: Run) -> None:
-    """And so is the condition of a WHEN, or anything else that reads."""
+    """The same holds for the condition of a WHEN, or anything else that reads."""
     image = compile_text(
         """TASK;W(0.02);B(0.2, 50);END_TASK
 TASK;W(FOREVER) UNTIL(DISTANCE < 10);SHOW(1);END_TASK
@@ -172,4 +172,4 @@ def test_random_programs_on_each_machine(machine: Run) -> None:
 
 if __name__ == "__main__":
     both = [MACHINES[name][0] for name in ("python", "host")]
-    each_seed(partial(check_program, machines=both), wanted(100_000, 0))
+    each_seed(partial(check_program, machines=both), make_options(100_000, 0))

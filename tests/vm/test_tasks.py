@@ -81,7 +81,7 @@ def test_where_a_call_returns_is_no_part_of_the_meaning(budget: int) -> None:
 
 @pytest.mark.parametrize("asks", [1, 3])
 def test_a_turn_that_waits_for_the_robot_leaves_no_value(asks: int) -> None:
-    """And where readings and room take calls, but no time, each task does the same."""
+    """If readings and room take calls but no time, each task acts the same."""
     for seed in range(60):
         text, readings = task_program(random.Random(seed))
         senses = Senses(readings, MAX_MS)
@@ -102,7 +102,7 @@ def test_others_go_on_while_a_reading_is_not_ready() -> None:
 
 
 def test_the_first_turn_of_the_main_task_waits_for_its_reading() -> None:
-    """What it sets first is there for all."""
+    """Its first assignments are visible to all."""
     senses = Senses({"DISTANCE": [50_000]}, 30)
     robot = SlowRobot(senses, 3)
     machine = machine_for("N = DISTANCE;TASK;SHOW(N);END_TASK", robot, senses)
@@ -112,7 +112,7 @@ def test_the_first_turn_of_the_main_task_waits_for_its_reading() -> None:
 
 
 def test_a_late_task_goes_by_its_own_clock_for_20_ms() -> None:
-    """As a program without tasks does; each task for itself."""
+    """Each task does this like a program without tasks."""
     text = "TASK;LOOP(3);W(0.01);SHOW(1);END_LOOP;END_TASK;LOOP(3);W(0.1);SHOW(2);END_LOOP"
     senses = Senses({}, 1000)
     robot = TracedRobot(KIT, lists_of(KIT, senses))

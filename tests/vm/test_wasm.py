@@ -43,10 +43,10 @@ SHOWS = [BY_NAME[name].code for name in ("SHOW", "SHOW_YES_NO")]
 def test_the_module_is_made_from_these_sources(tmp_path: Path) -> None:
     """Byte for byte, wherever they are."""
     copy = Path(shutil.copytree(ROOT / "vm_arduino", tmp_path / "some where" / "else"))
-    for module in wasm.MODULES:  # which were made here, or somewhere else again
-        kept = (ROOT / module.path).read_bytes()
+    for module in wasm.MODULES:  # the modules may have been built here or elsewhere
+        kept_bytes = (ROOT / module.path).read_bytes()
         stale = f"{module.path} is stale. Run: {wasm.COMMAND}"
-        assert wasm.build(copy, module) == kept, stale
+        assert wasm.build(copy, module) == kept_bytes, stale
 
 
 @needs_zig
@@ -65,7 +65,7 @@ def test_another_machine_is_another_module(
     source.write_text(text.replace("kLateMs = 20", "kLateMs = 21"), encoding="utf-8")
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
     monkeypatch.setattr(wasm, "ROOT", tmp_path)
-    built = cache(wasm.build)  # the same each time, as the test before this one says
+    built = cache(wasm.build)  # the same each time, as the previous test shows
     monkeypatch.setattr(wasm, "build", built)
     assert wasm.main(["--check"]) == 1
     output = capsys.readouterr().err
@@ -91,8 +91,8 @@ def test_the_module_imports_the_robot_alone() -> None:
     from wasmtime import Engine, Module
 
     machine = {"motors", "off", "read", "beep", "show", "set"}
-    imported = {wasm.MACHINE: machine, wasm.ROBOT: {"look"}, wasm.ROBOT_ESP32: {"look"}}
-    for value, names in imported.items():
+    imported_modules = {wasm.MACHINE: machine, wasm.ROBOT: {"look"}, wasm.ROBOT_ESP32: {"look"}}
+    for value, names in imported_modules.items():
         data = (ROOT / value.path).read_bytes()
         module = Module(Engine(), data)
         assert {import_type.module for import_type in module.imports} == {"robot"}
@@ -140,7 +140,7 @@ def test_without_wasmtime_the_next_step_is_said(tsc: Tsc, monkeypatch: pytest.Mo
 
 
 def test_python_runs_without_wasmtime() -> None:
-    """Nobody waits for what they did not ask for."""
+    """Optional parts are not loaded."""
     modules = modules_imported_by(
         "from tiniscript.cli import main; assert main(['run', '-e', 'F(1, 50)']) == 0"
     )
@@ -192,10 +192,10 @@ def test_refused_images() -> None:
     from tiniscript.vm.wasm import WasmImage
 
     good = compile_text("SHOW(DISTANCE)", KIT).image
-    broken = [good[:length] for length in range(len(good))]
-    broken += [good[:k] + bytes([good[k] ^ 255]) + good[k + 1 :] for k in range(len(good))]
-    broken += [good + b"?", good + bytes(60_000), good + bytes(100_000)]
-    for data in broken:
+    broken_bytes = [good[:length] for length in range(len(good))]
+    broken_bytes += [good[:k] + bytes([good[k] ^ 255]) + good[k + 1 :] for k in range(len(good))]
+    broken_bytes += [good + b"?", good + bytes(60_000), good + bytes(100_000)]
+    for data in broken_bytes:
         with pytest.raises(ImageRefused) as ours:
             unpack(data)
         with pytest.raises(ImageRefused) as theirs:
@@ -261,13 +261,13 @@ def test_a_slow_robot_and_any_beginning(begin_ms: int, budget: int) -> None:
     from tiniscript.vm.wasm import WasmImage
 
     kit = robots.load("grabber").kit
-    compiled = compile_text(PROGRAM, kit)
-    assert compiled.is_right, compiled.diagnostics
-    loaded = WasmImage(compiled.image, kit)
+    compilation = compile_text(PROGRAM, kit)
+    assert compilation.is_right, compilation.diagnostics
+    wasm_image = WasmImage(compilation.image, kit)
     runs = []
-    for make in (Machine, loaded.machine):
+    for make in (Machine, wasm_image.machine):
         robot = Slow()
-        machine: AnyMachine = make(compiled.code, robot, len(kit.readings), 1, begin_ms)
+        machine: AnyMachine = make(compilation.code, robot, len(kit.readings), 1, begin_ms)
         now_ms, calls = begin_ms, []
         for _ in range(200):
             status = machine.tick(now_ms, budget)
@@ -296,8 +296,8 @@ def test_what_a_robot_raises_comes_out() -> None:
         def motors(self, left: int, right: int) -> None:
             raise OSError("no motors")
 
-    compiled = compile_text("F(1, 50)", KITS[0][1])
-    machine = WasmImage(compiled.image, KITS[0][1]).machine(compiled.code, Broken())
+    compilation = compile_text("F(1, 50)", KITS[0][1])
+    machine = WasmImage(compilation.image, KITS[0][1]).machine(compilation.code, Broken())
     with pytest.raises(OSError, match="no motors"):
         machine.tick(0, 10)
 
@@ -321,7 +321,7 @@ class Narrow(Slow):
 
 
 def test_both_machines_say_which_show_a_value_is_of() -> None:
-    """Of random tasks, whose values wait while others go on."""
+    """For random tasks, whose values wait while others continue."""
     from tiniscript.vm.wasm import WasmImage
 
     kit, waited = KITS[0][1], 0

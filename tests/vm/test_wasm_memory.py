@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-LIMIT_BYTES = 1 << 30  # of addresses: less than wasmtime by itself takes for one memory
+LIMIT_BYTES = 1 << 30  # limit of the address space: less than wasmtime needs for one memory
 MACHINES = """
 from contextlib import closing
 from tiniscript import compile_text, robots
@@ -27,8 +27,8 @@ profile, world = robots.load("tinibot"), load("obstacles")
 """
 
 
-def limited(code: str) -> str:
-    """Return what Python code prints that has LIMIT_BYTES for its addresses."""
+def run_with_limit(code: str) -> str:
+    """Return the output of Python code with an address space of LIMIT_BYTES."""
     limit = f"import resource\nresource.setrlimit(resource.RLIMIT_AS, ({LIMIT_BYTES},) * 2)\n"
     completed = subprocess.run(
         [sys.executable, "-c", limit + code], capture_output=True, text=True, check=False
@@ -48,11 +48,11 @@ def limited(code: str) -> str:
 def test_two_thousand_machines_after_each_other(what: str) -> None:
     """However one ends: forgotten, refused, or closed while something still knows it."""
     code = f"{MACHINES}\nfor k in range(2000):\n    {what}\nprint(k + 1)"
-    assert limited(code) == "2000\n"
+    assert run_with_limit(code) == "2000\n"
 
 
 def test_two_hundred_machines_at_once() -> None:
-    assert limited(f"{MACHINES}\nprint(len([loaded() for k in range(200)]))") == "200\n"
+    assert run_with_limit(f"{MACHINES}\nprint(len([loaded() for k in range(200)]))") == "200\n"
 
 
 def test_a_virtual_robot_is_switched_off_and_on() -> None:
@@ -62,11 +62,11 @@ for k in range(1000):
     robot.power_cycle()
     robot.step(robot.now_ms + 10)
 print(k + 1)"""
-    assert limited(code) == "1000\n"
+    assert run_with_limit(code) == "1000\n"
 
 
 def test_many_virtual_robots_after_each_other() -> None:
     code = (
         f"{ROBOTS}\nfor k in range(1000):\n    VirtualRobot(profile, world).step(10)\nprint(k + 1)"
     )
-    assert limited(code) == "1000\n"
+    assert run_with_limit(code) == "1000\n"

@@ -19,7 +19,7 @@ from tests.support.wired_robots import (
     MOTORS,
     pins_of,
     robot_with,
-    wired,
+    wire_driver,
     with_discs,
 )
 from tiniscript import robots
@@ -66,20 +66,20 @@ each_robot = pytest.mark.parametrize("robot", ROBOTS.values(), ids=list(ROBOTS))
 @pytest.mark.parametrize("driver", DRIVERS.values(), ids=DRIVER_IDS)
 def test_every_driver_is_drawn_with_all_its_pins(driver: Driver) -> None:
     where = f"the driver {driver.name} of {driver.used_by}"
-    connected = wired(driver, CHIPS["mega"], set())
+    connected_wiring = wire_driver(driver, CHIPS["mega"], set())
     for yes_no in ("pull_up", "yes_is_low"):
         for setting in (0, 1):
-            settings = {**connected.settings, yes_no: setting}
+            settings = {**connected_wiring.settings, yes_no: setting}
             device = Device("X", "", "V", 0, 10 * ONE)
             for sees in ("light", "touch"):
                 shape = parts.shape_of(
                     driver.used_by,
-                    connected._replace(settings=settings),
+                    connected_wiring._replace(settings=settings),
                     device,
                     Place(0, 0, 0, sees),
                 )
                 keys = [terminal.pin_key for terminal in shape.terminals if terminal.pin_key]
-                assert sorted(keys) == sorted(connected.pins), (
+                assert sorted(keys) == sorted(connected_wiring.pins), (
                     f"{where} has pins that are not drawn"
                 )
                 assert shape.icon in ICONS
@@ -107,18 +107,18 @@ def test_every_pin_is_in_the_table_and_in_the_drawing_and_every_wire_has_a_row(
     link = set(chip.link_pins) if plan.has_radio else set()
     names = {chip.pin_name(pin) for pin in pins_of(robot) | link}
     assert {row[1] for row in wire_rows(plan)[1:]} == names
-    shown = [text.split(" ")[0] for text in texts_of(drawing_of(plan))]
-    assert names <= set(shown)
+    shown_texts = [text.split(" ")[0] for text in texts_of(drawing_of(plan))]
+    assert names <= set(shown_texts)
     numbers = [wire.number for wire in plan.wires]
     assert numbers == list(range(1, len(names) + (not plan.has_lamp)))
     for number in numbers:
-        assert shown.count(str(number)) >= 2, "a wire has its number at both ends"
+        assert shown_texts.count(str(number)) >= 2, "a wire has its number at both ends"
     page = page_of(plan)
-    # Of pins, of power and of GND: each end that is joined has its own row to tick.
+    # Ends at pins, power and GND: each joined end has a row to tick.
     wires, rails = (block.rows[1:] for block in page if block.kind == "ticks")
     assert len(wires) == len(plan.wires) + plan.has_lamp
-    joined = [row[2] for row in rails]
-    assert len(joined) == len(set(zip((row[0] for row in rails), joined, strict=True)))
+    joined_names = [row[2] for row in rails]
+    assert len(joined_names) == len(set(zip((row[0] for row in rails), joined_names, strict=True)))
     for part in plan.parts:
         for end in part.ends:
             if end.rail:
@@ -130,7 +130,9 @@ def test_every_pin_is_in_the_table_and_in_the_drawing_and_every_wire_has_a_row(
 
 @each_robot
 def test_each_rail_has_one_tag_at_the_board(robot: Robot) -> None:
-    """Beside the first of its pins; the other tags are at parts, of which some have several."""
+    """The tag is beside the first of its pins; other tags are at parts, some of which have
+    several.
+    """
     plan = plan_of(robot, "en")
     left, _, width, _ = layout_of(plan).board
     beside = (f"{left - 29}", f"{left + width + 29}")
@@ -185,7 +187,7 @@ def test_a_battery_has_the_resistors_that_its_range_asks_for() -> None:
 
 @pytest.mark.parametrize("name", robots.names())
 def test_no_pin_gets_more_than_it_takes(name: str) -> None:
-    """What comes from a part with 5 V and goes to the pin, by the resistors on its way.
+    """The voltage from a 5 V part to the pin, through its resistors.
 
     Seen from the pin there is `series_resistor`, then `ground_resistor`, then `far_resistor`:
     nothing flows through `series_resistor`, so the pin has the volts of the middle.
@@ -258,7 +260,7 @@ def _solid(layout: Layout) -> list[tuple[int, int, int, int]]:
 
 
 class Elements(HTMLParser):
-    """What elements a page has, and what they refer to."""
+    """The elements of a page, and their references."""
 
     def __init__(self, page: str) -> None:
         super().__init__()
@@ -278,9 +280,10 @@ HOSTILE = "</text></svg><script src=//x>&amp;\"'**|`](http://x) \u202e{robot}"
 
 def test_a_hostile_label_is_only_text() -> None:
     page = (Path(robots.__file__).parent / "grabber.toml").read_text(encoding="utf-8")
-    quoted = HOSTILE[:60].replace("\\", "\\\\").replace('"', '\\"').replace("\u202e", "")
+    quoted_text = HOSTILE[:60].replace("\\", "\\\\").replace('"', '\\"').replace("\u202e", "")
     robot = read(
-        page.replace('"thermometer"', f'"{quoted}"').replace('"Grabber"', f'"{quoted}"'), "x"
+        page.replace('"thermometer"', f'"{quoted_text}"').replace('"Grabber"', f'"{quoted_text}"'),
+        "x",
     )
     assert "<script" in robot.labels["en"]["TEMPERATURE"]
     plain = plan_of(robots.load("grabber"), "en")
@@ -372,15 +375,15 @@ def test_the_finished_robot_has_each_sensor_where_the_body_says(robot: Robot) ->
         svg = finished_of(plan)
         tree = Tree.fromstring(svg)
         _, _, width, height = map(float, tree.attrib["viewBox"].split())
-        shown = texts_of(svg)
+        shown_texts = texts_of(svg)
         for name, place in robot.body.places.items():
-            assert name in shown
+            assert name in shown_texts
             x, y = places_of(plan, place)
             assert f'<circle cx="{x:g}" cy="{y:g}" r="9"' in svg
         for element in tree.iter(f"{SVG}circle"):
             assert 0 < float(element.attrib["cx"]) < width
             assert 0 < float(element.attrib["cy"]) < height
-        assert f"{robot.body.length_cm:g} × {robot.body.width_cm:g} cm" in shown
+        assert f"{robot.body.length_cm:g} × {robot.body.width_cm:g} cm" in shown_texts
 
 
 @pytest.mark.parametrize(("size_cm", "wheel_cm"), [(40, (6.5, 2.6)), (10, (4, 2))])
@@ -398,7 +401,7 @@ def test_a_small_plate_is_drawn_with_small_wheels(
     drawn = [float(wheels[0].attrib[side]) / (520 / size_cm) for side in ("height", "width")]
     assert len(wheels) == 2 and drawn == pytest.approx(wheel_cm)
     left, right = (float(wheel.attrib["x"]) for wheel in wheels)
-    assert right - left == pytest.approx(520)  # on the axle, which is as wide as the plate
+    assert right - left == pytest.approx(520)  # length of the axle, which is the plate's width
 
 
 def test_a_gripper_is_drawn_around_its_button_and_another_servo_has_an_arm() -> None:
@@ -415,7 +418,7 @@ def test_a_gripper_is_drawn_around_its_button_and_another_servo_has_an_arm() -> 
         x, y = places_of(plan, grabber.body.places["BUTTON"])
         for side, points in zip((-1, 1), jaws, strict=True):
             assert all((point[0] - x) * side > 9 for point in points)  # beside the button's circle
-            assert points[-1][1] < y < points[0][1]  # from behind it to ahead of it
+            assert points[-1][1] < y < points[0][1]  # between a point behind it and one in front
     bare = grabber._replace(body=grabber.body._replace(places={}))
     svg = finished_of(plan_of(bare, "en"))
     assert "GRIPPER" in texts_of(svg) and "<path" not in svg and 'stroke-width="7"' in svg
@@ -468,7 +471,7 @@ def test_a_page_has_both_drawings_and_fits_a_phone() -> None:
     page = html_of(plan_of(robots.load("tinibot"), "es"))
     assert page.count("<svg") == 2
     assert '<div class="drawing">' in page and '<div class="finished">' in page
-    assert ".drawing { overflow-x: auto; }" in page  # with a line that says so
+    assert ".drawing { overflow-x: auto; }" in page  # the page explains the scrolling
     assert '<p class="slide">Desliza el dibujo' in page
 
 

@@ -2,7 +2,7 @@
 
 Runs each benchmark as the page names it, as a process of its own, one after the other, and tells
 which of them failed; each fills in the tables of its section (`page`). Takes minutes; times of this
-computer mean something only where nothing else runs.
+computer mean something only if nothing else runs.
 """
 
 from __future__ import annotations

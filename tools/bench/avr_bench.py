@@ -28,12 +28,12 @@ INSTALL_COMMAND = "apt-get install gcc-avr avr-libc binutils-avr simavr"
 
 
 def why_missing() -> str:
-    """Return why there is no simulated chip, or nothing."""
+    """Return the reason why there is no simulated chip, or ""."""
     names = [name for name in ("avr-g++", "simavr") if not shutil.which(name)]
     return f"no {' and no '.join(names)} ({INSTALL_COMMAND})" if names else ""
 
 
-# What a program needs besides the machine.
+# Sources of a program besides the machine.
 EXTRA_SOURCES = {
     "store": ("store/store.cpp", "boards/avr/eeprom.cpp"),
     "reader": tuple(

@@ -21,7 +21,7 @@ from tools import ROOT
 CASES = ROOT / "tests" / "cases"
 LESSONS = ROOT / "compiler" / "tiniscript" / "lessons"
 BYTES_IN_ISA_1_0 = 1066  # bytes of the same programs in the instruction set 1.0
-STATEMENTS = 259  # that they had when BYTES_IN_ISA_1_0 was measured
+STATEMENTS = 259  # statements of the programs when BYTES_IN_ISA_1_0 was measured
 
 
 class Measurement(NamedTuple):

@@ -69,7 +69,7 @@ def print_start_ratio() -> None:
             return subprocess.run(python_command, check=True, capture_output=True)
 
         command = start("compile", str(program))
-        command()  # what is cached is cached now
+        command()  # fills the caches
         ratio = median_pair(command, start_python, 21)[-1]
     print(f"A whole `tsc compile` takes about {ratio:.1f} times as long as `python -c pass`.")
 

@@ -1,7 +1,7 @@
-"""Prints how much flash each motor driver takes on an Uno, beside what `tinibot` takes with it.
+"""Prints the flash that each motor driver takes on an Uno, beside that of `tinibot` with it.
 
 Builds tinibot with PlatformIO as `firmware_size` does, in a copy of the project, once for each
-driver, with its distance sensor where no shield has pins. What does not fit is what `tsc firmware`
+driver, with its distance sensor if no shield has pins. What does not fit is what `tsc firmware`
 then builds without tasks.
 """
 
@@ -21,7 +21,7 @@ from tiniscript.robots.profile import Robot, Wiring
 from tools.bench import page
 from tools.bench.firmware_size import PROJECT, measure
 
-OWN_DRIVER = "l298n"  # by tinibot
+OWN_DRIVER = "l298n"  # tinibot's driver
 ENVIRONMENT = "uno"
 DRIVERS_IN_ORDER = sorted(drivers_for("motors"), key=lambda name: name != OWN_DRIVER)
 ROWS = [f"`{name}`" for name in DRIVERS_IN_ORDER]

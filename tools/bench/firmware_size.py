@@ -20,9 +20,9 @@ from tools.bench import firmware_stack, page
 from tools.builds.platformio_offline import config_of
 
 PROJECT = ROOT / "vm_arduino"
-DEFAULT = "tinibot"  # where the name of an environment has no robot
+DEFAULT = "tinibot"  # robot of environments whose name has none
 NEW_NANO = "nano_new"
-# Not what a shipped robot gets.
+# Variants that no shipped robot gets.
 SMALLER_ENVIRONMENTS = (
     *(name for name, _ in building.SMALLER_FIRMWARE.values()),
     *building.ENVIRONMENT_WITH_BREAKPOINTS.values(),
@@ -56,7 +56,7 @@ def parts_of(name: str) -> tuple[str, str]:
 
 
 def row_of(robot: str, board: str) -> str:
-    """Return the page's row of what is built for a robot with a board: `liner`, Nano."""
+    """Return the page's row for a build of a robot with a board: `liner`, Nano."""
     return f"`{robot}`, {board.capitalize()}"
 
 

@@ -1,4 +1,4 @@
-"""What the whole sketch takes of the stack at its heaviest, on a simulated board.
+"""The stack usage of the whole sketch at its deepest, on a simulated board.
 
 The RAM is painted before power-on; then everything that goes deep happens, and what nobody has
 written in the end has never been stack. The deepest place of the program and the deepest interrupt
@@ -26,11 +26,11 @@ from tools.uno import CYCLES_PER_MS, HERTZ, Stack, Uno
 
 LEAST_FREE = 150  # bytes
 HEAP_START_SYMBOL = "_end"  # the symbol after all variables
-RAM_START = 0x800000  # where avr-nm begins to count it
+RAM_START = 0x800000  # first address of RAM in avr-nm
 BOARDS = {"uno": "uno", "nano": "uno", "mega": "mega"}  # the simulated one for each
-CALLS_AT_ONCE = 8  # at once
+CALLS_AT_ONCE = 8  # most calls in parallel
 MOST_STEPS = 40
-# What is typed, and what the robot says: 16 values that wait, brackets, blocks, long answers.
+# Typed lines, and the robot's output: 16 waiting values, brackets, blocks, long answers.
 TYPED_LINES = (
     "HELP\n",
     "PING|CHECK_CONNECTION\n",
@@ -45,12 +45,12 @@ TYPED_LINES = (
 )
 ANSWERS = ("END_LOOP", ", kit ", "// -5", "// TRUE", "// 2", "1: ", "-2147483.647", "FAULT DIVIDE")
 FLICKER_COUNT, IN_INTERRUPT_CYCLES = 200, 40
-SAMPLE_BITS = 9.5625  # from the start bit of a byte until the chip has it
+SAMPLE_BITS = 9.5625  # bits from a byte's start bit until the chip has it
 DIVIDES_BY_ZERO = "X = 0; X = 5 / X"
 
 
 def measure(firmware: Path, robot: Robot, board: str, has_breakpoints: bool = False) -> Stack:
-    """Run a firmware through everything that goes deep. Raises RuntimeError where it does not.
+    """Run a firmware through everything that goes deep. Raises RuntimeError if it does not.
 
     `board` is that of the firmware: it may be another one than that of the robot's profile. With
     breakpoints it reads no text.
@@ -65,7 +65,7 @@ def measure(firmware: Path, robot: Robot, board: str, has_breakpoints: bool = Fa
 
 
 def connect(uno: Uno, robot: Robot, baud: int = 0, keys: Keys | None = None) -> Wired:
-    """Let a board begin, and put a session at its line, with the robot's baud if none is given."""
+    """Start a board with a session on its line, by default at the robot's baud rate."""
     uno.run_ms(300)
     session = Session(1, baud or robot.board.baud, robot.kit.fingerprint, keys=keys)
     return Wired(uno, session)
@@ -80,7 +80,7 @@ def heap_start(firmware: Path) -> int:
 
 
 def surround(uno: Uno, robot: Robot) -> None:
-    """Give its sensors something to measure."""
+    """Set obstacles for its sensors."""
     for device in robot.board.sensors:
         if device.driver == "hc_sr04":
             uno.sonar(pin(robot, device.pins["trigger"]), pin(robot, device.pins["echo"]), 40)
@@ -92,38 +92,40 @@ def pin(robot: Robot, number: int) -> str:
     return f"D{number}" if number < first_analog else f"A{number - first_analog}"
 
 
-def run_deep(wired: Wired, robot: Robot, has_breakpoints: bool) -> None:
-    uno, session, kit = wired.uno, wired.session, robot.kit
+def run_deep(wired_uno: Wired, robot: Robot, has_breakpoints: bool) -> None:
+    uno, session, kit = wired_uno.uno, wired_uno.session, robot.kit
     button = pin(robot, robot.board.start_button)
-    require_ok(wired, session.hello())
-    require_ok(wired, session.name(b"sixteen letters!"))
-    require_ok(wired, session.upload(longest_program(kit, robot.board.program_bytes)))
+    require_ok(wired_uno, session.hello())
+    require_ok(wired_uno, session.name(b"sixteen letters!"))
+    require_ok(wired_uno, session.upload(longest_program(kit, robot.board.program_bytes)))
     noise = random.Random(1)
-    for _ in range(30):  # while it drives, measures, plays, shows and is saved
+    for _ in range(30):  # the robot drives, measures, plays, shows and is saved
         uno.send(noise.randbytes(20) + b"\0")
-        wired.run(40)
+        wired_uno.run(40)
     uno.send(b"SI|F(1, 80)\r\n")
-    wired.run(300)
+    wired_uno.run(300)
     uno.send(bytes(8))  # stopped in the interrupt
-    wired.run(600)
-    require_ok(wired, session.status())
-    require_ok(wired, session.fetch())
-    require_ok(wired, session.start())
-    wired.run(500)
-    uno.run_ms(1300)  # and nobody is there any more
-    wired.run(500)
-    require_ok(wired, session.live(image_of(DIVIDES_BY_ZERO, kit).code))
-    wired.run(500)
-    require_ok(wired, session.upload(longest_program(kit, robot.board.program_bytes), runs=False))
-    wired.run(2500)  # it is saved
-    claim(wired, button)
+    wired_uno.run(600)
+    require_ok(wired_uno, session.status())
+    require_ok(wired_uno, session.fetch())
+    require_ok(wired_uno, session.start())
+    wired_uno.run(500)
+    uno.run_ms(1300)  # until the session is gone
+    wired_uno.run(500)
+    require_ok(wired_uno, session.live(image_of(DIVIDES_BY_ZERO, kit).code))
+    wired_uno.run(500)
+    require_ok(
+        wired_uno, session.upload(longest_program(kit, robot.board.program_bytes), runs=False)
+    )
+    wired_uno.run(2500)  # until the program is saved
+    claim(wired_uno, button)
     if has_breakpoints:
-        step_deep(wired)
+        step_deep(wired_uno)
     elif level_of(robot.board.chip, robot.board.discs is not None) is NO_TEXT:
-        drive_a_way(wired, robot)
+        drive_a_way(wired_uno, robot)
     else:
         type_deep(uno, kit)
-    uno.reset("external")  # and looked at when the robot begins
+    uno.reset("external")  # the robot checks its program when it starts
     uno.run_ms(200)
     uno.press(button)
     uno.run_ms(800)
@@ -131,34 +133,34 @@ def run_deep(wired: Wired, robot: Robot, has_breakpoints: bool) -> None:
     uno.run_ms(200)
 
 
-def claim(wired: Wired, button: str) -> None:
+def claim(wired_uno: Wired, button: str) -> None:
     """Claim the robot, show its key and give it up."""
-    request = wired.session.claim(KEY_OWNER)
-    wired.run(300)
-    wired.uno.press(button, 2200)
-    require_ok(wired, request)
-    require_ok(wired, wired.session.identify())
-    require_ok(wired, wired.session.trim())
-    require_ok(wired, wired.session.disown(KEY_OWNER))
+    request = wired_uno.session.claim(KEY_OWNER)
+    wired_uno.run(300)
+    wired_uno.uno.press(button, 2200)
+    require_ok(wired_uno, request)
+    require_ok(wired_uno, wired_uno.session.identify())
+    require_ok(wired_uno, wired_uno.session.trim())
+    require_ok(wired_uno, wired_uno.session.disown(KEY_OWNER))
 
 
-def step_deep(wired: Wired) -> None:
+def step_deep(wired_uno: Wired) -> None:
     """Step through the longest program, which is there; at each halt ask for all that it tells."""
-    session = wired.session
-    require_ok(wired, session.break_at([0]))
-    require_ok(wired, session.start())
+    session = wired_uno.session
+    require_ok(wired_uno, session.break_at([0]))
+    require_ok(wired_uno, session.start())
     for _ in range(MOST_STEPS):
-        wired.run(60)
-        require_ok(wired, session.read_variables())
-        require_ok(wired, session.read_tasks())
-        require_ok(wired, session.resume(RESUME_STEP))
-    require_ok(wired, session.break_at([]))
+        wired_uno.run(60)
+        require_ok(wired_uno, session.read_variables())
+        require_ok(wired_uno, session.read_tasks())
+        require_ok(wired_uno, session.resume(RESUME_STEP))
+    require_ok(wired_uno, session.break_at([]))
 
 
 def type_deep(uno: Uno, kit: Kit) -> None:
     """Type lines that take most of the reader and of its answers; nobody else is there.
 
-    Raises RuntimeError where one is not done.
+    Raises RuntimeError if one is not done.
     """
     uno.run_ms(4000)
     byte_count_before = len(uno.sent_bytes)
@@ -171,26 +173,26 @@ def type_deep(uno: Uno, kit: Kit) -> None:
             raise RuntimeError(f"the robot has not said {answer} but {output}")
 
 
-def drive_a_way(wired: Wired, robot: Robot) -> None:
+def drive_a_way(wired_uno: Wired, robot: Robot) -> None:
     """Go by discs that flicker, and then do not turn: with all that a way takes, until that is a
     fault. Just before a byte comes an edge of the one, and in its interrupt one of the other.
     """
     text = "F(100 CM, 60) UNTIL(DISTANCE < 1)"
-    require_ok(wired, wired.session.live(image_of(text, robot.kit).code))
+    require_ok(wired_uno, wired_uno.session.live(image_of(text, robot.kit).code))
     discs = robot.board.discs
     assert discs
-    uno, bit_cycles = wired.uno, HERTZ / robot.board.baud
+    uno, bit_cycles = wired_uno.uno, HERTZ / robot.board.baud
     begin_cycle = uno.cycle + CYCLES_PER_MS
     uno.send(b"noise" * (FLICKER_COUNT // 5) + b"\0", begin_cycle)
     for k in range(FLICKER_COUNT):
         cycle = begin_cycle + round((10 * k + SAMPLE_BITS) * bit_cycles) - k
         for number, name in enumerate(discs.pins.values()):
             uno.drive(pin(robot, name), k % 2 == 0, at=cycle + number * IN_INTERRUPT_CYCLES)
-    wired.run(1500)
+    wired_uno.run(1500)
 
 
-def require_ok(wired: Wired, request: PendingRequest[Any]) -> None:
-    status = wired.until(request)
+def require_ok(wired_uno: Wired, request: PendingRequest[Any]) -> None:
+    status = wired_uno.until(request)
     if status != 0:
         raise RuntimeError(f"the robot has answered {status}")
 

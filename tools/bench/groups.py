@@ -36,7 +36,7 @@ ROWS = (
     f"{PUPIL_COUNT} pupils, until the others of a group have a change: median, 95 of 100",
     f"{PUPIL_COUNT} pupils, share of a core, and memory in all",
 )
-CHANGE_INTERVAL_S = (2.0, 6.0)  # of a pupil
+CHANGE_INTERVAL_S = (2.0, 6.0)  # range of time between a pupil's changes
 PROGRAM = "F(1, 80)\nLOOP(3)\nB(1, 40)\nEND_LOOP\nS\n"
 TIMEOUT_S = 30.0
 MIB = 1 << 20
@@ -69,17 +69,17 @@ class Pupil:
         answer = self._sender.ask("group_join", name=self.group, text=PROGRAM)
         self._page = Page.of(answer["page"], answer)
         self._random_source = random.Random(number)
-        self.seen_s: dict[int, float] = {}  # when each change was heard of, by its number
+        self.seen_s: dict[int, float] = {}  # arrival time of each change, by its number
         self.sent_s: dict[int, float] = {}
 
     def listen(self, end_s: float) -> None:
-        number = saw = 0
+        number = saw_count = 0
         epoch, name = self._page.epoch, self._page.name
         while time.monotonic() < end_s:
-            request = {"page": name, "since": number, "epoch": epoch, "saw": saw}
+            request = {"page": name, "since": number, "epoch": epoch, "saw": saw_count}
             answer = self._listener.ask("group", **request, waits=True)
             heard_s = time.monotonic()
-            saw = answer["saw"]
+            saw_count = answer["saw"]
             for change_number in range(number + 1, answer["n"] + 1):
                 self.seen_s[change_number] = heard_s
             number = answer["n"]
@@ -105,8 +105,8 @@ class Pupil:
 
 def serve_class(pipe: Connection) -> None:
     """Serve one, whose address and code go through the pipe, until something comes back."""
-    with class_of_many() as taught:
-        pipe.send((taught.server.address, taught.room.code))
+    with class_of_many() as class_:
+        pipe.send((class_.server.address, class_.room.code))
         begin_s = time.process_time()
         pipe.recv()
         pipe.send(

@@ -23,16 +23,16 @@ from tools.bench.link import KIT, MOTORS, ROBOT, on_each_baud
 from tools.uno import CYCLES_PER_MS, Uno
 
 PAD_PROGRAM = "SI|LOOP(FOREVER); M(PAD_Y, PAD_Y); END_LOOP"
-EXAMPLE = ROOT / "examples" / "remote.ts"  # it looks 20 times in a second
+EXAMPLE = ROOT / "examples" / "remote.ts"  # a program that checks the keys 20 times a second
 PAD_AHEAD = RemoteState(0, 0, 80)
 PWM_PINS = MOTORS[:2]
 TRY_COUNT = 300
-HELD_MS = (100, 400)  # and let go
+HELD_MS = (100, 400)  # durations of holding and releasing keys
 SAY_INTERVAL_MS = 100
-RECONNECT_MS = 400  # after a loss, until words arrive
-LOST_MS = HOLD_MS + 50  # it stays attached
-# At most, at the slowest, where the program looks at once, by baud. What is let go may come just
-# after what is held was said anew, and waits for the answer or for GAP_MS.
+RECONNECT_MS = 400  # time from a loss until words arrive
+LOST_MS = HOLD_MS + 50  # loss that keeps the connection attached
+# The slowest times by baud for a program that checks at once. A release may come just after a
+# repeated state, and wait for its answer or for GAP_MS.
 MOST_HELD_MS = {9600: 25.0, 115_200: 4.0}
 MOST_LET_GO_MS = {9600: 25.0 + GAP_MS, 115_200: 8.0}
 MOST_LOST_MS = HOLD_MS + 3  # the clock and the program look after that time
@@ -59,20 +59,20 @@ class Hand:
     def __enter__(self) -> Hand:
         return self
 
-    def __exit__(self, *raised: object) -> None:
+    def __exit__(self, *signal_arguments: object) -> None:
         self._board.close()
 
-    def change(self, pressed: RemoteState) -> float:
-        """Return the ms from a change of what is held to the last of the pins that it changes."""
+    def change(self, pressed_state: RemoteState) -> float:
+        """Return the ms from a change of the held keys to the last change of the pins."""
         begin_cycle, event_count = self._begin()
-        self._hold(pressed)
-        return self._ms_from(begin_cycle, event_count, pressed != NOTHING_PRESSED)
+        self._hold(pressed_state)
+        return self._ms_from(begin_cycle, event_count, pressed_state != NOTHING_PRESSED)
 
     def lose(self) -> float:
         """Return the ms from where a line is lost, over which somebody drives, to motors off."""
         self._hold(PAD_AHEAD, RECONNECT_MS)
         begin_cycle, event_count = self._begin()
-        for _ in range(LOST_MS):  # what both say does not arrive
+        for _ in range(LOST_MS):  # data is lost in both directions
             self._wired.session.poll(self._wired.now_ms)
             self._board.run_ms(1)
         received_cycles = [
@@ -80,10 +80,10 @@ class Hand:
         ]
         return self._ms_from(max([begin_cycle, *received_cycles]), event_count, False)
 
-    def _hold(self, pressed: RemoteState, more_ms: int = 0) -> None:
+    def _hold(self, pressed_state: RemoteState, more_ms: int = 0) -> None:
         for ms in range(more_ms + self._random_source.randint(*HELD_MS)):
-            if ms % SAY_INTERVAL_MS == 0:  # who says nothing for a while holds nothing
-                self._wired.session.press(*pressed)
+            if ms % SAY_INTERVAL_MS == 0:  # a silent person releases the keys
+                self._wired.session.press(*pressed_state)
             self._wired.run(1)
 
     def _begin(self) -> tuple[int, int]:
@@ -92,7 +92,7 @@ class Hand:
         return self._board.cycle, len(self._board.events)
 
     def _ms_from(self, begin_cycle: int, event_count: int, are_on: bool) -> float:
-        """Raises RuntimeError where the motors are not as they must be in the end."""
+        """Raises RuntimeError if the motors are not as they must be in the end."""
         motor_events = [
             event
             for event in self._board.events[event_count:]

@@ -27,7 +27,7 @@ MOVE = BY_NAME["MOVE8_F"].code
 
 
 class UploadTimes(NamedTuple):
-    """Of an upload: its code, ms until its receipt is there, the wire's ms, frames and bytes."""
+    """Times of an upload: its code, ms until its receipt, ms on the wire, frames and bytes."""
 
     code_bytes: int
     duration_ms: int
@@ -41,7 +41,9 @@ class UploadTimes(NamedTuple):
 
 
 class Wire:
-    """One direction: a byte takes its time at the baud, and arrives half a round trip later."""
+    """One direction of a line: bytes take their time at the baud rate, and arrive half a round trip
+    later.
+    """
 
     def __init__(self, baud: int, delay_ms: float) -> None:
         self._byte_ms, self._delay_ms = 10_000 / baud, delay_ms
@@ -55,14 +57,14 @@ class Wire:
             self._queue.append((self._free_ms + self._delay_ms, byte))
 
     def receive(self, now_ms: int) -> bytes:
-        arrived = bytearray()
+        arrived_bytes = bytearray()
         while self._queue and self._queue[0][0] <= now_ms:
-            arrived.append(self._queue.popleft()[1])
-        return bytes(arrived)
+            arrived_bytes.append(self._queue.popleft()[1])
+        return bytes(arrived_bytes)
 
 
 def program(code_bytes: int) -> Image:
-    """Return a program of so many bytes: moves, and what is left of single instructions."""
+    """Return a program of so many bytes: moves, and single instructions for the rest."""
     move_count, stop_count = divmod(code_bytes, 3)
     moves = b"".join(bytes((MOVE, k % 256, k % 101)) for k in range(move_count))
     return unpack(pack("SI", 0, moves + bytes([BY_NAME["STOP"].code]) * stop_count))
@@ -71,7 +73,7 @@ def program(code_bytes: int) -> Image:
 def upload(
     robot: HostFirmware, kit: int, code_bytes: int, baud: int = BAUD,
 ) -> UploadTimes:  # fmt: skip
-    """Upload a program to a robot that has just begun. Raises RuntimeError where it is not done."""
+    """Upload a program to a robot that has just begun. Raises RuntimeError if it is not done."""
     to_robot, from_robot = (Wire(baud, ROUND_TRIP_MS / 2) for _ in range(2))
     session = Session(7, baud, kit)
     image = program(code_bytes)

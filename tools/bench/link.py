@@ -34,7 +34,8 @@ SHORT_PROGRAM = PROGRAMS[0]
 MOST_START_MS = {9600: 25.0, 115_200: 4.0}
 MOST_LIVE_US = 100
 MOST_STOP_US = 12
-MOST_TOGETHER_US = 12.0  # on an ATmega328P; a Mega's timers and ports have longer instructions
+# Limit for an ATmega328P; a Mega's timers and ports need longer instructions.
+MOST_TOGETHER_US = 12.0
 ROWS = (
     f"first start bit of `{SHORT_PROGRAM}` to the motor pins",
     "last byte of the same line, sent by `tsc live`, to the motor pins",
@@ -42,19 +43,20 @@ ROWS = (
     "the same: the median",
     "the same: at most, if everything that can delay a stop happens at the same time",
 )
-OTHER_BOARDS = {  # by environment
+OTHER_BOARDS = {  # keyed by environment
     "nano_liner": "`liner`, Nano", "mega_grabber": "`grabber`, Mega",
     "uno_tinibot2": "`tinibot2`, Uno, with an edge of each disc just before",
     "mega_tinibot2": "`tinibot2`, Mega, with an edge of each disc just before",
 }  # fmt: skip
-UNSHOWN_ENVIRONMENTS = ("mega", "mega_liner")  # they are held to the limit as well
+# Environments that must meet the limit but are not in the table.
+UNSHOWN_ENVIRONMENTS = ("mega", "mega_liner")
 UPLOAD_COUNT = 20  # the main loop is elsewhere each time: the slowest counts
 PHASE_CYCLES = 37
 T = TypeVar("T")
 
 
 class Figures(NamedTuple):
-    """Of one baud: ms and us to the pins at the slowest."""
+    """The slowest times to the pins at one baud rate, in ms and us."""
 
     start_ms: float
     live_us: float
@@ -91,32 +93,34 @@ def first_move(board: Uno, since_cycle: int) -> int:
 
 def measure(firmware: Path, baud: int) -> Figures:
     with Uno(firmware, baud=baud) as board:
-        wired = connect(board, robots.load(ROBOT), baud)
-        require_ok(wired, wired.session.hello())
-        start_ms = max(measure_start(wired, 300 + k)[0] for k in range(UPLOAD_COUNT))
-        live_us = max(measure_start(wired, 300 + k, is_live=True)[1] for k in range(UPLOAD_COUNT))
+        wired_uno = connect(board, robots.load(ROBOT), baud)
+        require_ok(wired_uno, wired_uno.session.hello())
+        start_ms = max(measure_start(wired_uno, 300 + k)[0] for k in range(UPLOAD_COUNT))
+        live_us = max(
+            measure_start(wired_uno, 300 + k, is_live=True)[1] for k in range(UPLOAD_COUNT)
+        )
     stop = stops.slowest(firmware, robots.load(ROBOT), "uno", baud)
     return Figures(start_ms, live_us, stop)
 
 
-def measure_start(wired: Wired, wait_ms: int, *, is_live: bool = False) -> tuple[float, float]:
+def measure_start(wired_uno: Wired, wait_ms: int, *, is_live: bool = False) -> tuple[float, float]:
     """Return ms from a frame's first start bit and us from its end to the pins.
 
     The frame is PROGRAM, or LIVE, which nothing runs before.
     """
-    board, session = wired.uno, wired.session
+    board, session = wired_uno.uno, wired_uno.session
     image = image_of(SHORT_PROGRAM, KIT)
     if is_live:
-        require_ok(wired, session.clear())
+        require_ok(wired_uno, session.clear())
     board.run_to(board.cycle + wait_ms * PHASE_CYCLES)
     begin_cycle = board.cycle
-    require_ok(wired, session.live(image.code) if is_live else session.upload(image))
+    require_ok(wired_uno, session.live(image.code) if is_live else session.upload(image))
     move_cycle = first_move(board, begin_cycle)
     bytes_before_move = [byte for byte in board.received_bytes if byte.cycle <= move_cycle]
     frame_ends = [k for k, byte in enumerate(bytes_before_move[:-1]) if byte.value == 0]
     frame = bytes_before_move[frame_ends[-1] + 1 :]
-    session.stop(wired.now_ms)
-    wired.run(wait_ms)
+    session.stop(wired_uno.now_ms)
+    wired_uno.run(wait_ms)
     return (
         (move_cycle - frame[0].began) / CYCLES_PER_MS,
         (move_cycle - frame[-1].cycle) / CYCLES_PER_MS * 1000,

@@ -1,4 +1,4 @@
-"""How often a robot touches something, and gets stuck: `python -m tools.bench.obstacles`.
+"""The robot's collisions and dead ends: `python -m tools.bench.obstacles`.
 
 Each program drives for half an hour of the robot's time in the world `obstacles`, from 20 places
 that the seed draws, with motors that differ by up to 5 % and readings that differ by up to 2 %. A
@@ -23,7 +23,7 @@ from tiniscript.virtual.robot import Settings, VirtualRobot
 from tools import ROOT
 from tools.bench import page
 
-RUN_SECONDS = 1800  # of the robot's time
+RUN_SECONDS = 1800  # length of a run in the robot's time
 SEED_COUNT = 20
 STUCK_S = 5
 STUCK_CM = 3.0
@@ -61,14 +61,14 @@ def main() -> None:
 
 
 def drive(text: str, seed: int) -> Drive:
-    """Return how a program drives that begins at a place of this seed."""
+    """Return the drive of a program from a place of this seed."""
     random_source = Random(seed)
     profile = robots.load(ROBOT)
     board = profile.board._replace(max_run_seconds=RUN_SECONDS + 60)  # ten minutes would end it
     profile = profile._replace(board=board)
     world = worlds.load("obstacles")
     start = world.start
-    while seed:  # the first one begins where the world says
+    while seed:  # the first one begins at the world's start
         start = Pose(
             random_source.uniform(0, 220),
             random_source.uniform(0, 200),

@@ -13,12 +13,12 @@ from typing import NamedTuple
 from tools import ROOT
 
 PAGE = ROOT / "docs" / "en" / "figures.md"
-# A paragraph that says what measures the figures below it, or a heading.
+# A paragraph about the measurement of the figures below it, or a heading.
 _SECTION_START = re.compile(r"^(?:`python -m ([\w.]+)[^`]*` measures |#)")
 
 
 class Table(NamedTuple):
-    """A table of the page, as it is written: its head, its rule, and its rows."""
+    """A table of the page, as written: its head, its rule, and its rows."""
 
     head: str
     rule: str

@@ -22,7 +22,7 @@ from tools.builds import chips
 SOURCE = ROOT / "vm_arduino" / "src"
 AVR = "ATmega328P (AVR)"
 EMULATED_CHIPS = {f"{chip.board}": chip for chip in chips.CHIPS.values()}
-# As PlatformIO builds the sketch: Arduino's flags, and those of platformio.ini.
+# Flags of PlatformIO: those of Arduino and of platformio.ini.
 SKETCH_FLAGS = (
     *avr_bench.FLAGS, "-std=gnu++11", "-fno-threadsafe-statics", "-Wl,--relax", "-mstrict-X",
     "-fno-gcse", "-fno-move-loop-invariants",
@@ -176,13 +176,13 @@ class Size(NamedTuple):
 
 
 class Part(NamedTuple):
-    """What is built for it: a program, what of it is always used, and what uses the part."""
+    """A measured part: a program, the code it always uses, and the code that uses the part."""
 
     program: str
     always_code: str
     statement: str
-    folders: tuple[str, ...]  # of the sources that are linked, besides the machine
-    flags: tuple[str, ...]  # for the AVR
+    folders: tuple[str, ...]  # folders of linked sources besides the machine
+    flags: tuple[str, ...]  # compiler flags for the AVR
 
 
 MACHINE_ALONE = MACHINE.replace("PORT", "")
@@ -214,14 +214,15 @@ LIMITS = {
 
 
 def why_missing(chip: str) -> str:
-    """Return why a chip cannot be measured here, or nothing."""
+    """Return the reason why a chip cannot be measured here, or ""."""
     if chip != AVR:
         return chips.why_missing(EMULATED_CHIPS[chip])
     return "" if shutil.which("avr-g++") else f"no avr-g++ ({avr_bench.INSTALL_COMMAND}): no {AVR}"
 
 
 def size(name: str, chip: str = AVR) -> Size:
-    """Return what a part adds to its small program. Raises RuntimeError with the compiler's words.
+    """Return the size that a part adds to its small program. Raises RuntimeError with the
+    compiler's output.
 
     On the AVR the stack comes on top.
     """

@@ -44,26 +44,26 @@ def text_of(work: Work, has_loop: bool = True) -> str:
 def per_iteration(firmware: Path, work: Work) -> float:
     """Return the cycles of one time around the loop of a work. Raises WrongResult."""
     with Uno(firmware, baud=ROBOT.board.baud, tells_sleep=False) as board:
-        wired = connect(board, ROBOT)
+        wired_uno = connect(board, ROBOT)
         if work.readings:
             board.analog(SENSOR_PIN, work.readings[0])
-        with_loop, shown_values = _cycles(wired, text_of(work))
+        with_loop, shown_values = _cycles(wired_uno, text_of(work))
         check("the sketch", work, shown_values)
-        without_loop, _ = _cycles(wired, text_of(work, has_loop=False))
+        without_loop, _ = _cycles(wired_uno, text_of(work, has_loop=False))
         return (with_loop - without_loop) / work.loop_count
 
 
-def _cycles(wired: Wired, text: str) -> tuple[int, list[object]]:
-    """Return how long a motor turns while a program runs, and what it shows."""
-    board, session = wired.uno, wired.session
+def _cycles(wired_uno: Wired, text: str) -> tuple[int, list[object]]:
+    """Return the time that a motor turns during a program, and the values shown."""
+    board, session = wired_uno.uno, wired_uno.session
     motor = f"D{ROBOT.board.motors.pins['left_pwm']}"
     image = image_of(text, ROBOT.kit)
     session.events()
     event_count = len(board.events)
-    require_ok(wired, session.upload(image, saves=False, is_detached=True))
+    require_ok(wired_uno, session.upload(image, saves=False, is_detached=True))
     if board.pins[motor].state == "pwm":
         board.run_until(motor, "low", WORK_MS)
-    wired.run(SHOW_MS)
+    wired_uno.run(SHOW_MS)
     shown_values: list[object] = [event.value for event in session.events() if event.name == "SHOW"]
     begin_cycle, end_cycle = (
         next(event.cycle for event in board.events[event_count:]

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from statistics import median
 from typing import NamedTuple
 
-from tests.machines.board import BUILT_IN, Board, built
+from tests.machines.board import BUILT_IN, Board, build_sketch
 from tests.support.board_states import START, STEADY
 from tests.support.sonar import (
     US_PER_CM,
@@ -31,7 +31,7 @@ SPEED_CM_MS = 0.05
 LOOK_PROGRAM = "SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP"
 STOP_PROGRAM = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
 NEAR_PWM = f"pwm {90 * 653 >> 8}"
-PING_INTERVAL_MS = 30.07  # from ping to ping of a program that asks all the time
+PING_INTERVAL_MS = 30.07  # time between pings of a program that measures continuously
 PHASE_COUNT = 12
 NEAR_CM = 15.0
 TRUST_DEFINE = "#define tiniscript_trusts_samples\n"
@@ -54,7 +54,7 @@ def board_of(text: str, is_trusting: bool) -> Board:
     board = Board(robot, text)
     if is_trusting:
         header = firmware.header([robot], "the tests.").replace("#pragma once", TRUST_DEFINE, 1)
-        elf = built(header, robot.board.chip)
+        elf = build_sketch(header, robot.board.chip)
         built_in_image = compile_text(BUILT_IN, robot.kit).image
         own_image = compile_text(text, robot.kit).image
         offset = elf.index(built_in_image)
@@ -69,7 +69,7 @@ def look_at_wall(seed: int, is_trusting: bool) -> WrongReadings:
     trigger, echo = sonar_pins(board.robot)
     board.watch(trigger)
     board.echoes(trigger, echo, [cm * US_PER_CM for cm in heard_distances])
-    ping_times_ms = ping_starts_ms(board.ran(START + 2900), trigger)
+    ping_times_ms = ping_starts_ms(board.run_for(START + 2900), trigger)
     readings = driven_ms(board, 1)
     wrong_count = 0
     for ms in readings:
@@ -80,7 +80,7 @@ def look_at_wall(seed: int, is_trusting: bool) -> WrongReadings:
 
 
 def late_ms(distances: Callable[[float], float], phase: float, is_trusting: bool) -> float:
-    """Return for how long the obstacle has been near when the program knows it.
+    """Return the time for which the obstacle has been near when the program notices it.
 
     `distances` says how far it is so many ms after the first ping, which is `phase` of a ping late.
     """
@@ -90,7 +90,7 @@ def late_ms(distances: Callable[[float], float], phase: float, is_trusting: bool
     phase_ms = phase * PING_INTERVAL_MS
     distances_cm = [distances(number * PING_INTERVAL_MS + phase_ms) for number in range(60)]
     board.echoes(trigger, echo, [cm * US_PER_CM for cm in distances_cm])
-    first_ping_ms = ping_starts_ms(board.ran(START + 1500), trigger)[0]
+    first_ping_ms = ping_starts_ms(board.run_for(START + 1500), trigger)[0]
     near_ms = next(ms for ms in range(1500) if distances(ms + phase_ms) < NEAR_CM)
     known_ms = next(ms for ms in driven_ms(board, 1) if board.motors(ms)[0] == NEAR_PWM)
     return known_ms - first_ping_ms - near_ms

@@ -31,9 +31,9 @@ CLOCK_PERIOD = 16_384  # cycles between two interrupts of the clock
 COARSE_STEP = 64  # cycles: the interrupt takes longer
 FINE_STEP, FINE_RANGE = 4, 64
 ECHO_OFFSETS = range(-160, 33, 8)  # cycles
-EDGE_OFFSETS = range(-480, 33, 16)  # of both discs
+EDGE_OFFSETS = range(-480, 33, 16)  # offsets of the edges on both discs
 SHORT_ECHO, LONG_ECHO = 1000, 8000  # cycles
-BITS_PER_BYTE = 10  # of a byte on the wire
+BITS_PER_BYTE = 10  # bits of a byte on the wire
 QUIET_MS = 25
 PING_MS = 100  # pings are less apart
 RECEIVE_INTERRUPT = {"uno": 18, "mega": 25}  # the number of the interrupt that sees a stop
@@ -41,8 +41,8 @@ INSTRUCTION_CYCLES = 4  # cycles of the longest one
 
 
 class Place(NamedTuple):
-    """Where a stop falls: a cycle of the clock's period, and cycles from it to an edge: of an echo,
-    or of each disc.
+    """The place of a stop: a cycle of the clock's period, and the cycles to an edge of an echo or
+    of each disc.
     """
 
     cycle: int
@@ -52,7 +52,7 @@ class Place(NamedTuple):
 
 
 class StopTimes(NamedTuple):
-    """Of how many stops, and microseconds; `together` is what they would take at most."""
+    """The number of stops, and microseconds; `together` is the sum of the longest parts."""
 
     stop_count: int
     us: float
@@ -79,7 +79,7 @@ class BusyRobot:
                 self.chip.sonar(self._trigger, self._sonar, None)
         discs = robot.board.discs
         self._discs = [pin(robot, number) for number in discs.pins.values()] if discs else []
-        self._level = False  # of the discs
+        self._level = False  # level of the discs' outputs
         for name in self._discs:
             self.chip.drive(name, self._level)
         self._wired = connect(self.chip, robot, baud)
@@ -91,7 +91,7 @@ class BusyRobot:
     def __enter__(self) -> BusyRobot:
         return self
 
-    def __exit__(self, *raised: object) -> None:
+    def __exit__(self, *signal_arguments: object) -> None:
         self.chip.close()
 
     @property
@@ -107,9 +107,9 @@ class BusyRobot:
         chip, session = self.chip, self._wired.session
         require_ok(self._wired, session.clear())
         require_ok(self._wired, session.start())
-        chip.run_ms(QUIET_MS)  # nothing of the session is on the wire any more
+        chip.run_ms(QUIET_MS)  # until the session's bytes have left the wire
         text = NOISE_TEXTS[place.cycle // FINE_STEP % len(NOISE_TEXTS)]
-        if place.echo_offset is not None:  # which the robot waits for only after a ping
+        if place.echo_offset is not None:  # the robot waits for an echo only after a ping
             text = text[:1]
             chip.run_until(self._trigger, "high", PING_MS)
             chip.run_until(self._trigger, "low", PING_MS)
@@ -227,8 +227,8 @@ def with_edges(cycles: Iterable[int]) -> list[Place]:
 
 
 def sample(busy_robot: BusyRobot, count: int, seed: int) -> list[Place]:
-    """Return so many places, half of them with the edge of an echo where there are echoes. Where
-    there are discs, all of their edges come on top.
+    """Return so many places, half of them with an echo's edge if there are echoes. Discs add all
+    their edges.
     """
     random_source = random.Random(seed)
     places = [Place(random_source.randrange(CLOCK_PERIOD)) for _ in range(count)]

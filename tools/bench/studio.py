@@ -1,4 +1,4 @@
-"""How fast the studio's page is: `python -m tools.bench.studio`.
+"""The speed of the studio's page: `python -m tools.bench.studio`.
 
 One table, of the system's Chromium on this computer. Each time is the least of several, since other
 work makes a browser slower and never faster. What is fetched comes from this computer. npm fetches
@@ -32,14 +32,14 @@ if TYPE_CHECKING:
 VISIT_COUNT = 3
 CPU_THROTTLING = 4  # times as slow a processor
 START_COUNT = 5
-WATCH_MS = 4000  # of which pictures are looked at
+WATCH_MS = 4000  # time in which frames are counted
 PUPIL_COUNT, WRITER_COUNT = 30, 3
 WRITE_INTERVAL_MS = 300  # between two changes of a writer
 PRESS_COUNT = 60
 MOST_STOP_MS = 50
-LATE_FRAME_MS = 33.5  # two of 60 in a second are 33.3, and the clock of a page tells tenths
-SETTLE_MS = 1500  # after a start
-TASK_EVENT = "ThreadControllerImpl::RunTask"  # of a thread, in Chromium's traces
+LATE_FRAME_MS = 33.5  # two of 60 pictures a second take 33.3 ms, and a page's clock has tenths
+SETTLE_MS = 1500  # wait after a start
+TASK_EVENT = "ThreadControllerImpl::RunTask"  # event of a thread in Chromium's traces
 RATING_COUNT = 5
 TYPED_LETTER_COUNT = 60  # letters
 PROGRAM_LINES = 100
@@ -67,7 +67,7 @@ WATCH_SCRIPT = """() => {
   };
   new MutationObserver(look).observe(document, {subtree: true, childList: true, attributes: true});
 }"""
-# When somebody clicks, when the robot's time goes on, and how long each picture was there.
+# The times of clicks, the advance of the robot's time, and the duration of each picture.
 FOLLOW_SCRIPT = """() => {
   window.frames = [];
   addEventListener('click', () => { window.clicked_ms ??= performance.now(); }, {capture: true});
@@ -90,8 +90,8 @@ PRESS_SCRIPT = """() => { window.waits = []; const own = window.fetch;
     if (what?.body?.includes('"stop_all"')) waits.push(performance.now() - pressed_ms);
     return own(where, what);
   }; }"""
-# A letter is typed in the middle of the program, and the compiler asked as the page asks it; where
-# somebody pauses then, also for what a button does.
+# A letter is typed in the middle of the program, and the compiler is asked like by the page; during
+# a pause, also about a button.
 TYPE_SCRIPT = """async ([text, count, isPausing]) => {
   const worker = new Worker('./worker.js', {type: 'module'});
   const said = () => new Promise((resolve) => { worker.onmessage = ({data}) => resolve(data); });
@@ -122,13 +122,13 @@ def main() -> None:
     figure_rows: list[tuple[str, ...]] = []
     with (
         studio.driver() as driver,
-        studio.served() as server,
+        studio.serve_page() as server,
         studio.browser(driver, is_whole=True) as browser,
     ):
         for rows in (_measure, _time_to_move, _drawing_cost):
             figure_rows += [(ROWS[name], *cells) for name, *cells in rows(browser, server.address)]
         slowest_ms = _stopped_ms(browser)
-    with studio.served(_packed_files()) as server:
+    with studio.serve_page(_packed_files()) as server:
         scores = _lighthouse_scores(server.address).values()
         figure_rows.append((ROWS["rated"], ", ".join(f"{points:.0f}" for points in scores), "95"))
     packed_bytes = int(size_rows(PAGE)[-1].split()[1].replace(",", ""))
@@ -194,7 +194,7 @@ def _time_to_move(browser: Browser, address: str) -> Iterator[tuple[str, str, st
 
 
 def _drawing_cost(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
-    """The same by the work of the page's main thread for each picture: load changes it less."""
+    """Yield the main thread's work for each picture, which depends less on the load."""
     works: list[float] = []
     for _ in range(START_COUNT):
         context = browser.new_context(viewport={"width": 1366, "height": 768})
@@ -215,11 +215,11 @@ def _drawing_cost(browser: Browser, address: str) -> Iterator[tuple[str, str, st
 
 
 def _stopped_ms(browser: Browser) -> float:
-    """Return after how long STOP ALL of a teacher leaves the page, at the slowest.
+    """Return the slowest time from a teacher's STOP ALL until it leaves the page.
 
     Meanwhile pupils write as much as a page takes, as fast as it asks.
     """
-    with studio.taught([]) as (server, classroom):
+    with studio.serve_class([]) as (server, classroom):
         classroom.teach({"do": "class_places", "places": PUPIL_COUNT})
         tokens = [
             classroom.answer(
@@ -273,7 +273,7 @@ def _works_ms(events: list[dict[str, Any]]) -> list[float]:
 
 
 def _processor_s(page: Page) -> float:
-    """Return what the page's process has taken of processors: other work does not change that."""
+    """Return the processor time of the page's process, which other work does not change."""
     session = page.context.new_cdp_session(page)
     session.send("Performance.enable", {"timeDomain": "threadTicks"})
     metrics = session.send("Performance.getMetrics")["metrics"]
@@ -289,7 +289,7 @@ def _visit(browser: Browser, address: str) -> Iterator[Page]:
     page.set_default_timeout(120_000)
     page.add_init_script(f"({WATCH_SCRIPT})()")
     page.goto(address)
-    studio.checked(page)
+    studio.wait_until_checked(page)
     try:
         yield page
     finally:

@@ -1,4 +1,4 @@
-"""What a turn takes, and how late a WHEN looks while others count: `python -m tools.bench.tasks`.
+"""The duration of a turn, and a WHEN's lateness while others count: `python -m tools.bench.tasks`.
 
 A simulated Uno with the firmware that ships has up to four tasks beside the main one: a WHEN that
 looks at a light sensor every 20 ms, and others that count and never wait by themselves. The light
@@ -37,7 +37,7 @@ TURN_COUNT = 1000
 WITH_TASKS = "-Dtiniscript_with_tasks"
 WATCH_TASK = "WHEN(LIGHT_L > 500); M(50, 50); W(0.04); M(0, 0); W(0.06); END_WHEN;"
 
-# What belongs to each part, of the names of functions and tables.
+# Prefixes of the functions and tables of each part.
 PATTERN_OF_PART = {
     "turns, rounds and waiting": r"run_round|end_turn|Machine::go_on",
     "which task has the motors, and moves that are paused":
@@ -103,7 +103,7 @@ def turns_cycles(task_count: int) -> int:
 
 
 def jitter_ms(firmware: Path, task_count: int) -> float:
-    """Return how far apart the looks of a WHEN are on their grid of 20 ms."""
+    """Return the jitter of a WHEN on its grid of 20 ms."""
     text = (
         "SI|W(3600);"
         + WATCH_TASK
@@ -114,9 +114,9 @@ def jitter_ms(firmware: Path, task_count: int) -> float:
         firmware, names=names, eeprom=Path(folder) / "eeprom",
         baud=ROBOT.board.baud, resets_on_open=False,
     ) as board:  # fmt: skip
-        wired = connect(board, ROBOT)
+        wired_uno = connect(board, ROBOT)
         image = image_of(text, ROBOT.kit)
-        require_ok(wired, wired.session.upload(image, saves=False, is_detached=True))
+        require_ok(wired_uno, wired_uno.session.upload(image, saves=False, is_detached=True))
         times_ms: list[float] = []
         for number in range(LOOK_COUNT):
             board.run_ms(LOOK_INTERVAL_MS * number / LOOK_COUNT + 0.3)

@@ -16,9 +16,9 @@ from tools.uno import CYCLES_PER_MS, Uno
 
 SHORT = "SI|F(2,80)"
 ROWS = (f"`{SHORT}`", "the paper's obstacle program")
-SILENCE_MS = 1100  # what comes sooner after a stop is ignored
+SILENCE_MS = 1100  # silence after a stop, before which input is ignored
 TRY_COUNT = 20  # the main loop is elsewhere each time: the slowest counts
-LONGEST_MS = 5.0  # for the short line
+LONGEST_MS = 5.0  # limit for the short line
 
 
 def typed_line_ms(board: Uno, line: str, phase: int) -> float:

@@ -1,4 +1,4 @@
-"""How soon a place on the studio's time line is shown: `python -m tools.bench.time_line`.
+"""The time to show a place on the studio's time line: `python -m tools.bench.time_line`.
 
 A run of ten minutes, at twenty times the speed, in the system's Chromium; then random places on its
 line. A place is shown once the page's main thread has nothing left to do for its next picture: what
@@ -25,7 +25,7 @@ RUN_S = 600
 PLACE_COUNT = 200
 MOST_MS = 16
 ROWS = (f"median, 95 of 100, and the slowest of {PLACE_COUNT}",)
-# What it sees, shows and decides changes all the time; three tasks and a sound, too.
+# Its inputs, outputs and decisions change all the time; it has three tasks and a sound.
 PROGRAM = f"""SI|N = 0
 TASK; LOOP(FOREVER); SHOW(DISTANCE); W(0.5); END_LOOP; END_TASK
 TASK; LOOP(FOREVER); BEEP(0.1, 440); W(2); END_LOOP; END_TASK
@@ -50,7 +50,7 @@ GOLDEN_RATIO = 0.618034
 
 
 def measure(page: Page, run_s: int, place_count: int) -> tuple[list[float], float]:
-    """Return how many milliseconds each place takes, and how long the run was, in seconds."""
+    """Return the milliseconds for each place, and the length of the run in seconds."""
     page.click("#view_text")
     write(page, PROGRAM.replace(f"LOOP({RUN_S})", f"LOOP({run_s})"))
     page.select_option("#speed", "20")
@@ -77,7 +77,7 @@ def measure(page: Page, run_s: int, place_count: int) -> tuple[list[float], floa
 
 
 def _task_s(session: CDPSession) -> float:
-    """Return how long the page's main thread has worked."""
+    """Return the working time of the page's main thread."""
     metrics = session.send("Performance.getMetrics")["metrics"]
     return next(float(metric["value"]) for metric in metrics if metric["name"] == "TaskDuration")
 
@@ -86,7 +86,7 @@ def main() -> int:
     with (
         studio.driver() as playwright,
         studio.browser(playwright, is_whole=True) as browser,
-        studio.served(serving.files()) as server,
+        studio.serve_page(serving.files()) as server,
     ):
         pages = studio.Pages(browser, server.address, patience_s=2 * RUN_S)
         times_ms, _ = measure(pages.open(), RUN_S, PLACE_COUNT)

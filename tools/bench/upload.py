@@ -1,4 +1,4 @@
-"""How long a new `tsc upload` takes until the robot moves.
+"""The time from a new `tsc upload` until the robot moves.
 
     python -m tools.bench.upload [runs]
 
@@ -80,14 +80,14 @@ class Bench:
 
 def measure(bench: Bench, run_count: int) -> tuple[float, float]:
     """Return the medians (ms) of an upload and of a process that does nothing, taken in turn."""
-    bench.measure_move_ms()  # what is cached is cached now
+    bench.measure_move_ms()  # fills the caches
     pairs = [(bench.measure_move_ms(), bench.measure_nothing_ms()) for _ in range(run_count)]
     moves_ms, nothing_ms = (statistics.median(times_ms) for times_ms in zip(*pairs, strict=True))
     return moves_ms, nothing_ms
 
 
 def measure_crowd_ms(count: int, run_count: int, folder: str) -> tuple[float, float]:
-    """Return how long (ms) until all of some robots move, and until all have stopped; medians."""
+    """Return the median times (ms) until all of some robots move, and until all have stopped."""
     environ = environment(folder)
     moving_ms, stopping_ms = [], []
     with RobotFleet([robots.load("tinibot").kit] * count) as fleet:

@@ -1,4 +1,4 @@
-"""How much faster than a real robot the virtual one is: `python -m tools.bench.virtual`.
+"""The virtual robot's speed compared with a real one: `python -m tools.bench.virtual`.
 
 Each program drives for a minute of the robot's time in this process, with nobody at its port, in
 seconds of the processor.

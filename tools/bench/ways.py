@@ -1,4 +1,4 @@
-"""How far `F(100 CM, 60)` and `R(360 DEG, 60)` are off: `python -m tools.bench.ways`.
+"""The errors of `F(100 CM, 60)` and `R(360 DEG, 60)`: `python -m tools.bench.ways`.
 
 By discs, by time after calibration, and by time without: on virtual robots, 100 seeds each, with
 the firmware itself. Motors differ by 15 %, take 45 to 75 ms to come up to speed, and roll on as
@@ -32,13 +32,13 @@ from tools.bench import page
 from tools.bench.firmware_size import PROJECT, measure
 
 SEED_COUNT = 100
-WANTED_PERCENT = 95  # of them
+WANTED_PERCENT = 95  # percentage of the values within the figure
 FAST_PERCENT, SLOW_PERCENT = 107.5, 92.5  # percent
 SLIPS = (0.005, 0.02, 0.05)
 GO_PROGRAM, TURN_PROGRAM = "F(100 CM, 60)", "R(360 DEG, 60)"
 LONGEST_RUN_MS = 30_000
-TAPE_CM, PROTRACTOR_DEGREES = 1, 5  # as near as one reads them
-# how the way is known: along, aside and turned, as far as each may be off
+TAPE_CM, PROTRACTOR_DEGREES = 1, 5  # reading precision of the tape and the protractor
+# Limits of the measured path: along, aside and rotation.
 LIMITS = {"discs": (1.5, 3, 6), "time, calibrated": (10, 20, 20), "time": (math.inf,) * 3}
 SHOWN_ROWS = {
     "discs": ("discs", SLIPS),
@@ -49,7 +49,7 @@ ROWS = tuple(row for row, slips in SHOWN_ROWS.values() for _ in slips)
 
 
 class Robot(Talk):
-    """One of `tinibot2`, whose firmware knows of its discs if it goes by them."""
+    """A `tinibot2`, whose firmware knows its discs if it uses them."""
 
     def __init__(self, seed: int, slip: float, uses_discs: bool) -> None:
         motors = (FAST_PERCENT, SLOW_PERCENT) if seed % 2 else (SLOW_PERCENT, FAST_PERCENT)
@@ -63,7 +63,7 @@ class Robot(Talk):
         super().__init__(robot)
 
     def drive(self, text: str) -> tuple[float, float, float]:
-        """Return how far a program leads ahead and aside, and how far it turns, to the left."""
+        """Return the displacement of a program ahead and aside, and its rotation to the left."""
         start_pose = self.robot.pose
         self.upload(text, is_detached=True)
         end_ms = self.robot.now_ms + LONGEST_RUN_MS
@@ -93,7 +93,7 @@ class Robot(Talk):
 
 
 def offset_of(seed: int, slip: float, method: str) -> tuple[float, float, float]:
-    """Return how far one robot is off: along and aside in cm, turned in degrees."""
+    """Return the error of one robot: along and aside in cm, rotation in degrees."""
     robot = Robot(seed, slip, method == "discs")
     if method == "time, calibrated":
         robot.calibrate(seed)
@@ -103,12 +103,12 @@ def offset_of(seed: int, slip: float, method: str) -> tuple[float, float, float]
 
 
 def wanted_quantile(values: Sequence[float]) -> float:
-    """Return what WANTED_PERCENT of the values are within."""
+    """Return the bound for WANTED_PERCENT of the values."""
     return sorted(values)[WANTED_PERCENT * len(values) // 100 - 1]
 
 
 def offset_of_uno(firmware: Path, seed: int, slip: float) -> tuple[float, float, float]:
-    """Return the same of the firmware of an Uno, on its simulated chip."""
+    """Return the error of an Uno's firmware, on its simulated chip."""
     motors = (FAST_PERCENT, SLOW_PERCENT) if seed % 2 else (SLOW_PERCENT, FAST_PERCENT)
     robot = Driven(firmware, seed, motors, Roughness(slip))
     with robot.uno:
@@ -161,7 +161,7 @@ def main(seed_count: int = SEED_COUNT, is_uno: bool = False) -> int:
 
 
 class WorstOffsets(NamedTuple):
-    """How far robots are off: what WANTED_PERCENT are within, and how many keep the limits."""
+    """The errors of robots: the bounds for WANTED_PERCENT, and how many keep the limits."""
 
     worst: tuple[float, ...]
     within: str

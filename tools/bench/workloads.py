@@ -28,7 +28,7 @@ class Work(NamedTuple):
     body: str
     loop_count: int
     code_after: str
-    readings: tuple[int, ...] = ()  # of DISTANCE, in units
+    readings: tuple[int, ...] = ()  # values of DISTANCE in units
 
     @property
     def text(self) -> str:

@@ -25,7 +25,7 @@ COMMON_FLAGS = (
 
 
 class Chip(NamedTuple):
-    """`compiler` makes objects, or text of which `assembler` makes them."""
+    """`compiler` makes objects, or assembly text for `assembler`."""
 
     board: str
     compiler: tuple[str, ...]
@@ -33,8 +33,8 @@ class Chip(NamedTuple):
     linker: tuple[str, ...]
     measurer: str
     emulator: tuple[str, ...]
-    ram_start: int  # where it begins in the emulator
-    start_file: str  # what comes before the program, in `vm_arduino/extras/qemu`
+    ram_start: int  # start of RAM in the emulator
+    start_file: str  # file with the start code, in `vm_arduino/extras/qemu`
 
 
 # What the LX6 of an ESP32 has: clang knows no name for all of it. QEMU's de233_fpu has no
@@ -57,7 +57,7 @@ CHIPS = {
             *(word for name in _LX6
               for word in ("-Xclang", "-target-feature", "-Xclang", f"+{name}")),
         ),
-        # in one step clang places literals where they cannot be loaded
+        # In a single step, clang places literals out of reach.
         assembler=(
             *_CLANG, "-c",
             *(word for name in _LX6
@@ -96,7 +96,7 @@ CHIPS = {
 
 
 def why_missing(chip: Chip, can_run: bool = False) -> str:
-    """Return why nothing can be built for a chip, or run on it, or nothing."""
+    """Return the reason why nothing can be built for a chip, or run on it, or ""."""
     tools = [chip.compiler, chip.assembler, chip.linker, (chip.measurer,)]
     if can_run:
         tools.append(chip.emulator)

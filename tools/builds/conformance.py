@@ -3,7 +3,7 @@
     python -m tools.builds.conformance [FOLDER]
 
 writes `machine.json` and `link.json` into the clone's package, or into the folder of another
-installation, which `tsc doctor --conform` names where it has none. Needs what `tsc` needs.
+installation, which `tsc doctor --conform` names if it has none. Needs what `tsc` needs.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ COMMAND = "python -m tools.builds.conformance"
 
 
 def text_of(name: str) -> str:
-    """Return what a file of cases says."""
+    """Return the content of a file of cases."""
     return FILES[name](COMMAND)
 
 
 def write(target: Path, text: str) -> None:
-    """Have the file there as a whole, whenever somebody reads it. Raises OSError."""
+    """Write the file as a whole, so that no reader sees a part. Raises OSError."""
     temporary_path = target.with_name(f"{target.name}.{os.getpid()}")
     temporary_path.write_text(text, encoding="utf-8", newline="\n")
     temporary_path.replace(target)

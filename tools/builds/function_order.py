@@ -26,7 +26,7 @@ BEGIN, END = "/* begin of the order */\n", "    /* end of the order */"
 BOARD = "uno"
 SHORT_CALL_RANGE = range(-4096, 4096)  # bytes, from just after a short call
 TRY_COUNT = 200_000
-# What the compiler appends to a name may be another number after the next change.
+# The compiler's suffix of a name may change with the next edit.
 _APPENDED_SUFFIX = re.compile(r"\.(lto_priv|constprop|part|isra)\.\d+")
 # Assembly calls its other files by short calls: they stay together.
 _ASSEMBLY = re.compile(r"\.text\.tiniscript_.*")
@@ -47,14 +47,14 @@ class Section(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """What a line of the script places together."""
+    """The functions placed together by a line of the script."""
 
     pattern: str
     size: int
 
 
 class Call(NamedTuple):
-    """From a place of a piece to a place of another one."""
+    """A call from a place in one piece to a place in another."""
 
     piece: int
     offset: int
@@ -63,7 +63,7 @@ class Call(NamedTuple):
 
 
 def pieces(linker_map: str) -> tuple[list[Piece], list[Section]]:
-    """Return what a map of the linker names, in the order of flash."""
+    """Return the pieces named in a linker map, in the order of flash."""
     sizes: dict[str, int] = {}
     sections = []
     code = linker_map[linker_map.index("Linker script and memory map") :]
@@ -79,7 +79,7 @@ def pieces(linker_map: str) -> tuple[list[Piece], list[Section]]:
 
 
 def calls(disassembly: str, sections: list[Section]) -> list[Call]:
-    """Return what leads from one piece to another."""
+    """Return the calls between pieces."""
 
     def find_offset(address: int) -> tuple[int, int] | None:
         for section in sections:
@@ -96,7 +96,7 @@ def calls(disassembly: str, sections: list[Section]) -> list[Call]:
 
 
 def count_far(order: list[int], all_pieces: list[Piece], all_calls: list[Call]) -> int:
-    """Return how many calls lead far in an order."""
+    """Return the number of far calls in an order."""
     begin = [0] * len(all_pieces)
     address = 0
     for number in order:

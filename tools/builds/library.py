@@ -33,7 +33,7 @@ PLATFORMS = ("atmelavr", "espressif32", "espressif8266")
 KEYWORDS = ("education", "robotics", "bytecode", "interpreter", "robot")
 
 HEAT_KIT = Kit((Device("HEAT", NUMBER, "%", 0, 100_000),), (Device("LAMP", YES_NO, "", 0, 1),))
-# What each example runs, and for which kit.
+# The programs of the examples, and their kits.
 PROGRAMS = {
     "ImageInFlash": ("F(1, 80); R(0.5, 60)", robots.load("tinibot").kit),
     "OwnSensor": ("LOOP(FOREVER); SHOW(HEAT); LAMP(HEAT > 30); W(1); END_LOOP", HEAT_KIT),
@@ -58,7 +58,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def is_ours(folder: Path) -> bool:
-    """Whether a folder is empty, or a library that was made here."""
+    """Return whether a folder is empty, or a library that was made here."""
     if not folder.is_dir():
         return False
     properties_path = folder / "library.properties"

@@ -1,4 +1,4 @@
-"""What the page says in a language, and the Python in it: from the catalogues."""
+"""The texts of the page in a language, and of its Python: from the catalogues."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from tiniscript.base.languages import Texts, language_info, read_language_file, 
 from tiniscript.base.words import WORDS
 from tiniscript.robots import load, names
 
-# Of what the page's Python says; the sentences of lessons come with these.
+# Texts of the page's Python; those of lessons come with them.
 MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names", "foreign")
-# What the page says as the command does: how a recording compares, and why a run has ended.
+# Texts shared with the command: comparisons of recordings, and the reasons of a run's end.
 COMMAND_TEXTS = {
     **{f"record_{what}": f"replay_{what}" for what in (
         "again", "otherwise", "same", "missed", "unread", "empty", "value", "time", "robot_more",
@@ -25,15 +25,19 @@ COMMAND_TEXTS = {
 
 
 def looked_for(language: str) -> dict[str, str]:
-    """Return by which words somebody may look for a block: those of the lexicon, by what they mean.
+    """Return the search words of blocks: those of the lexicon, by their meaning.
 
     The key is a word of the text, or `turn` for those of them that turn.
     """
-    wanted = {"turn", *WORDS, *(kit_name for name in names() for kit_name in load(name).kit.names)}
+    wanted_names = {
+        "turn",
+        *WORDS,
+        *(kit_name for name in names() for kit_name in load(name).kit.names),
+    }
     result: dict[str, str] = {}
     for row in read_language_file(language, "lexicon.txt").split("\n"):
         meaning, bar, words = (part.strip() for part in row.partition("|"))
-        if bar and meaning in wanted:
+        if bar and meaning in wanted_names:
             result[f"words/{meaning}"] = words.lower().replace("_", " ")
     return result
 
@@ -60,5 +64,5 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
 
 
 def messages(language: str) -> dict[str, Texts]:
-    """Return what `tiniscript.studio.worker` learns, by catalogue."""
+    """Return the messages for `tiniscript.studio.worker`, by catalogue."""
     return {name: texts(name, language) for name in MESSAGES}

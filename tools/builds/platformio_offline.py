@@ -52,7 +52,7 @@ DEBIAN_PACKAGES = {
     ARDUINO: "arduino-core-avr",
     DOCTEST: "doctest-dev",
 }
-# Of the platform atmelavr: name, chip, variant and macro, and the bytes of flash and RAM.
+# Parameters of the platform atmelavr: name, chip, variant and macro, bytes of flash and RAM.
 BOARDS = {
     "uno": ("Arduino Uno", "atmega328p", "standard", "UNO", 32_256, 2048),
     "nanoatmega328": ("Arduino Nano", "atmega328p", "eightanaloginputs", "NANO", 30_720, 2048),
@@ -116,7 +116,7 @@ def say(text: str) -> None:
 
 
 def why_needless(project: Path, offline: bool) -> str:
-    """Return why PlatformIO needs no stand-ins here, or nothing."""
+    """Return the reason why PlatformIO needs no stand-ins here, or ""."""
     platforms = Path(config_of(project).get("platformio", "platforms_dir")).resolve()
     if STAND_IN_HOME in platforms.parents:
         return ""  # the variables are set already
@@ -273,7 +273,7 @@ def stand_ins() -> Path:
         package = new_folder / "packages" / "tool-scons"
         package.mkdir(parents=True)
         (package / "scons.py").write_text(
-            "import sys\nfrom pathlib import Path\n\n"  # of the folder, wherever it is moved
+            "import sys\nfrom pathlib import Path\n\n"  # finds the folder even after it is moved
             f"sys.path.insert(0, str(Path(__file__).resolve().parents[3] / {scons.name!r}))\n"
             "from SCons.Script.Main import main\n\nmain()\n",
             encoding="utf-8",
@@ -348,7 +348,7 @@ def make(folder: Path, fill: Callable[[Path], None]) -> None:
         try:
             new_folder.rename(folder)
         except OSError:
-            if not folder.exists():  # else another process was faster
+            if not folder.exists():  # otherwise another process was faster
                 raise
 
 

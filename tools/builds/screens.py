@@ -20,7 +20,11 @@ THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 
 def main(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    with studio.driver() as driver, studio.browser(driver) as browser, studio.served() as server:
+    with (
+        studio.driver() as driver,
+        studio.browser(driver) as browser,
+        studio.serve_page() as server,
+    ):
         for theme in THEMES:
             for language in languages():
                 pages = studio.Pages(browser, server.address)

@@ -50,8 +50,8 @@ LOOP(6)
   R(0.5, 60)
 END_LOOP
 """
-# As blocks after its run; at a breakpoint, with values; on the start screen, where both are kept;
-# in a lesson, after a check; and those of SHEETS.
+# Kinds of pictures: blocks after a run; a breakpoint with values; the start screen with saved work;
+# a checked lesson; and SHEETS.
 SCENES = {
     "": PROGRAM,
     ".held": COUNTING_PROGRAM,
@@ -65,7 +65,7 @@ SCENES = {
     ".wall": "",
     ".more": PROGRAM,
 }
-WALL_SCENE = ".wall"  # of a teacher, with thirty pupils
+WALL_SCENE = ".wall"  # scene of a teacher with thirty pupils
 PUPIL_NAMES = ["Ana", "Beto", "Carla", "Dani", "Elena", "Fabio", "Gabi", "Hugo", "Inés", "Julia",
                "Karim", "Lucía", "Mateo", "Nina", "Oscar", "Paula", "Quim", "Rosa", "Saúl", "Tania",
                "Ulises", "Vera", "Wara", "Ximena", "Yago", "Zoe", "Bruno", "Celia", "Emma",
@@ -75,7 +75,7 @@ PUPIL_ADDRESS, RAISED_HAND = "192.0.2.7", 7  # their address, and whose hand is 
 BREAKPOINT_LINE = 5  # the line of the breakpoint
 VIEWPORT = {"width": 1280, "height": 760}
 GAP = 12  # pixels between the pictures of a sheet
-COLOUR_COUNT = 72  # of a picture: its bytes are less than half, and nobody sees it
+COLOUR_COUNT = 72  # colours of a picture, which save half its bytes without a visible difference
 WORDS_SCENE = "words"  # the text of the picture that has them
 SEEN_SELECTOR = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
 CLASS = sources(ROOT, "docs/en/class.md")
@@ -155,10 +155,10 @@ def take(language: str, scene: str, target: Path) -> None:
 def _serve_scene(scene: str) -> Iterator[tuple[str, str]]:
     """The address of a page, and where it is entered."""
     if scene != WALL_SCENE:
-        with studio.served() as server:
+        with studio.serve_page() as server:
             yield server.address, server.address
         return
-    with studio.taught([]) as (server, classroom):
+    with studio.serve_class([]) as (server, classroom):
         classroom.teach({"do": "class_places", "places": len(PUPIL_NAMES)})
         joins = {"do": "join", "code": classroom.code}
         tokens = [
@@ -216,7 +216,7 @@ def _take_single(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
         page.select_option("#speed", "1")
     if scene in ("", ".lesson"):
         page.click("#view_blocks")
-        studio.shown(page)
+        studio.wait_for_blocks(page)
     take_shot()
 
 
@@ -236,7 +236,7 @@ def _phone(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     page.select_option("#world", "maze")
     page.select_option("#speed", "20")
     page.click("#view_blocks")
-    studio.shown(page)
+    studio.wait_for_blocks(page)
     page.set_viewport_size({"width": 390, "height": 844})
     take_shot()
     page.click("#run")
@@ -257,7 +257,7 @@ def _minute(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     take_shot()
     page.click("#stop")
     page.click("#view_blocks")
-    studio.shown(page)
+    studio.wait_for_blocks(page)
     page.locator(".blocklyToolboxCategory").first.click()
     take_shot()
     page.keyboard.press("Escape")
@@ -281,7 +281,7 @@ def _minute(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
 
 
 def _drive(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
-    """By hand: straight on, a turn with the horn, and the same on a large screen."""
+    """Drive by hand: straight on, a turn with the horn, and the same on a large screen."""
     page.click("#home")
     page.set_viewport_size({"width": 390, "height": 844})
     page.click("[data-begin=drive]")
@@ -293,12 +293,12 @@ def _drive(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
             take_shot()
     page.set_viewport_size({"width": 1366, "height": 768})
     page.click("#view_blocks")
-    studio.shown(page)
+    studio.wait_for_blocks(page)
     take_shot()
 
 
 def _teacher(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
-    """A real robot in four steps, and below them what is for the teacher."""
+    """Take a picture of a real robot in four steps, and the teacher's part below."""
     page.click("#side_real")
     page.click("#link_teacher summary")
     take_shot()
@@ -315,7 +315,7 @@ def _take_more(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     page.click("#view_blocks")
     for text in ("SI|F(1, 80)\n\n/// R(0.5, 60)\n/// B(1, 80)\n", "SI|F(-2, 80)\nR(0.5, 60)\n"):
         studio.write(page, text)
-        studio.shown(page)
+        studio.wait_for_blocks(page)
         if "-2" in text:
             page.locator(".blocklyBubble").wait_for()
         take_shot()
@@ -353,7 +353,7 @@ SHEETS = {
 
 
 def _sheet(shots: list[Image.Image]) -> Image.Image:
-    """Put pictures side by side, in two rows where there are many."""
+    """Put pictures side by side, in two rows if there are many."""
     width, height = VIEWPORT["width"], VIEWPORT["height"]
     columns, rows = (3, 2) if len(shots) > 3 else (len(shots), 1)
     sheet = Image.new("RGB", (width, height), "#ffffff")
@@ -372,12 +372,12 @@ def _sheet(shots: list[Image.Image]) -> Image.Image:
 
 
 def is_said(words: str) -> bool:
-    """Whether the page's sentences have these words."""
+    """Return whether the page's sentences contain these words."""
     return any(words in _shown_words(language) for language in languages())
 
 
 def why_stale(language: str, scene: str = "") -> str:
-    """Return why a picture is not one of this page, or nothing."""
+    """Return the reason why a picture is not of this page, or ""."""
     path = picture(language, scene)
     if not path.is_file():
         return f"there is no {path.name}. Take it:  {COMMAND}"

@@ -91,7 +91,7 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
     rows = "\n".join(map(_start_page, reversed(halves)))
     start_page = start_page.replace("STUDIO", link).replace("HALVES", rows)
     (folder / "index.html").write_text(start_page, encoding="utf-8")
-    (folder / ".nojekyll").touch()  # else some hosts leave out folders that begin with _
+    (folder / ".nojekyll").touch()  # without this file, some hosts omit folders that begin with _
     dead_links = links.dead_links(folder)
     if dead_links:
         raise CannotMake("\n".join(dead_links))

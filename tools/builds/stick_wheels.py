@@ -57,8 +57,8 @@ class System(NamedTuple):
         }  # fmt: skip
 
 
-# The old names of the last ones, too: pip takes them for other systems, and then for nothing at all
-# but wheels of Python alone, such as that of wasmtime without the library that it needs.
+# Includes the former names of the last ones: pip accepts them for other systems, and otherwise only
+# wheels of pure Python, such as that of wasmtime without its library.
 _GLIBC = tuple(f"manylinux_2_{minor}_x86_64" for minor in range(31, 4, -1))
 _OLD_GLIBC = tuple(f"manylinux{name}_x86_64" for name in ("2014", "2010", "1"))
 SYSTEMS = {

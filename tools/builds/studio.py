@@ -37,7 +37,7 @@ PACKAGE = ROOT / "compiler"
 PAGE = PACKAGE / "tiniscript" / "studio" / "page"
 STAMP = building.STAMP
 LICENCES_FILE = "licences.txt"
-# What a browser fetches of Pyodide; its archive of Python's library is made anew.
+# The files of Pyodide that a browser loads; its archive of Python's library is made again.
 PYODIDE_FILES = ("pyodide.asm.mjs", "pyodide.asm.wasm")
 COPIED_FILES = ("style.css", "class/class.css", "manifest.webmanifest", "icon.svg", "more.svg",
           "less.svg")  # fmt: skip
@@ -56,7 +56,7 @@ BLOCKLY_PICTURES = (
 # The one style that Blockly writes into an element, which the page's policy forbids; this direction
 # is a text's anyway.
 STYLE_CODE = ',style:`direction: ${this.workspace.RTL?"rtl":"ltr"}`'
-INPUTS_FILE = "inputs.json"  # which modules are in the page's files
+INPUTS_FILE = "inputs.json"  # record of the modules in each file of the page
 MPL_TEXT = "Mozilla Public License 2.0: https://www.mozilla.org/MPL/2.0/"
 PSF_TEXT = "Python Software Foundation License: https://docs.python.org/3/license.html"
 
@@ -89,7 +89,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def why_stale(page: Path = PAGE) -> str:
-    """Return why the page that is there cannot be used, or nothing."""
+    """Return the reason why the existing page cannot be used, or ""."""
     if not (page / STAMP).is_file():
         return f"the page is not built. Do that with:  {COMMAND}"
     if not building.is_built_from_sources(page):
@@ -99,7 +99,7 @@ def why_stale(page: Path = PAGE) -> str:
 
 def build(page: Path = PAGE) -> None:
     """Build the page into a folder, which has nothing else then."""
-    sources = building.digest()  # whoever changes one meanwhile builds again
+    sources = building.digest()  # a source that changes during the build triggers another one
     tools = find_tools()
     print_step(f"node {tools.version}")
     install(tools)
@@ -109,7 +109,7 @@ def build(page: Path = PAGE) -> None:
     write_made_file("languages.json", [(code, language_info(code).name) for code in languages()])
     write_made_file(
         f"texts.{SOURCE_LANGUAGE}.json", page_texts(SOURCE_LANGUAGE)
-    )  # whose keys are checked
+    )  # keys of this table are checked
     write_made_file("description.json", description())
     write_made_file("blocks.json", block_kinds.table_data())
     write_blockly()
@@ -138,7 +138,8 @@ def build(page: Path = PAGE) -> None:
         for path in new_page.iterdir():
             path.chmod(0o644)
         if page.exists():
-            page.rename(Path(scratch) / "old")  # at once: half of an old page looks whole
+            # Renamed at once, because half of an old page looks complete.
+            page.rename(Path(scratch) / "old")
         new_page.rename(page)
 
 
@@ -158,7 +159,7 @@ def put_own_files(page: Path) -> None:
 
 
 def coming_text() -> str:
-    """Return what the page says before a language is there: in each."""
+    """Return the page's text before a language is loaded, in each language."""
     texts = [(code, page_texts(code)["page_waits"]) for code in languages()]
     return "".join(f'<span lang="{code}">{escape(str(text))}</span>' for code, text in texts)
 
@@ -292,7 +293,7 @@ def write_service_worker(target: Path) -> None:
 
 
 def licences() -> str:
-    """Return whose work is in the page, and under which licences."""
+    """Return the authors of the page's parts, and their licences."""
     parts = ["The page of TiniScript Studio is under the MIT licence, and contains:\n"]
     inputs = json.loads((SOURCES / "made" / INPUTS_FILE).read_text(encoding="utf-8"))["inputs"]
     names = {_package(path) for path in inputs if path.startswith("node_modules/")}
@@ -314,13 +315,13 @@ def licences() -> str:
 
 
 def _package(path: str) -> str:
-    """Return whose file it is: of `node_modules/@lezer/common/x.js`, `@lezer/common`."""
+    """Return the package of a file: of `node_modules/@lezer/common/x.js`, `@lezer/common`."""
     parts = path.split("/")
     return "/".join(parts[1 : 3 if parts[1].startswith("@") else 2])
 
 
 def size_rows(page: Path) -> list[str]:
-    """Return what the page's files weigh, and packed as a server sends them."""
+    """Return the sizes of the page's files, also compressed as a server sends them."""
     rows, total_bytes, packed_bytes = [], 0, 0
     for path in sorted(page.iterdir()):
         if path.name in (STAMP, LICENCES_FILE, FIRMWARE_FILE) or path.suffix in (".hex", ".bin"):

@@ -29,17 +29,17 @@ from tools.builds.stick_wheels import PYTHONS, SYSTEMS
 from tools.site.documents import name_in
 
 SCRIPTS = ROOT / "tools" / "builds" / "stick"
-# What is wanted, and what a class does without where a new Python has no wheels yet.
+# The wanted packages, and the optional ones for a Python that is too new for their wheels.
 EXTRAS = "[firmware,radio,virtual]"
 FEWER_EXTRAS = "[firmware,virtual]"
-INSTALLER = "3.13.9"  # of Python for Windows: a release that has an installer for good
+INSTALLER = "3.13.9"  # a release of Python for Windows that has an installer
 INSTALLER_URL = "https://www.python.org/ftp/python/{0}/python-{0}-amd64.exe"
-# As the catalogue of Windows' package manager has it (microsoft/winget-pkgs, Python.Python.3.13).
+# From the catalogue of the Windows package manager (microsoft/winget-pkgs, Python.Python.3.13).
 INSTALLER_SHA256 = "200ddff856bbff949d2cc1be42e8807c07538abd6b6966d5113a094cf628c5c5"
 
 
 class Missing(NamedTuple):
-    """What could not be had: the key of its sentence, what fills it, and why, for who builds it."""
+    """A missing part: the key of its sentence, its values, and the reason for the builder."""
 
     key: str
     name: str
@@ -93,7 +93,7 @@ def add_wheels(
 ) -> list[Missing]:
     """Put all wheels into a folder; return what could not be had. Raises CannotMake.
 
-    `given_wheel` is the wheel of TiniScript; where there is none it is made.
+    `given_wheel` is the wheel of TiniScript; if there is none it is made.
     """
     stick_wheels.make_source_wheels(wheels)
     wheel = (
@@ -114,7 +114,7 @@ def add_wheels(
 
 
 def _with_fewer(wheel: Path, wheels: Path, name: str, python: str, why: str) -> Missing:
-    """Fetch what a class needs most; return what is missing then."""
+    """Download the most important parts for a class; return the missing ones."""
     title = f"{SYSTEMS[name].title}, Python {python}"
     try:
         stick_wheels.fetch(wheel, wheels, SYSTEMS[name], python, FEWER_EXTRAS)
@@ -124,7 +124,7 @@ def _with_fewer(wheel: Path, wheels: Path, name: str, python: str, why: str) -> 
 
 
 def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> list[Missing]:
-    """Fetch the installer of Python for Windows; return what is missing then."""
+    """Download the installer of Python for Windows; return the missing parts."""
     target = folder / url.rsplit("/", 1)[1]
     try:
         with urllib.request.urlopen(url, timeout=60) as answer, target.open("wb") as file:
@@ -132,7 +132,7 @@ def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> lis
         if hashlib.sha256(target.read_bytes()).hexdigest() == sha256:
             return []
         why = "what came is not that installer"
-    except (OSError, ValueError) as error:  # also what urllib raises
+    except (OSError, ValueError) as error:  # includes the errors of urllib
         why = str(getattr(error, "reason", error))
     target.unlink(missing_ok=True)
     return [Missing("no_installer", url, why)]
@@ -173,7 +173,7 @@ def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[Missi
 
 
 def _firmware() -> list[Missing]:
-    """Have the firmware ready in our wheel; return what is missing where it cannot be built."""
+    """Put the firmware into our wheel; return the parts that cannot be built."""
     if any(ready.FOLDER.glob("*.hex")):
         return []
     from tools.builds import firmware_files

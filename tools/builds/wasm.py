@@ -24,7 +24,7 @@ from tools import ROOT
 SOURCES = "vm_arduino"
 COMMAND = "python -m tools.builds.wasm"
 
-# Who looks at a program follows it instruction by instruction.
+# A traced program is followed instruction by instruction.
 COUNTING_FLAG = "-Dtiniscript_counts_instructions"
 
 # No library is linked, so what the machine calls is in its own sources or in wasm itself.
@@ -37,7 +37,7 @@ FLAGS = (
 
 
 class Module(NamedTuple):
-    """What is made, from the root of the repository; of `files` and the `.cpp` of `folders`.
+    """The module to build, from the root of the repository: `files` and the `.cpp` of `folders`.
 
     A file of `files` that includes one of these stands for it.
     """
@@ -90,7 +90,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def why_not_here() -> str:
-    """Return why the modules cannot be made here, or nothing."""
+    """Return the reason why the modules cannot be built here, or ""."""
     pin = re.search(r'"ziglang==([^"]+)"', (ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     assert pin, "pyproject.toml pins the compiler"
     try:

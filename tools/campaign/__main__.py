@@ -75,14 +75,14 @@ def run(goals: Sequence[Goal], end_s: float) -> int:
 
 
 def is_reached(goal: Goal, result: Result | None, commit: str) -> bool:
-    """Whether nothing is left to do with this code."""
+    """Return whether this code leaves nothing to do for the goal."""
     if result is None or not results.is_same_code(goal, result.commit, commit):
         return False
     return not result.wrong and result.done >= goal.target
 
 
 def run_piece(goal: Goal, last_result: Result | None, commit: str) -> Result:
-    """Run a piece of a goal; return what is reached with it.
+    """Run a piece of a goal; return the new result.
 
     A piece that failed is run again. Results of other code no longer count.
     """
@@ -109,6 +109,6 @@ def run_piece(goal: Goal, last_result: Result | None, commit: str) -> Result:
 
 
 if __name__ == "__main__":
-    # What a shell runs in its background ignores Ctrl-C, and so would each command under test.
+    # A background process of a shell ignores Ctrl-C, and so would each command under test.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.exit(main())

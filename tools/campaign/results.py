@@ -1,4 +1,4 @@
-"""What campaigns have measured: `results.json`, and from it the table of `docs/en/guarantees.md`.
+"""The results of campaigns: `results.json`, and the table of `docs/en/guarantees.md`.
 
 A result belongs to the code with which it was measured: figures of other code are not added up.
 """
@@ -17,13 +17,14 @@ from tools.campaign.goals import GOALS, Goal
 RESULTS_FILE = Path(__file__).with_name("results.json")
 DOCUMENT = ROOT / "docs" / "en" / "guarantees.md"
 OLD_MARK = ", old"
-CODE_FOLDERS = ("compiler", "vm_arduino", "tests")  # what a figure is about
+CODE_FOLDERS = ("compiler", "vm_arduino", "tests")  # folders whose changes make a figure old
 TABLE_HEAD = ("name", "guarantee", "target", "measured", "seeds", "date", "commit")
 
 
 class Result(NamedTuple):
-    """So many were `done` in `seconds`, with the seeds from `seed` on; `next_seed` is the one after
-    the last. `wrong`: how the last piece failed, or nothing."""
+    """A result: `done` tries in `seconds`, with seeds from `seed` up to but not including
+    `next_seed`. `wrong`: the failure of the last piece, or "".
+    """
 
     done: int
     seconds: float
@@ -56,7 +57,7 @@ def current_commit() -> str:
 
 
 def is_same_code(goal: Goal, commit: str, other_commit: str = "") -> bool:
-    """Whether two commits, or one and the files that are here, have the same code of a goal.
+    """Return whether two commits, or one and the current files, have the same code of a goal.
 
     A commit with a `+` is like no other, nor is one that nobody knows here.
     """
@@ -68,7 +69,7 @@ def is_same_code(goal: Goal, commit: str, other_commit: str = "") -> bool:
 
 
 def is_old(goal: Goal, result: Result) -> bool:
-    """Whether the code of a goal has changed since its figure.
+    """Return whether the code of a goal has changed since its figure.
 
     Without the project's commits nobody can tell: then it is as the document says.
     """

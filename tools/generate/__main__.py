@@ -33,7 +33,8 @@ from tools.generate.poster import posters
 from tools.site.documents import INDEX_PAGE
 
 COMMAND = "python -m tools.generate"
-DOCUMENTED_KITS = ("tinibot", "liner", "grabber", "elegoo4", "sumo")  # that differ
+# Kits with different documents.
+DOCUMENTED_KITS = ("tinibot", "liner", "grabber", "elegoo4", "sumo")
 ROBOT_FOLDER = ROOT / "compiler" / "tiniscript" / "robots"
 
 
@@ -272,7 +273,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (
         ROOT / INDEX_PAGE,
         partial(list_of_documents, COMMAND),
-    ),  # which reads the other documents' titles
+    ),  # includes the titles of the other documents
     (ROOT / "vm_arduino" / "test" / "cases.cpp", partial(cases_table, COMMAND)),
     *(
         (KIT_HEADERS / f"{path.stem}.h", partial(robot_header, path))

@@ -31,7 +31,7 @@ Points = Sequence[tuple[float, ...]]
 
 
 class Way(NamedTuple):
-    """Where a robot has been, and its outline there at the beginning and at the end; in cm."""
+    """The path of a robot, and its outline at the beginning and at the end; in cm."""
 
     points: list[tuple[float, float]]
     begin: list[tuple[float, float]]
@@ -105,7 +105,7 @@ def arena(world: World, way: Way, left: float, top: float, scale: float) -> list
 
 
 EXAMPLES = ROOT / "examples"
-DRIVES = (  # the world, the example, the robot, for so many seconds
+DRIVES = (  # the world, the example, the robot, the seconds
     ("obstacles", "obstacle_until.ts", "tinibot", 20),
     ("light", "light.ts", "tinibot", 8),
     ("line", "line.ts", "liner", 20),

@@ -1,4 +1,4 @@
-"""What the machine in assembly takes from the tables of the compiler: `bytecode_avr.S`.
+"""The compiler's tables for the machine in assembly: `bytecode_avr.S`.
 
 Knows the table of handlers: one for each byte that may be an opcode. `execute_avr.S` has a label
 for each of them, so linking it fails where one is missing. `__main__.py` writes the file.

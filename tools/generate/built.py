@@ -23,7 +23,7 @@ DocumentMakers = dict[str, Callable[[], str]]
 
 
 def makers_of_kept() -> DocumentMakers:
-    """Return how what is kept of these documents is made, by its name in a clone."""
+    """Return the makers of these stored documents, by name in a clone."""
     makers = wiring_pages(COMMAND, is_kept=True)
     pages = {
         name: make for name, make in makers.items() if name.startswith(f"docs/{SOURCE_LANGUAGE}/")

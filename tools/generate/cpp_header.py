@@ -1,4 +1,4 @@
-"""What the C++ machine takes from the tables of the compiler: `bytecode.h` and `bytecode.cpp`.
+"""The compiler's tables for the C++ machine: `bytecode.h` and `bytecode.cpp`.
 
 Knows how the table of instructions is packed for machines with little memory. `__main__.py`
 writes the files.
@@ -17,19 +17,19 @@ from tiniscript.bytecode import image, opcodes, verify
 
 TASK_OPS = tuple(op for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)
 
-# What a verifier distinguishes in the first two bytes of operands; devices come last.
+# Operand kinds that a verifier distinguishes in the first two bytes; devices come last.
 OPERAND_BYTE_KINDS = ("any", "power", "percent", "variable", "count", "sensor", "actuator")
 FAR_BIT, BACK_BIT = 0x08, 0x10
 
-# The families of which the machine asks the table: what its inner loop cannot do alone, and what
-# the verifier distinguishes. All others share rows.
+# The families that the machine looks up: those beyond its inner loop, and those that the verifier
+# distinguishes. All others share rows.
 ACTS = tuple(op for op in opcodes.UNO_OPS if op.is_act)
 ASKED_FAMILIES = (
     "PUSH_READ", "TIME", "RANDOM", "SHOW", "SHOW_YES_NO", *dict.fromkeys(op.family for op in ACTS),
     "LOOK", "END_WHEN",
 )  # fmt: skip
-FIRST_FOUR = 0x80  # from here on four codes in a row have the same form,
-FIRST_SIX = 0xC8  # and from here on six of eight; the other two are no opcodes
+FIRST_FOUR = 0x80  # from here on, groups of four codes have the same form
+FIRST_SIX = 0xC8  # from here on, six of every eight codes do; the other two are unused
 
 
 def header(command: str) -> str:
@@ -158,7 +158,7 @@ def enumeration(name: str, rows: Sequence[tuple[str, int, str]]) -> str:
 
 
 def minor_functions() -> str:
-    """Return what makes the minor version of an image of its instructions and of its `needs`."""
+    """Return the code that computes an image's minor version from its instructions and `needs`."""
     since_of_code = {
         op.code: op.since for op in opcodes.OPS if op.since > opcodes.SINCE_OF_NEED.get(op.needs, 0)
     }
@@ -183,7 +183,7 @@ def minor_functions() -> str:
 
 
 def way_constants() -> str:
-    """Return what says which second bytes there are: those of a MOVE and of a WATCH of its own."""
+    """Return the constants of the second bytes: those of a MOVE and of a WATCH."""
     twin_of = {"GO": "MOVE", "WATCH_GO": "WATCH"}
     for code, op in opcodes.ESCAPED_OPS.items():
         base, _, direction = op.name.rpartition("_")
@@ -203,7 +203,7 @@ def way_constants() -> str:
 
 
 class DecodeForm(NamedTuple):
-    """What the verifier and the machine must know of an opcode."""
+    """The properties of an opcode for the verifier and the machine."""
 
     family: str
     role: str
@@ -220,7 +220,7 @@ NONE = DecodeForm("NONE", "none", 0, 0, 1, False, False, "any", "any")
 
 
 def byte_of(kind: opcodes.OperandKind) -> str:
-    """Return what the first byte of an operand may be."""
+    """Return the possible first bytes of an operand."""
     is_any = kind.size > 1 or kind.high - kind.low == 255
     return "any" if is_any and kind.name not in OPERAND_BYTE_KINDS else kind.name
 
@@ -245,7 +245,7 @@ def decode_form_of(op: opcodes.Op) -> DecodeForm:
 
 
 def forms() -> dict[DecodeForm, list[opcodes.Op]]:
-    """Return the opcodes of each form: first what is no opcode, then those with a family."""
+    """Return the opcodes of each form: first unused codes, then those with a family."""
     rows: dict[DecodeForm, list[opcodes.Op]] = {NONE: []}
     for op in sorted(ordered_ops(), key=place_of):
         rows.setdefault(decode_form_of(op), []).append(op)
@@ -253,7 +253,7 @@ def forms() -> dict[DecodeForm, list[opcodes.Op]]:
 
 
 def place_of(op: opcodes.Op) -> tuple[bool, int]:
-    """Say where the row of an opcode stands: those that tasks alone have are the last ones."""
+    """Return the place of an opcode's row: those only for tasks are last."""
     return op in TASK_OPS, (*ASKED_FAMILIES, op.family).index(op.family)
 
 
@@ -263,7 +263,7 @@ def ordered_ops() -> tuple[opcodes.Op, ...]:
 
 
 def form_numbers() -> str:
-    """Return the families and what is declared of the tables, for the header."""
+    """Return the families and the declarations of the tables, for the header."""
     family_rows = [
         (form.family, number, names(ops) if len(ops) > 1 else "")
         for number, (form, ops) in enumerate(forms().items())
@@ -386,5 +386,5 @@ def operand_bytes(form: DecodeForm) -> int:
 
 
 def operands() -> dict[int, tuple[str, str]]:
-    """Return what the first two bytes of operands may be, each once, by its packed number."""
+    """Return the possible first two bytes of operands, each once, by packed number."""
     return {operand_bytes(form): (form.first, form.second) for form in forms()}

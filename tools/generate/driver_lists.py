@@ -8,7 +8,7 @@ from textwrap import wrap
 
 from tiniscript.robots.drivers import DRIVERS
 
-# How the line above each list ends, by what uses the drivers in it.
+# The end of the line above each list, by the use of its drivers.
 LINE_ENDS = {
     "motors": "Drivers of motors:",
     "discs": "tinibot2.toml has some.",

@@ -43,7 +43,7 @@ COLOURS = {"setup": SETUP_COLOUR, **dict.fromkeys(GRAMMAR_ROLES, GRAMMAR_COLOUR)
 
 
 def fronts(command: str) -> dict[str, partial[str]]:
-    """Return how each picture of `docs/pictures/` is made, by its name. `command` makes them."""
+    """Return the makers of the pictures in `docs/pictures/`, by name. `command` runs them."""
     return {
         f"front.{language}.svg": partial(front, language, command)
         for language in sources(ROOT, "README.md")

@@ -54,7 +54,7 @@ DRIVES: dict[str, tuple[str, str, Drives]] = {  # the guide, how its program beg
 
 
 def guide_pictures(command: str) -> dict[str, partial[str]]:
-    """Return how each picture of `docs/pictures/` is made, by its name. `command` makes them."""
+    """Return the makers of the pictures in `docs/pictures/`, by name. `command` runs them."""
     makers = {name: partial(drive, command, *row) for name, row in DRIVES.items()}
     makers |= {
         f"phone.{guide}.svg": partial(phone_picture, command, guide) for guide in GUIDE_OF_LANGUAGE
@@ -109,7 +109,7 @@ def phone_picture(command: str, language: str) -> str:
 
 
 def hand_picture(command: str) -> str:
-    """Return what a robot before something shows when a guide asks it for the distance."""
+    """Return the output of a robot in front of an obstacle when a guide asks for the distance."""
     [line, answer] = re.findall(
         r'tsc live "(SHOW\(.*?\))"\n(\w+ \d+)', _text(GUIDE_OF_LANGUAGE["en"])
     )[0]

@@ -32,8 +32,8 @@ from tools.generate.machine_kit import (
 
 LONGEST_RUN_MS = 3000
 MOST_SHOWS = 40
-MOST_BYTES = 200  # of code: any robot has room for it
-UNPREDICTABLE_WORDS = ("TIME", "RANDOM")  # what nobody knows beforehand
+MOST_BYTES = 200  # bytes of code that fit in any robot
+UNPREDICTABLE_WORDS = ("TIME", "RANDOM")  # words with unpredictable values
 KEY_OF_KIND = {">": "computer", "<": "robot", "did": "does", "tells": "tells", "outcome": "outcome"}
 BYTES_ROW = re.compile(r"((?:[0-9a-f]{2} ?)+)(?:   (.*))?$")
 
@@ -56,7 +56,7 @@ def link_kit(command: str) -> str:
 
 
 def answers_fault(run: Run) -> bool:
-    return " " in run.name.removeprefix("arithmetic: ")  # those that fault have one each
+    return " " in run.name.removeprefix("arithmetic: ")  # names of faulting runs have two words
 
 
 def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
@@ -124,7 +124,7 @@ def verdict_on(code: bytes, device_count: int) -> str:
 
 
 def conversation_case(case: LinkCase) -> dict[str, object]:
-    """Return a conversation: each row is a list of what it is, its time, and what it says."""
+    """Return a conversation: each row is a list of its kind, its time, and its content."""
     rows: list[dict[str, object]] = []
     for row in case.rows:
         words = row.split(maxsplit=2)

@@ -20,7 +20,7 @@ from tests.machines.pace import ECHO, Pace, a_pace
 from tests.machines.python import lists_of
 from tests.oracle import programs
 from tests.oracle.task_programs import rival_program, task_program
-from tests.support.case_runs import compiled, robot_and_senses
+from tests.support.case_runs import compile_case, robot_and_senses
 from tests.support.casefile import ROOT, Case, read
 from tests.support.images import image_for
 from tests.support.kits import KITS
@@ -41,15 +41,15 @@ TINIBOT_KIT = robots.load("tinibot").kit
 MOST_STEPS = (
     100_000  # a case that runs more without a wait says nothing about its end: it is left out,
 )
-MOST_CALLS = 1000  # and so is one of more calls at one time
+MOST_CALLS = 1000  # most calls of a run, also at one time
 RANDOM_PROGRAMS = range(1000, 1030)
 TASK_PROGRAMS = range(1000, 1020)
 TASK_RUN_MS = 600
 WAY_PROGRAMS = range(1000, 1012)
 Schedule = tuple[int, tuple[int, ...]]
 
-# When a run begins, and how often its machine is called: for the first wait, for the next, and the
-# last for all that follow. The first is as `tsc run` does it.
+# The start time of a run, and the number of calls of its machine: for the first wait, for the next,
+# and the last for all further ones. The first schedule is that of `tsc run`.
 USUAL_SCHEDULE: Schedule = (0, (1,))
 WRAPPING_SCHEDULE: Schedule = (2**32 - 7, (1,))
 SELDOM_SCHEDULE: Schedule = (2**31 - 30, (7,))
@@ -65,9 +65,9 @@ NO_OP_CODE = bytes([BY_NAME["SET_VAR8"].code, 0, 0])
 
 
 class Run(NamedTuple):
-    """What a machine is given. `readings` are thousandths by the sensor's name. A sensor that is in
-    `slow` is not ready from one time to another in each period. `text` is what was compiled, if
-    anything was."""
+    """The input of a machine. `readings` are thousandths by the sensor's name. A sensor in `slow`
+    is not ready in a range of each period. `text` is the compiled text, if any.
+    """
 
     name: str
     kit: Kit
@@ -82,14 +82,14 @@ class Run(NamedTuple):
         return self._replace(name=name, schedule=(0, (every_ms,)))
 
     def at_pace(self, pace: Pace) -> Run:
-        """Return this run of a robot at a pace, some of whose readings come late."""
+        """Return this run at a pace, with some late readings."""
         slow = dict.fromkeys(pace.slow, (pace.period_ms, pace.from_ms, pace.to_ms))
         name = f"{self.name} ({' and '.join(slow)} late, called every {pace.every_ms} ms)"
         return self._replace(name=name, schedule=(0, (pace.every_ms,)), slow=slow)
 
     @property
     def needs(self) -> int:
-        """What a machine may lack, and refuse the image for."""
+        """Return the features that a machine may lack, and refuse the image for."""
         try:
             return unpack(self.image).needs
         except ImageRefused:
@@ -134,7 +134,7 @@ def runs() -> Iterator[Run]:
 
 
 def lines_of(kit: Kit) -> list[str]:
-    """Return the devices of a kit, and how fast it is where that is known."""
+    """Return the devices of a kit, and how fast it is if that is known."""
     speeds = ("speed", kit.speed), ("turn", kit.turn)
     return [*kit.device_lines(), *(f"{name} {value}" for name, value in speeds if value)]
 
@@ -168,7 +168,7 @@ class SlowRobot(TracedRobot):
     def __init__(self, run: Run) -> None:
         super().__init__(run.kit, lists_of(run.kit, run.senses))
         self.slow = run.slow
-        self.was_slow = False  # in this call
+        self.was_slow = False  # whether the current call was slow
 
     def read(self, sensor: int) -> int | None:
         period_ms, from_ms, to_ms = self.slow.get(self.kit.readings[sensor].name, (1, 0, 0))
@@ -183,7 +183,7 @@ def answer_of(
     load_image: Callable[[bytes, Kit], Image] = load_image,
     machine_of: Callable[[bytes, Robot, int, int, int], Machine] = machine_of,
 ) -> list[str] | None:
-    """Return what the machine in Python answers; None where no step of it takes time."""
+    """Return the answer of the machine in Python; None if no step takes time."""
     try:
         code = load_image(run.image, run.kit).code
     except Refused as error:
@@ -194,7 +194,7 @@ def answer_of(
     intervals_ms = chain(every_ms, repeat(every_ms[-1]))
     robot = SlowRobot(run)
     machine = machine_of(code, robot, len(run.kit.readings), run.senses.seed, begin)
-    call_count = 0  # at the same time
+    call_count = 0  # calls at the same time
     while call_count < MOST_CALLS:
         robot.was_slow = False
         status = machine.tick(begin + robot.now_ms, MOST_STEPS)
@@ -222,7 +222,7 @@ def answer_of(
 
 
 def documented_runs() -> Iterator[Run]:
-    """Return what the case files and the specification run or refuse."""
+    """Yield the runs and refusals of the case files and the specification."""
     paths = [*sorted(ROOT.glob("tests/cases/*.md")), ROOT / "bytecode_spec.md"]
     for case in (case for path in paths for case in read(path)):
         if not case.parts.keys() & {"robot", "refused"} and not stands_alone(case):
@@ -251,7 +251,7 @@ def stands_alone(case: Case) -> bool:
 def image_of(case: Case, kit: Kit) -> bytes:
     if stands_alone(case):
         return image_for(assemble(case.parts["bytecode"]), kit)
-    return compiled(case).image
+    return compile_case(case).image
 
 
 def takes_time(run: Run) -> bool:

@@ -12,19 +12,19 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-END_CODE = 0  # of a text; the pairs are numbered from 1
+END_CODE = 0  # code that ends a text; pairs are numbered from 1
 FIRST_LETTER = 0x20  # the letters of ASCII begin here, and the codes of pairs end
 FIRST_COMMON = 8  # a half of a byte from here on is a code of its own
 COMMON_COUNT = 16 - FIRST_COMMON
 MOST_NESTED_PAIRS = 3  # pairs in pairs: the robot's stack holds a call for each
-LEAST_SAVED = 4  # halves of bytes, of which a pair itself takes 4
-ROUND_COUNT = 8  # which codes are common, and which pairs save most, depends on each other
+LEAST_SAVED = 4  # half bytes, of which a pair itself takes 4
+ROUND_COUNT = 8  # rounds of choosing codes and pairs, which depend on each other
 
 Pair = tuple[int, int]
 
 
 class PackedTexts(NamedTuple):
-    """Texts, one after the other; the codes of 4 bits, and those of which the pairs are made."""
+    """Texts, one after the other; the 4-bit codes, and the pairs made of them."""
 
     common: tuple[int, ...]
     pairs: list[Pair]
@@ -44,11 +44,11 @@ def pack_texts(texts: Sequence[str]) -> PackedTexts:
         pairs, shorter = _pair_codes(rows, common)
         candidates.append(PackedTexts(common, pairs, _split_halves(shorter, common)))
         common = _most_common(shorter)
-    return min(candidates, key=lambda packed: packed.size)
+    return min(candidates, key=lambda packed_texts: packed_texts.size)
 
 
 def unpack_texts(data: PackedTexts) -> list[str]:
-    """Return what packed texts say."""
+    """Return the texts of packed data."""
     halves = [half for byte in data.texts for half in (byte >> 4, byte & 15)]
     texts, text, index = [], bytearray(), 0
     while index < len(halves):

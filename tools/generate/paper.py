@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 WIDTH, HEIGHT = 595, 842
 SANS_FONT, BOLD_FONT, MONO_FONT = "sans", "bold", "mono"
-# Of each font: that of PDF, whose metrics every viewer has, and that of SVG.
+# Font names in PDF, whose metrics every viewer has, and in SVG.
 FONTS = {
     SANS_FONT: ("Helvetica", "font-family='Helvetica, Arial, sans-serif'"),
     BOLD_FONT: ("Helvetica-Bold", "font-family='Helvetica, Arial, sans-serif' font-weight='bold'"),
@@ -112,7 +112,7 @@ def _pdf_row(box: Box | Line, names: list[str]) -> str:
 
 
 def _pdf_text(text: str) -> str:
-    """Return a text in round brackets; what is not ASCII is an octal number."""
+    """Return a text in round brackets; non-ASCII characters are octal numbers."""
     result = ""
     for byte in text.encode("cp1252"):
         sign = chr(byte)

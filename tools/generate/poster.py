@@ -21,7 +21,7 @@ LEFT_X, RIGHT_X = 36.0, 559.0
 CODE_X, SENTENCE_X = 44.0, 252.0
 HEAD_PT, ROW_PT, LEAST_ROW_PT = 20.5, 15.4, 12.0
 CODE_SIZE, SENTENCE_SIZE = 9.8, 10.0
-MOST_CODE_SIGNS, MOST_SENTENCE_SIGNS = 34, 60  # that fit
+MOST_CODE_SIGNS, MOST_SENTENCE_SIGNS = 34, 60  # most characters that fit
 BLACK, GREY, WHITE = (20, 20, 20), (90, 90, 90), (255, 255, 255)
 BLUE, PALE_BLUE = (18, 92, 160), (238, 243, 248)
 # A heading, and the words below it: `{F}` is the example that the table has for F.
@@ -92,7 +92,7 @@ def _poster_text(key: str, language: str) -> str:
 
 
 def _with_fixed(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]:
-    """Yield words and what is said of them; below a word those which stand for it with fixed values."""
+    """Yield words with their explanations; below a word, its forms with fixed values."""
     for code in rows:
         shown_code = translated("documents", f"code/{code}", language) or code
         yield (
@@ -106,7 +106,7 @@ def _with_fixed(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]
 
 
 def _other_instructions(language: str) -> Iterator[tuple[str, str]]:
-    """Yield the instructions that no row of GROUPS has, and what is said of them."""
+    """Yield the instructions without a row in GROUPS, and their explanations."""
     shown = {word for _, rows in GROUPS for row in rows for word in re.findall(r"[A-Z_]+", row)}
     for word in WORDS.values():
         if word.role.is_instruction and not word.stands_for and word.text not in shown:
@@ -114,12 +114,12 @@ def _other_instructions(language: str) -> Iterator[tuple[str, str]]:
 
 
 def as_block(word: Word, language: str) -> str:
-    """Return what the block of a word says beside the word, or nothing."""
+    """Return the text beside a word's block, or ""."""
     return (translated("studio", f"block/{word.text}", language) or "").partition("} ")[2]
 
 
 def posters(command: str) -> dict[str, Callable[[], str]]:
-    """Return how the files of `docs/poster/` are made, by their names. `command` makes them."""
+    """Return the makers of the files in `docs/poster/`, by name. `command` runs them."""
     return {
         f"poster.{language}.{form}": partial(poster, language, form, command)
         for language in translated_languages("documents", "poster/title")

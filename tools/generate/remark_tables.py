@@ -1,4 +1,4 @@
-"""What a robot says to a person: `remarks.h`, and the texts of problems and remarks, packed."""
+"""A robot's remarks to a person: `remarks.h`, and the packed texts of problems and remarks."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def rows(language: str, is_small: bool = False) -> list[str]:
 
 
 def _unused_remarks() -> set[tuple[str, str]]:
-    """Return what a robot of the smallest level never says.
+    """Return the remarks that a robot of the smallest level never makes.
 
     Its own level is the only one, it has no place for words that it does not read, nor for lines of
     keys, and with discs on its wheels it reads no text.
@@ -159,22 +159,24 @@ def _table_function(function: str, table: str, index_text: str = "") -> list[str
 def _tables(language: str, rows: Sequence[str]) -> list[str]:
     """Return the texts of a language. On a board the linker leaves the others out."""
     language = language.title()
-    packed = pack_texts(rows)
-    lines = [packed.texts[offset : offset + 16] for offset in range(0, len(packed.texts), 16)]
+    packed_texts = pack_texts(rows)
+    lines = [
+        packed_texts.texts[offset : offset + 16] for offset in range(0, len(packed_texts.texts), 16)
+    ]
     return [
         f"const uint8_t k{language}[] tini_progmem = {{",
         *(f"    {bytes_of_table(line)}" for line in lines),
         "};",
         "",
         f"const uint8_t k{language}Codes[] tini_progmem = {{",
-        f"    {bytes_of_table(packed.common)}  // {_c_bytes(packed.common)}",
+        f"    {bytes_of_table(packed_texts.common)}  // {_c_bytes(packed_texts.common)}",
         "};",
         "",
         f"const uint8_t k{language}Pairs[][2] tini_progmem = {{",
         *(
             f"    {{0x{first_code:02x}, 0x{second_code:02x}}},"
-            f"  // 0x{number:02x}: {letters_of(number, packed.pairs).decode('ascii')}"
-            for number, (first_code, second_code) in enumerate(packed.pairs, 1)
+            f"  // 0x{number:02x}: {letters_of(number, packed_texts.pairs).decode('ascii')}"
+            for number, (first_code, second_code) in enumerate(packed_texts.pairs, 1)
         ),
         "};",
     ]

@@ -1,4 +1,4 @@
-"""What the robot's reader of text takes from the tables of the compiler: its words, its answers.
+"""The compiler's tables for the robot's reader of text: its words and answers.
 
 Knows how the tables of `vm_arduino/src/text/` are packed. `__main__.py` writes the files.
 """
@@ -65,7 +65,7 @@ def opcode_of(word: Word) -> int:
 
 def words_in_order() -> list[Word]:
     """Return the words of the language as the reader numbers them."""
-    # as they are numbered in an image and in the bytecode
+    # Numbers in an image and in the bytecode.
     numbered_words = [
         *STARTS,
         "CHECK_CONNECTION",
@@ -114,7 +114,9 @@ def _kinds(word: Word) -> int:
 
 
 def bytes_before(name: str) -> int:
-    """Return how many letters the words have before this one, or before the first of this role."""
+    """Return the number of letters in the words before this one, or before the first of this
+    role.
+    """
     words = words_in_order()
     (first_index, *_) = (
         index
@@ -125,7 +127,7 @@ def bytes_before(name: str) -> int:
 
 
 def bytes_of(role: str) -> int:
-    """Return how many letters the words of this role have, those of tasks apart."""
+    """Return the number of letters in the words of this role, except those of tasks."""
     words = (word for word in words_in_order() if word.text not in TASK_AND_EXTENT_WORDS)
     return sum(len(word.text) for word in words if word.role.name == role)
 

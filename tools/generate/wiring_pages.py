@@ -27,7 +27,7 @@ KEPT_PAGE_NOTE = (
 
 
 def wiring_pages(command: str, is_kept: bool = False) -> dict[str, Callable[[], str]]:
-    """Return how to make each page and picture, by its name in a clone. `command` makes them.
+    """Return the makers of all pages and pictures, by name in a clone. `command` runs them.
 
     A page that is kept there leads to no page that is not, and shows one drawing.
     """
@@ -59,7 +59,7 @@ def _page(command: str, name: str, language: str, is_kept: bool) -> str:
 
 
 def _blocks(name: str, language: str, is_kept: bool) -> list[Block]:
-    """Return the parts of a page; what is kept has no finished robot below a heading."""
+    """Return the parts of a page; the stored version has no finished robot below a heading."""
     blocks = page_of(plan_of(robots.load(name), language))
     kinds_after = [*(block.kind for block in blocks[1:]), ""]
     return [

@@ -34,7 +34,7 @@ from tools.release.packing import sha256
 from tools.release.parts import PARTS, Clone, chosen_parts
 
 SUMS_FILE = "SHA256SUMS"
-# Two folders of other depths and names: what has a path in it differs.
+# Two folders of different depths and names: embedded paths would differ.
 CLONE_FOLDERS = ("one/tiniscript", "two/somewhere else/tiniscript-ñ")
 EXTRA_OF_MODULE = {
     "setuptools": "release",
@@ -65,7 +65,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if missing_tool:
         return _fail_to_begin(missing_tool)
     try:
-        folder.mkdir(parents=True, exist_ok=True)  # who cannot have it hears so before an hour
+        # An unusable folder is reported at once, not after an hour.
+        folder.mkdir(parents=True, exist_ok=True)
         return rehearse(folder, parts, options)
     except OSError as error:
         return _fail_to_begin(f"{error.strerror or error}: {error.filename or folder}")
@@ -106,8 +107,8 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
     print(sums_text, end="")
     if options.url and facts.address(ROOT) != options.url.rstrip("/"):
         _say(f"pyproject.toml does not have {options.url}: what is published is made with it there")
-    if outdated := ", ".join(results.outdated_goals()):
-        _say(f"{results.DOCUMENT.relative_to(ROOT)}: figures of older code: {outdated}")
+    if outdated_text := ", ".join(results.outdated_goals()):
+        _say(f"{results.DOCUMENT.relative_to(ROOT)}: figures of older code: {outdated_text}")
     for line in failed_parts:
         print(f"made twice, it is not the same: {line}", file=sys.stderr)
     if complaints or failed_parts:
@@ -121,7 +122,7 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
 
 
 def tag(root: Path, version: str) -> None:
-    """Give the commit of a repository the tag of a version. Raises CannotMake."""
+    """Tag the commit of a repository with a version. Raises CannotMake."""
     if f"v{version}" not in facts.tags(root):
         _git(root, [["tag", "--annotate", f"v{version}", "-m", f"TiniScript {version}"]])
 

@@ -1,4 +1,4 @@
-"""What a release says of itself in more than one place: version, date, address, people.
+"""Facts that a release states in more than one place: version, date, address, people.
 
 Knows a clone as files, and git's answers about it. The version's home is
 `tiniscript/base/version.py`, the address's is `[project.urls]` of `pyproject.toml`.
@@ -19,7 +19,7 @@ _VERSION_PATTERNS = {
     "docs/en/versions.md": r"\| TiniScript, the package \| `([^`]+)` \|",
 }
 NO_CONTACT = "(whoever publishes this repository writes an address here)"
-# Each place that repeats who has made it.
+# Each place that repeats the authors.
 _PEOPLE_PATTERNS = {
     "LICENSE": r"Copyright \(c\) \d{4} (.+)",
     "CITATION.cff": r'  - name: "(.+)"',
@@ -34,7 +34,7 @@ def version(root: Path) -> str:
 
 
 def address(root: Path) -> str:
-    """Return where a clone is published, as `https://…`, or nothing where it does not say so."""
+    """Return the address of the published clone, `https://…`, or "" if it has none."""
     return _first_match(root / "pyproject.toml", r'(?m)^Source = "(https://[^"]+)"$').rstrip("/")
 
 
@@ -101,9 +101,10 @@ def _check_changelog(root: Path, own_version: str) -> Iterator[str]:
         yield f"CHANGELOG.md has no section for {own_version}."
     elif dated_section is None or dated_section.group(1) != own_version:
         yield f"CHANGELOG.md has no date for {own_version}. Write:  ## {own_version} (2026-01-31)"
-    elif cited := _first_match(root / "CITATION.cff", r"(?m)^date-released: (\S+)$"):
-        if cited != dated_section.group(2):
-            yield f"CITATION.cff has the date {cited}; CHANGELOG.md has {dated_section.group(2)}."
+    elif cited_text := _first_match(root / "CITATION.cff", r"(?m)^date-released: (\S+)$"):
+        if cited_text != dated_section.group(2):
+            changelog_date = dated_section.group(2)
+            yield f"CITATION.cff has the date {cited_text}; CHANGELOG.md has {changelog_date}."
     _, _, text_below = text.partition("\n## Unreleased\n")
     if not text_below:
         yield "CHANGELOG.md has no section Unreleased: the next change has no place."

@@ -1,4 +1,4 @@
-"""Archives whose bytes depend on what is in them alone.
+"""Archives whose bytes depend only on their contents.
 
 Knows files and folders. Names are sorted, every time is the release's, owners are nobody.
 """
@@ -25,7 +25,7 @@ def pack_folder(folder: Path, target: Path, epoch: int) -> Path:
             name = f"{top_folder}/{path.relative_to(folder).as_posix()}"
             entry = zipfile.ZipInfo(name, zip_time)
             entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.create_system = 3  # Unix, which keeps what may be started
+            entry.create_system = 3  # Unix, which keeps the executable bit
             entry.external_attr = (0o100755 if path.stat().st_mode & 0o100 else 0o100644) << 16
             archive.writestr(entry, path.read_bytes())
     return target

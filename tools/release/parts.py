@@ -1,4 +1,4 @@
-"""What a release consists of, and how each part is made in a clone.
+"""The parts of a release, and how each is made in a clone.
 
 Knows the commands of `tools/builds` and setuptools. Each part is built by processes whose sources,
 time and rights are the clone's, so that it depends on nothing of the folder it is made in.
@@ -34,7 +34,7 @@ class Clone(NamedTuple):
     version: str
     address: str
     epoch: int  # s since 1970: the time of its commit
-    seed: int  # of the order of Python's sets
+    seed: int  # seed of Python's set order
     whole_stick: bool
 
     def environment(self) -> dict[str, str]:
@@ -99,12 +99,12 @@ def make_sdist(clone: Clone) -> list[Path]:
 
 
 def make_page(clone: Clone) -> list[Path]:
-    """For a static host: with the firmware, which a wheel has elsewhere already."""
+    """Build the page for a static host, with the firmware, which a wheel has elsewhere."""
     if (clone.root / READY_FOLDER).is_dir():
         clone.python("-c", _BRING_FIRMWARE_CODE)
     stamp_path = clone.root / PAGE_FOLDER / "build.json"
     stamp_data = stamp_path.read_bytes()
-    stamp_path.unlink()  # says of which files it was built, not a file of the page
+    stamp_path.unlink()  # record of its sources, not a file of the page
     path = pack_folder(clone.root / PAGE_FOLDER, clone.file_of("studio"), clone.epoch)
     stamp_path.write_bytes(stamp_data)
     return [path]
@@ -113,7 +113,8 @@ def make_page(clone: Clone) -> list[Path]:
 def make_library(clone: Clone) -> list[Path]:
     folder = clone.parts / "TiniScript"
     clone.python("-m", "tools.builds.library", str(folder))
-    path = clone.parts / f"TiniScript-{clone.version}.zip"  # as Arduino's "Add .ZIP Library" takes
+    # The form that Arduino's "Add .ZIP Library" accepts.
+    path = clone.parts / f"TiniScript-{clone.version}.zip"
     pack_folder(folder, path, clone.epoch)
     shutil.rmtree(folder)
     return [path]
@@ -164,8 +165,8 @@ PARTS = {
 
 def chosen_parts(names: list[str]) -> list[str]:
     """Return parts with those that they need, in the order in which they are made."""
-    wanted = set(names or PARTS)
+    wanted_names = set(names or PARTS)
     for name in reversed(PARTS):
-        if name in wanted:
-            wanted |= set(PARTS[name].needs)
-    return [name for name in PARTS if name in wanted]
+        if name in wanted_names:
+            wanted_names |= set(PARTS[name].needs)
+    return [name for name in PARTS if name in wanted_names]

@@ -1,4 +1,4 @@
-"""How Sphinx makes one half of the site; `tools/builds/site.py` says which, as `-D language`."""
+"""The Sphinx configuration of one half of the site; `tools/builds/site.py` sets `-D language`."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ html_sidebars = {
         "sidebar/scroll-end.html",
     ]
 }
-# Fences that show what a robot says or does: nothing in them is coloured.
+# Fences with a robot's output or actions, which are not coloured.
 PLAIN_FENCES = (
     "output",
     "robot",
@@ -70,7 +70,7 @@ HALF_DATA = json.loads((Path(__file__).parent / "half.json").read_text(encoding=
 def lead_to_the_other_halves(
     app: Sphinx, name: str, template: str, context: dict[str, object], tree: object
 ) -> None:
-    """Tell a page where it is in each other language, and where the studio is."""
+    """Give a page its links to the other languages, and to the studio."""
     way_to_root = "../" * (name.count("/") + 1)
     languages_there = HALF_DATA["pages"].get(name, [])
     context["others"] = [
@@ -86,7 +86,7 @@ def lead_to_the_other_halves(
 
 
 def find_words_of_the_language() -> None:
-    """Have the search find IF, UNTIL and SI, too: words that it leaves out as too common."""
+    """Make the search find IF, UNTIL and SI, which it omits as too common."""
     own_words = {word.lower() for word in WORDS}
     for class_or_name in searches.values():  # a class, or where it is
         search: Any = class_or_name

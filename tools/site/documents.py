@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 from tiniscript.base.languages import SOURCE_LANGUAGE, language_info, languages
 
-INDEX_PAGE = "docs/README.md"  # of all others, made from here
+INDEX_PAGE = "docs/README.md"  # generated page about all others
 PAGES = "docs/en/"
-FRONT_PAGE = "README.md"  # of each half of the site
+FRONT_PAGE = "README.md"  # first page of each half of the site
 PARTS = ("teach", "write", "wiring", "pupils", "teachers", "trust", "build")
 FILE_ENDING = re.compile(r"(?:\.en)?(\.\w+)$")
 
@@ -32,7 +32,7 @@ class Document(NamedTuple):
 
 
 def name_in(language: str, english: str) -> str:
-    """Return what the file of a document is called in a language, whether it is there or not."""
+    """Return a document's file name in a language, whether it exists or not."""
     if language == SOURCE_LANGUAGE:
         return english
     if english.startswith(PAGES):

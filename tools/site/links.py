@@ -1,4 +1,5 @@
-"""Whether every link of the finished site leads somewhere, and nothing is fetched from elsewhere.
+"""Checks that every link of the finished site leads somewhere, and nothing is loaded from
+elsewhere.
 
 Knows HTML files in a folder. Sphinx looks at the links inside of one half; this looks at all of
 them, as a browser would follow them.
@@ -11,7 +12,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
-# What a page fetches by itself, and what a reader follows.
+# Links that a page loads by itself, and those that a reader follows.
 _FETCHED_ATTRIBUTES = {
     "img": "src",
     "script": "src",
@@ -58,7 +59,7 @@ def dead_links(folder: Path) -> list[str]:
     folder = folder.resolve()
     pages = {path: _read(path) for path in sorted(folder.rglob("*.html"))}
 
-    @cache  # what is around a page is the same on each
+    @cache  # the frame around a page is the same everywhere
     def find_problem(path: Path, address: str, is_fetched: bool) -> str:
         return _link_problem(folder, path, address, is_fetched, pages)
 
@@ -80,7 +81,7 @@ def _read(path: Path) -> _Page:
 def _link_problem(
     folder: Path, path: Path, address: str, is_fetched: bool, pages: dict[Path, _Page]
 ) -> str:
-    """Return what is wrong with a link of a page in a resolved folder, or nothing."""
+    """Return the problem of a link of a page in a resolved folder, or ""."""
     parts = urlsplit(address)
     if parts.scheme or parts.netloc:
         if is_fetched and parts.scheme != "data":

@@ -37,7 +37,7 @@ class SitePage(NamedTuple):
 
 @dataclass
 class Shelf:
-    """Where the documents of a clone are on the site, and which files they lead to besides.
+    """The places of a clone's documents on the site, and of other linked files.
 
     `built_texts` are texts beside the files of the clone, by the names that they would have there.
     """
@@ -46,7 +46,7 @@ class Shelf:
     places: dict[str, SitePage]
     pages_of_source: dict[
         str, dict[str, SitePage]
-    ]  # by source: the places of a document, by language
+    ]  # places of a document by source, then by language
     built_texts: dict[str, str] = field(default_factory=dict)
     linked_files: set[str] = field(default_factory=set)
     pictures: set[str] = field(default_factory=set)
@@ -83,7 +83,7 @@ def shelf(
 def page(source: str, shelf: Shelf, place: SitePage | None = None) -> str:
     """Return the Markdown of a document's page; note the files that it leads to.
 
-    `place` is where it is, if not where its source is. Raises CannotMake where a link leads to no
+    `place` is where it is, if not where its source is. Raises CannotMake if a link leads to no
     file.
     """
     parts: list[str] = []
@@ -114,7 +114,7 @@ def _resolved_link(link: re.Match[str], source: str, place: SitePage, shelf: She
         return link.group(0)
     target = Path(os.path.normpath(PurePosixPath(source).parent / path)).as_posix()
     pages_of_target = shelf.pages_of_source.get(target, {})
-    is_itself = place in pages_of_target.values()  # in another language
+    is_itself = place in pages_of_target.values()  # the page itself in another language
     target_place = (
         shelf.places.get(target)
         if is_itself

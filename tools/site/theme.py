@@ -1,4 +1,4 @@
-"""What the site's theme says in English whatever the language becomes what the catalogue says."""
+"""Replaces the English texts of the site's theme by those of the catalogue."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ THEME_TEXT = re.compile(r'(>\s*|(?:aria-label|title)=")([^<>"]*?)(\s*<|")')
 
 
 def translate(folder: Path, language: str) -> None:
-    """Say in a language what the theme says on the pages in a folder."""
+    """Translate the theme's texts on the pages in a folder."""
 
     def translate_match(match: re.Match[str]) -> str:
         message = find_text("documents", f"theme/{html.unescape(match[2])}", language)

@@ -20,7 +20,8 @@ ROOT_MODULE = "tiniscript.studio.worker"
 # Fetched when they are first needed; what few pages need is as small as it can be.
 LESSONS_MODULE = "tiniscript.studio.page_lessons"
 TOGETHER_MODULE = "tiniscript.studio.page_together"
-# What needs what no browser has: ports, a terminal, other programs, files of profiles.
+# Modules that need parts missing in a browser: ports, a terminal, other programs, files of
+# profiles.
 LEFT_OUT_MODULES = (
     "tiniscript.cli",
     "tiniscript.doctor",
@@ -30,7 +31,7 @@ LEFT_OUT_MODULES = (
     "tiniscript.robots.reader",
     "tiniscript.robots.wiring",
 )
-# Imported where there is a port, wasmtime or another system; never in a browser, nor a part of it.
+# Imported if there is a port, wasmtime or another system; never in a browser, nor a part of it.
 MODULES_NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli",
             "ctypes", "multiprocessing", "urllib.request", "ssl",
             "asyncio.windows_events", "asyncio.windows_utils",
@@ -57,15 +58,15 @@ Files = dict[str, bytes]
 def imports_of(source: bytes, name: str, is_package: bool, everywhere: bool) -> set[str]:
     """Return the modules that a module names in its imports."""
     tree = ast.parse(source)
-    skipped: set[ast.AST] = set()
+    skipped_asts: set[ast.AST] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-            skipped |= {inner_node for part in node.body for inner_node in ast.walk(part)}
+            skipped_asts |= {inner_node for part in node.body for inner_node in ast.walk(part)}
         elif not everywhere and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            skipped |= set(ast.walk(node))
+            skipped_asts |= set(ast.walk(node))
     imports: set[str] = set()
     for node in ast.walk(tree):
-        if node in skipped:
+        if node in skipped_asts:
             continue
         if isinstance(node, ast.Import):
             imports |= {alias.name for alias in node.names}
@@ -108,7 +109,7 @@ class Packer:
         ):
             return []
         if name.startswith("_py") and f"_{name[3:]}" in sys.builtin_module_names:
-            return []  # `_pydatetime`, which takes the place of `_datetime` where there is none
+            return []  # `_pydatetime`, which replaces a missing `_datetime`
         self._seen.add(name)
         path = name.replace(".", "/")
         for candidate in (f"{path}/__init__.py", f"{path}.py"):
@@ -125,7 +126,7 @@ class Packer:
         return []
 
 
-NO_LINES = 0xF8  # of instructions without a place in the source; their number less 1 is added
+NO_LINES = 0xF8  # marker of instructions without a line; their number less 1 is added
 MOST_ENTRY_UNITS = 8  # the most of one entry
 
 
@@ -165,9 +166,9 @@ def small_source(source: bytes) -> bytes:
     """Return the source of a module that does the same: packed, it is half of its bytecode, and
     Python takes some tenths of a second longer to load it."""
     tree = _without_types(source)
-    documented = ast.Module | ast.ClassDef | ast.FunctionDef
+    documented_union_type = ast.Module | ast.ClassDef | ast.FunctionDef
     for node in ast.walk(tree):
-        if isinstance(node, documented) and ast.get_docstring(node):
+        if isinstance(node, documented_union_type) and ast.get_docstring(node):
             node.body = node.body[1:] or [ast.Pass()]
     return INDENT.sub(lambda match: "\t" * (len(match[0]) // 4), ast.unparse(tree)).encode()
 
@@ -187,7 +188,7 @@ def compile_all(files: Files) -> Files:
 
 
 def text_on_page(page_text: str) -> str:
-    """Return of a pupil's page what the studio shows, and all its headings."""
+    """Return the part of a pupil's page that the studio shows, and all its headings."""
     shown_lines: list[str] = []
     section = 0
     for line in page_text.split("\n"):
@@ -215,16 +216,20 @@ def pack(start_modules: list[str], package: str, cobs: str, library_path: str, t
     packer = Packer([Path(package), Path(cobs)], library)
     for name in (*start_modules, *ENCODINGS, ROOT_MODULE):
         packer.add(name)
-    packed = set(packer.own_files)
+    packed_names = set(packer.own_files)
     write_archive(
         f"{target}/tiniscript.zip",
         {**compile_all(packer.own_files), **data_of(package, DATA_PATTERNS)},
     )
-    packer.add(LESSONS_MODULE)  # what of Python's library these need is in the archive of that
-    lessons = {name: source for name, source in packer.own_files.items() if name not in packed}
-    packed |= set(lessons)
+    packer.add(LESSONS_MODULE)  # its archive contains the standard modules that these need
+    lessons = {
+        name: source for name, source in packer.own_files.items() if name not in packed_names
+    }
+    packed_names |= set(lessons)
     packer.add(TOGETHER_MODULE)
-    together = {name: source for name, source in packer.own_files.items() if name not in packed}
+    together = {
+        name: source for name, source in packer.own_files.items() if name not in packed_names
+    }
     data = data_of(package, LESSON_DATA_PATTERNS)
     data |= {name: text_on_page(page.decode()).encode() for name, page in data.items()
              if name.endswith(".md")}  # fmt: skip

@@ -41,7 +41,7 @@ __all__ = [
     "missing",
 ]
 
-PATIENCE_S = 120.0  # for what the simulator is asked to do
+PATIENCE_S = 120.0  # timeout of a simulator command
 
 
 class Uno:
@@ -69,7 +69,7 @@ class Uno:
         self.board = board
         self.events: list[Event] = []
         self.pins = Pins(self.events, names or {}, board)
-        self.cycle = 0  # where it has paused
+        self.cycle = 0  # cycle at which it is paused
         self._keeps_eeprom = eeprom is not None
         self._news = threading.Condition()
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115
@@ -94,11 +94,11 @@ class Uno:
     def __enter__(self) -> Uno:
         return self
 
-    def __exit__(self, *raised: object) -> None:
+    def __exit__(self, *signal_arguments: object) -> None:
         self.close()
 
     def close(self) -> None:
-        """Let the simulator end; what it has told stays."""
+        """End the simulator; its output stays."""
         if not self._has_ended:
             self._send_lines("quit")
         try:
@@ -191,7 +191,7 @@ class Uno:
     # -- what is around it --------------------------------------------------------------------
 
     def drive(self, pin: str, level: bool | None, at: int | None = None) -> None:
-        """Give a pin a level from outside, or leave it alone; at a cycle, or at once."""
+        """Drive a pin from outside, or release it; at a cycle, or at once."""
         word = {None: "none", False: "low", True: "high"}[level]
         self._send_lines(_at_cycle(at) + f"pin {self.pins.number(pin)} {word}")
 
@@ -208,14 +208,14 @@ class Uno:
         self._send_lines(f"analog {self.pins.number(pin)} {count}")
 
     def supply(self, volts: float) -> None:
-        """Let the chip have another voltage than 5 V. Only its analog converter knows of that."""
+        """Set a voltage other than 5 V, which only affects the analog converter."""
         assert 2 <= volts <= 6, volts
         self._send_lines(f"supply {round(volts * 1000)}")
 
     def sonar(
         self, trigger: str, echo: str, distance_cm: float | None, at: int | None = None
     ) -> None:
-        """Put an HC-SR04 at two pins, or move what is in front of it; None: nothing."""
+        """Put an HC-SR04 at two pins, or move its obstacle; None: nothing."""
         numbers = f"{self.pins.number(trigger)} {self.pins.number(echo)}"
         self._send_lines(_at_cycle(at) + f"sonar {numbers} {round((distance_cm or 0) * 10)}")
 
@@ -227,22 +227,24 @@ class Uno:
             self._send_lines(_at_cycle(at) + f"send{'_bad' if stop_bits_fail else ''} {data.hex()}")
 
     def hold(self, level: bool, bits: int, at: int | None = None) -> None:
-        """Hold the wire low (a break) or leave it alone for so many bits, after what is sent."""
+        """Hold the wire low (a break) or idle for so many bits, after the bytes sent."""
         self._send_lines(_at_cycle(at) + f"hold {'high' if level else 'low'} {bits}")
 
     @property
     def sent_bytes(self) -> list[Byte]:
-        """What the chip has sent."""
+        """The bytes that the chip has sent."""
         return [Byte.of(event) for event in list(self.events) if event.kind == "sent"]
 
     @property
     def received_bytes(self) -> list[Byte]:
-        """What has come into the chip's buffer or shift register."""
+        """The bytes in the chip's buffer or shift register."""
         return [Byte.of(event) for event in list(self.events) if event.kind == "received"]
 
     @property
     def lost_bytes(self) -> bytes:
-        """What was received and then overwritten, because nobody fetched what was before it."""
+        """The bytes that were received and then overwritten, because the previous one was not
+        read.
+        """
         return bytes(int(event["byte"]) for event in list(self.events) if event.kind == "lost")
 
     # -- resets -------------------------------------------------------------------------------

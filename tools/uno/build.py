@@ -21,7 +21,7 @@ LIBRARIES = ("-Wl,-Bstatic", "-lsimavr", "-Wl,-Bdynamic", "-lelf", "-lutil", "-l
 
 
 def missing() -> str:
-    """Return why there is no simulated Uno, or nothing."""
+    """Return the reason why there is no simulated Uno, or ""."""
     if not shutil.which("gcc"):
         return "no gcc: the simulated Uno is not built"
     if not SIMULATOR_HEADER.exists():

@@ -1,4 +1,4 @@
-"""What the simulated Uno tells: events with the cycle at which they happened, and views of them."""
+"""The output of the simulated Uno: events with their cycles, and views of them."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Any
 
 HERTZ = 16_000_000
 CYCLES_PER_MS = HERTZ // 1000
-PINS = {"uno": (14, 6), "mega": (54, 16)}  # of each board: digital, analog
+PINS = {"uno": (14, 6), "mega": (54, 16)}  # digital and analog pins of each board
 
 
 @dataclass(frozen=True)
 class Event:
-    """One line. `kind` it is says what else it has (`tools/uno/README.md`)."""
+    """One event. Its `kind` determines the other fields (`tools/uno/README.md`)."""
 
     cycle: int
     kind: str
@@ -33,7 +33,7 @@ class Event:
 
 @dataclass(frozen=True)
 class PinChange:
-    """What the chip does with a pin from a cycle on: `low`, `high`, `input`, `pullup` or `pwm`.
+    """The state of a pin from a cycle on: `low`, `high`, `input`, `pullup` or `pwm`.
 
     `duty` (0 to 1), `hertz` and the timer's `value` are those of `pwm`.
     """
@@ -52,7 +52,7 @@ class PinChange:
 
 @dataclass(frozen=True)
 class Byte:
-    """A byte on a wire: `began` is its start bit, `cycle` where whoever reads it has it."""
+    """A byte on a wire: `began` is the cycle of its start bit, `cycle` that of its arrival."""
 
     cycle: int
     began: int
@@ -65,7 +65,7 @@ class Byte:
 
 @dataclass(frozen=True)
 class Stack:
-    """Bytes of RAM after what is there all the time, and how much of it the stack has taken.
+    """The RAM after static data, and the part that the stack has used.
 
     `untouched_bytes` are as power-on has left them. `program` and `interrupt` are the deepest that
     each of the two went by itself.
@@ -82,7 +82,9 @@ class Stack:
 
     @property
     def least_free(self) -> int:
-        """What is left where the deepest interrupt comes in the deepest place of the program."""
+        """Return the bytes left when the deepest interrupt hits the deepest place of the
+        program.
+        """
         return self.room - self.program - self.interrupt
 
 
@@ -131,11 +133,11 @@ class Pins:
         )
 
     def __getitem__(self, pin: str) -> PinChange:
-        """Return what a pin is now."""
+        """Return the current state of a pin."""
         return self.history(pin)[-1]
 
     def at(self, pin: str, cycle: int) -> PinChange:
-        """Return what a pin was at a cycle."""
+        """Return the state of a pin at a cycle."""
         return [change for change in self.history(pin) if change.cycle <= cycle][-1]
 
 

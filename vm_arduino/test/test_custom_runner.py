@@ -1,4 +1,4 @@
-"""How PlatformIO runs the tests: it takes each test case by name, as `test_cases.cpp` says it.
+"""The runner of PlatformIO's tests, which reports each test case by the name in `test_cases.cpp`.
 
 A run that ends early, or in which no test case runs, is an error. PlatformIO's own runner for
 doctest counts what it finds in the printed assertions, and lets both pass.
@@ -38,7 +38,7 @@ class CustomTestRunner(TestRunnerBase):  # type: ignore[misc] # PlatformIO has n
         try:
             super().stage_testing()
         except UnitTestError:
-            # the exit code of doctest says once more that a case has failed
+            # The exit code of doctest repeats that a case failed.
             has_failed = any(case.status is TestStatus.FAILED for case in cases)
             if not (self.has_ended and has_failed):
                 raise

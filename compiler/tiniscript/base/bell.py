@@ -1,4 +1,4 @@
-"""What wakes a thread that waits for news of another one, wherever a signal interrupts it.
+"""An event that wakes a thread waiting for another one, even when a signal interrupts it.
 
 A Condition and an Event of `threading` are written in Python: a Ctrl-C inside them leaves their
 lock held, or released twice. The main thread waits at a Bell, and holds a Lock or an RLock, which
@@ -7,7 +7,8 @@ are of the interpreter.
 
 from __future__ import annotations
 
-from _thread import allocate_lock  # as threading has it, which takes a millisecond to import
+# Threading has the same function, but takes a millisecond to import.
+from _thread import allocate_lock
 from collections.abc import Callable
 from contextlib import suppress
 from time import monotonic
@@ -21,7 +22,7 @@ class Bell:
         self._silence.acquire()
 
     def ring(self) -> None:
-        with suppress(RuntimeError):  # it has rung, and nobody has heard it yet
+        with suppress(RuntimeError):  # the bell has already rung, and nobody has heard it yet
             self._silence.release()
 
     def wait(self, timeout_s: float) -> bool:
@@ -29,7 +30,9 @@ class Bell:
         return self._silence.acquire(timeout=timeout_s)
 
     def wait_until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
-        """Wait at most so long until something is so, of which a ring tells; return whether."""
+        """Wait for a condition, which a ring reports, until a timeout; return whether it is
+        true.
+        """
         end_s = monotonic() + timeout_s
         while not condition():
             left_s = end_s - monotonic()

@@ -19,7 +19,8 @@ from pathlib import Path
 from string import Formatter
 from typing import Any
 
-PLURALS = ("zero", "one", "two", "few", "many", "other")  # as Unicode's CLDR names them
+# The names of plural categories in Unicode's CLDR.
+PLURALS = ("zero", "one", "two", "few", "many", "other")
 UNKNOWN_HASH, HASH_DIGITS = "-", 8  # instead of a hash; of one
 _GAP = re.compile(r"\{@?\w+\}")
 _ROW_START = re.compile(r"""\s*("(?:[^"\\]|\\.)*"|'[^']*'|[\w-]+)\s*(\.\s*[\w-]+\s*)*=""")
@@ -36,7 +37,7 @@ class Entry:
     """An English text, and what a language has of it.
 
     `translation` has its forms, empty without one, and `seen_hash` is the hash of the
-    text that it translates, UNKNOWN where nobody has said that. A stale one is of what the English
+    text that it translates, UNKNOWN if nobody has said that. A stale one is of what the English
     text was before. `notes` are for translators. `is_same`: no translator is asked for it, since no
     language says it in another way, or since its words stand under the key `same_text_key`, too.
     """
@@ -57,7 +58,7 @@ class Entry:
 
     @property
     def hash(self) -> str:
-        """Return what stands for the English text in a file of what is seen."""
+        """Return the hash that represents the English text in a `seen` file."""
         return sha256("\0".join(self.forms.values()).encode()).hexdigest()[:HASH_DIGITS]
 
     @property
@@ -75,7 +76,7 @@ class Entry:
 
 @dataclass
 class Catalogue:
-    """The texts of a file by key and English text, and what is wrong with it."""
+    """The texts of a file by key and English text, and its problems."""
 
     entries: dict[tuple[str, str], Entry] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
@@ -90,7 +91,7 @@ class Catalogue:
 
 @dataclass
 class Row:
-    """A key of a file with what stands after it, which is None where it cannot be read.
+    """A key of a file with its value, which is None if it cannot be read.
 
     `text_above` are the rows of notes and tables before it.
     """
@@ -117,7 +118,7 @@ class Row:
 
 
 def decode_file(path: Path) -> tuple[str, list[Problem]]:
-    """Return the text of a file, and what is wrong where it cannot be read, or is no UTF-8."""
+    """Return the text of a file, and its problems if it cannot be read or is not UTF-8."""
     try:
         data = path.read_bytes()
     except OSError as error:
@@ -134,7 +135,7 @@ def decode_file(path: Path) -> tuple[str, list[Problem]]:
 
 
 def parse_rows(text: str) -> tuple[list[Row], str, list[Problem]]:
-    """Return the rows of a TOML file, what stands below all of them, and what is no TOML."""
+    """Return the rows of a TOML file, the text below them, and its TOML errors."""
     row_by_key: dict[str, Row] = {}
     repeated_rows: list[Row] = []  # a key that is there twice
     problems: list[Problem] = []
@@ -145,7 +146,8 @@ def parse_rows(text: str) -> tuple[list[Row], str, list[Problem]]:
         is_row = _ROW_START.match(lines[start]) is not None
         end = _row_end(lines, start) if is_row else start + 1
         value, parse_error = _parse_block(block := "".join(lines[start:end]))
-        if parse_error:  # the next row is what begins as one, whatever is open here
+        # The next row begins at the next line that looks like one, even if a value is open.
+        if parse_error:
             problems.append((start + 1, f"this is no TOML: {parse_error[1]}"))
             end = next(
                 (k for k in range(start + 1, len(lines)) if _is_row_start(lines[k])), len(lines)
@@ -180,7 +182,7 @@ def _is_row_start(line: str) -> bool:
 
 
 def _row_end(lines: list[str], start: int) -> int:
-    """Return where a row ends: a text of several lines or a list goes on."""
+    """Return the end of a row, which may be a text or a list of several lines."""
     quotes = ""
     if not _parse_block(lines[start])[1]:
         return start + 1
@@ -198,7 +200,7 @@ def _row_end(lines: list[str], start: int) -> int:
 
 
 def _parse_block(block: str) -> tuple[dict[str, Any], tuple[int, str] | None]:
-    """Return what TOML says, or in which line after the first it is none, and why."""
+    """Parse a block of TOML; on an error, return its line within the block and the reason."""
     if sys.version_info >= (3, 11):
         import tomllib
     else:
@@ -212,7 +214,7 @@ def _parse_block(block: str) -> tuple[dict[str, Any], tuple[int, str] | None]:
 
 
 def _toml_problems(text: str) -> list[Problem]:
-    """Return what is no TOML in a file in which each row alone is."""
+    """Return the TOML errors of a file whose rows are valid one by one."""
     _, parse_error = _parse_block(text)
     return [(parse_error[0] + 1, parse_error[1])] if parse_error else []
 
@@ -264,7 +266,7 @@ def _text_and_plural(forms: dict[str, object]) -> tuple[str, str]:
 
 
 def _find_problem(entries: list[Entry]) -> str:
-    """Return what is wrong with the texts of a key, or nothing."""
+    """Return the problem with the texts of a key, or ""."""
     texts = [entry.english for entry in entries]
     if not all(texts) or not texts:
         return "it has no text"

@@ -2,7 +2,7 @@
 
 The new content is written beside the file, under a name that nobody can foresee, into a file that
 was not there before; then it takes the file's place. So nobody who may write to the folder can have
-another file changed, and whoever reads meanwhile reads the old content or the new.
+another file changed, and anyone who reads meanwhile reads the old content or the new.
 
 A symbolic link stays one: what it leads to is replaced, as by a shell's `>`. One that another user
 has put into a folder where others may write is no way to a file: that is refused. Another hard link
@@ -23,13 +23,13 @@ from pathlib import Path
 from time import monotonic, sleep, time
 
 NEW_ENDING = ".new"  # the end of the name of a file that is not yet whole
-MOST_LINKS = 40  # on the way to a file
-NAME_CHARACTERS = 100  # of a file's name in that of its new one
+MOST_LINKS = 40  # most symbolic links to follow to a file
+NAME_CHARACTERS = 100  # characters of a file's name that its temporary file keeps
 LOCK_ENDING = (
     ".lock"  # the end of the name of a file that commands lock while they change another one
 )
-LOCK_WAIT_S = 5.0  # for which a command waits for another one
-# For which a file may be open elsewhere until it cannot be replaced on Windows.
+LOCK_WAIT_S = 5.0  # time that a command waits for another one
+# Time for which a file may stay open elsewhere before replacing it on Windows fails.
 REPLACE_WAIT_S = 1.0
 OWNER_ONLY = 0o700  # a folder that only its user may look into
 ABANDONED_AFTER_S = 3600.0  # a new file that is older has lost its command
@@ -63,13 +63,17 @@ def _linux_folder(variable: str, usual_folder: str) -> Path | None:
     """
     if sys.platform not in ("linux", "emscripten") or "ANDROID_ROOT" in os.environ:
         return None
-    configured = os.environ.get(variable)
-    folder = Path(configured) if configured else Path(os.environ.get("HOME", "")) / usual_folder
+    configured_text = os.environ.get(variable)
+    folder = (
+        Path(configured_text)
+        if configured_text
+        else Path(os.environ.get("HOME", "")) / usual_folder
+    )
     return folder / "tiniscript" if folder.is_absolute() else None
 
 
 def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool = False) -> None:
-    """Give a file this content, or leave it as it was. Raises OSError or ValueError.
+    """Replace the content of a file, or leave it unchanged. Raises OSError or ValueError.
 
     `mode` is what its permissions become; else they stay, and a new file has what the umask
     leaves. A device or a pipe, which has no old content, is written to. `is_lasting`: also where
@@ -91,7 +95,7 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
     )
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL
     flags |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
-    # nobody else may read what replaces a file that nobody else may read
+    # the new file must be no more readable than the file it replaces
     try:
         descriptor = os.open(new_path, flags, 0o666 if mode is None else 0o600)
         with open(descriptor, "wb") as stream:  # noqa: PTH123 - a number, not a path
@@ -137,7 +141,7 @@ def _check_links(path: Path) -> None:
         next_path = reached_path / parts_left.pop(0)
         try:
             link_stat = next_path.lstat()
-        except OSError:  # nothing is there, so nothing leads away
+        except OSError:  # the file does not exist, so it cannot be a link
             return
         if not stat.S_ISLNK(link_stat.st_mode):
             reached_path = next_path
@@ -148,7 +152,7 @@ def _check_links(path: Path) -> None:
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
         link_count += 1
         if link_count > MOST_LINKS:
-            return  # what opens it says so
+            return  # anyone who opens the file reports the error
         target = next_path.readlink()
         reached_path = Path(target.anchor) if target.anchor else reached_path
         parts_left = [*target.parts[1 if target.anchor else 0 :], *parts_left]
@@ -223,13 +227,13 @@ def remove_abandoned(
 
 
 def is_pipe(name: str) -> bool:
-    """Whether a name is that of a pipe in a folder, whose reader may wait for ever.
+    """Return whether a name is that of a named pipe, whose reader may block forever.
 
     What a shell has opened, `<(tsc show --port P)` and `/dev/stdin`, is in /dev, and has a writer.
     """
     try:
         return not name.startswith("/dev/") and stat.S_ISFIFO(os.stat(name).st_mode)  # noqa: PTH116
-    except (OSError, ValueError):  # reading it says why
+    except (OSError, ValueError):  # reading the file reports the reason
         return False
 
 
@@ -237,7 +241,7 @@ def read_limited(path: Path, limit_bytes: int) -> bytes:
     """Return the bytes of a file that anything may lie at: this ends soon, whatever it is.
 
     A pipe would be waited for, and a device or a huge file would fill the memory. Raises OSError
-    where there is no regular file, or more than so many bytes.
+    if there is no regular file, or more than so many bytes.
     """
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     descriptor = os.open(path, flags)
@@ -251,7 +255,7 @@ def read_limited(path: Path, limit_bytes: int) -> bytes:
 
 
 def _stat(path: Path) -> os.stat_result | None:
-    """Return what is at a path, through a link; None where nothing is."""
+    """Return the status of a path, following links; None if nothing is there."""
     try:
         return path.stat()
     except FileNotFoundError:

@@ -45,7 +45,7 @@ def subtract(a: int, b: int) -> int:
 
 
 def multiply(a: int, b: int) -> int:
-    return in_range(whole(a * b))  # of millionths, thousandths
+    return in_range(whole(a * b))  # thousandths times thousandths are millionths
 
 
 def divide(a: int, b: int) -> int:

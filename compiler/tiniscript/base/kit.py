@@ -1,4 +1,4 @@
-"""What programs see of a robot: its sensors and actuators, its remote control, and how fast it is.
+"""The parts of a robot that programs see: sensors, actuators, remote control, and its speed.
 
 Knows names, order, kinds, units and ranges, and the fingerprints and hashes made of them. Knows no
 pins and no files: `robots` reads those.
@@ -45,12 +45,12 @@ class Device(NamedTuple):
         return value_text(value, self.is_yes_no)
 
 
-# What a remote control says to every robot with a link.
+# The readings of a remote control, which every robot with a link has.
 REMOTE = (
     *(Device(f"KEY_{key}", YES_NO, "", 0, 1) for key in ("UP", "DOWN", "LEFT", "RIGHT", "A", "B")),
     *(Device(f"PAD_{axis}", NUMBER, "", -100_000, 100_000) for axis in ("X", "Y")),
 )
-# What stands on its keys, in every language.
+# The labels of its keys, in every language.
 REMOTE_SIGNS = dict(zip((device.name for device in REMOTE), "↑↓←→AB↔↕", strict=True))
 MOST_SENSORS_BESIDE_REMOTE = 8  # sensors at most: sets of readings have 16 bits
 
@@ -73,7 +73,7 @@ class Kit(NamedTuple):
 
     @property
     def has_remote(self) -> bool:
-        """Whether there is room for the readings of a remote control."""
+        """Return whether the readings of a remote control fit."""
         return len(self.sensors) <= MOST_SENSORS_BESIDE_REMOTE
 
     @property
@@ -91,17 +91,19 @@ class Kit(NamedTuple):
                                  for device in REMOTE))  # fmt: skip
 
     def asks_remote(self, uses: Sequence[tuple[str, int]]) -> bool:
-        """Whether code that uses these devices reads a remote control; a use is as below."""
+        """Return whether code that uses these devices reads a remote control; uses are as in
+        `uses`.
+        """
         return any(kind == "sensor" and k >= len(self.sensors) for kind, k in uses)
 
     def go_ms(self, extent: int, power: int, is_turn: bool) -> int:
-        """Return how long a move takes that goes, or `is_turn`, so many thousandths.
+        """Return the duration in ms of a move, or a turn if `is_turn`, of so many thousandths.
 
-        `power` is 0 to 100. Raises Fault where it never comes there, or takes too long.
+        `power` is 0 to 100. Raises Fault if it never comes there, or takes too long.
         """
         if extent <= 0:
             return 0
-        per_second = (self.turn if is_turn else self.speed) * power  # in thousandths of a percent
+        per_second = (self.turn if is_turn else self.speed) * power  # thousandths of a percent
         if not per_second:
             raise Fault("NO_POWER")
         return in_range(rounded_quotient(extent * 100_000, per_second))
@@ -138,11 +140,11 @@ class Kit(NamedTuple):
         return devices_hash
 
     def lines(self) -> list[str]:
-        """Return what the profile says of each device, as it is hashed."""
+        """Return the lines of the profile that describe each device, in the form that is hashed."""
         return [*_device_lines("sensor", self.sensors), *_device_lines("actuator", self.actuators)]
 
     def device_lines(self) -> list[str]:
-        """Return what a program can see of each device, as it is hashed."""
+        """Return the lines of each device that programs can see, in the form that is hashed."""
         remote = REMOTE if self.has_remote else ()
         return [
             *_device_lines("sensor", (*self.sensors, *remote)),

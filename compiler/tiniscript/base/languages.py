@@ -20,23 +20,24 @@ if TYPE_CHECKING:
     from tiniscript.base.catalogue_source import Catalogue
 
 FOLDER = Path(__file__).parent.parent / "languages"
-SOURCE_LANGUAGE = "en"  # what is translated, and said where there is no translation
+SOURCE_LANGUAGE = "en"  # the language of the originals, and the fallback for missing translations
 ABOUT_FILE, SEEN_FILE = (
     "language.toml",
     "seen.txt",
-)  # what a language says of itself, and what it is of
+)  # a language's description of itself
 NAMES_CATALOGUE = "names"  # the catalogue whose keys are the English texts
-CACHE_ENDING = ".texts"  # the end of the name of what is made of sources
-MARSHAL_VERSION = 2  # of `marshal`: every Python reads it
+CACHE_ENDING = ".texts"  # ending of files generated from sources
+MARSHAL_VERSION = 2  # the version of `marshal`'s format; every Python reads it
 
-Forms = dict[str, str]  # of a text that counts, by their names in Unicode's CLDR
+Forms = dict[str, str]  # plural forms of a text, by their names in Unicode's CLDR
 Texts = dict[str, "str | Forms"]
 T = TypeVar("T")
 
 
 class Language(NamedTuple):
-    """What a language says of itself. `form_digits` has which of `forms` goes with a number, a
-    digit for each before 200; from 100 on they repeat themselves each hundred."""
+    """The description of a language. `form_digits` gives the plural form of each number below 200
+    as a digit, an index of `forms`; from 100 on they repeat every hundred.
+    """
 
     name: str
     english_name: str
@@ -49,8 +50,9 @@ class WrongTexts(Exception):
 
 
 class ByLanguage(dict[str, T]):
-    """A name, or names, in each language that a file says: elsewhere what is said in English, else
-    in the first language, as the catalogue `names` translates it."""
+    """A name or names by language: in other languages the English ones, or those of the first
+    language, as translated by the catalogue `names`.
+    """
 
     def __missing__(self, language: str) -> T:
         return _translate_name(self.get(SOURCE_LANGUAGE) or next(iter(self.values())), language)
@@ -94,7 +96,7 @@ def read_language_file(language: str, name: str) -> str:
 
 
 def language_info(language: str) -> Language:
-    """Return what a language says of itself."""
+    """Return the description of a language."""
     return _load_language(language if language in languages() else SOURCE_LANGUAGE)
 
 
@@ -114,7 +116,7 @@ def _catalogue_texts(language: str) -> tuple[Any, ...]:
 
 
 def find_text(name: str, key: str, language: str) -> str | None:
-    """Return a text of a catalogue, None where it has no such key, or one that counts."""
+    """Return a text of a catalogue, None if it has no such key, or one that counts."""
     text = catalogue(name, language).get(key)
     return text if isinstance(text, str) else None
 
@@ -162,7 +164,8 @@ def catalogue(name: str, language: str) -> Texts:
         FOLDER / language / (name + CACHE_ENDING),
     )
     if not translation_path.is_file() and (is_clone() or not cache_path.is_file()):
-        if language != SOURCE_LANGUAGE:  # nothing is translated, or a page has not fetched it
+        # The language has no translation, or a page has not fetched it.
+        if language != SOURCE_LANGUAGE:
             return catalogue(name, SOURCE_LANGUAGE)
         if not is_clone():
             return {}
@@ -210,14 +213,14 @@ def merged_catalogue(name: str, language: str) -> Catalogue:
 
 
 def _load_cached(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:
-    """Return what is kept in a file if no source is newer, else make it, and keep it."""
+    """Return the content of a cache file if no source is newer; otherwise make and store it."""
     if _is_fresh(path, sources):
         with suppress(ValueError, EOFError, TypeError, OSError):  # half a file
             return marshal.loads(path.read_bytes())
     from tiniscript.base.files import replace
 
     value = make()
-    with suppress(OSError, ValueError):  # a folder that nobody may write to, a full disk
+    with suppress(OSError, ValueError):  # the folder is read-only, or the disk is full
         replace(path, marshal.dumps(value, MARSHAL_VERSION))
     return value
 

@@ -12,8 +12,9 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 LARGEST_SOURCE_BYTES = 1_000_000  # bytes
-PROGRAM_ENDINGS = (".ts", ".tini", ".ts.txt", ".tini.txt")  # of a name; editors of Windows add .txt
-# of all keyboards and phones, as a set of a regular expression has them
+# Endings of file names; editors on Windows add .txt.
+PROGRAM_ENDINGS = (".ts", ".tini", ".ts.txt", ".tini.txt")
+# The spaces of all keyboards and phones, as a set in a regular expression.
 SPACES = r" \t\f\v\u00a0\u2000-\u200b\u202f\u3000\ufeff"
 
 LINE_END = re.compile(r"\r\n|\n|\r")
@@ -71,7 +72,9 @@ class Source:
         return self.text[starts[line - 1] : end].rstrip("\r\n")
 
     def line_span(self, line: int) -> Span:
-        """Return where a line is, from 1, with its end; of the last one with the end before it."""
+        """Return the span of a line, counted from 1, including its line end; the last line includes
+        the line end before it.
+        """
         starts = self._find_line_starts()
         if line < len(starts):
             return Span(starts[line - 1], starts[line])
@@ -98,7 +101,7 @@ class Unreadable(Exception):
 def decode(data: bytes) -> str:
     """Return the text of a file: UTF-8, with or without a byte order mark.
 
-    Raises Unreadable where it is too large, holds NUL bytes or is no UTF-8. UTF-16 with its mark,
+    Raises Unreadable if it is too large, holds NUL bytes or is no UTF-8. UTF-16 with its mark,
     which Windows calls Unicode, is text in another encoding, in spite of its NUL bytes.
     """
     if len(data) > LARGEST_SOURCE_BYTES:
@@ -115,7 +118,7 @@ def decode(data: bytes) -> str:
     return text
 
 
-REPLACEMENT_SIGN = "?"  # of a character that is not printable
+REPLACEMENT_SIGN = "?"  # replaces a character that is not printable
 
 
 def printable(text: str, most_characters: int | None = None) -> str:

@@ -39,13 +39,19 @@ def nearest(word: str, candidates: Iterable[str]) -> str | None:
     return best_word
 
 
-def is_slip(word: str, intended: str) -> bool:
-    """Whether a word is one slip away from another, which may be short: its place says the rest."""
-    return len(word) > 1 and abs(len(word) - len(intended)) < 2 and _edit_count(word, intended) == 1
+def is_slip(word: str, intended_text: str) -> bool:
+    """Return whether a word is one slip away from another, which may be short because its place is
+    decisive.
+    """
+    return (
+        len(word) > 1
+        and abs(len(word) - len(intended_text)) < 2
+        and _edit_count(word, intended_text) == 1
+    )
 
 
 def _edit_count(word: str, other_word: str) -> int:
-    """Return how many slips lead from one word to the other; an exchange of neighbours is one."""
+    """Return the number of slips between two words; exchanging neighbours is one slip."""
     row_before_last: list[int] = []
     last_row = list(range(len(other_word) + 1))
     for i, letter in enumerate(word, 1):
@@ -69,7 +75,7 @@ _MOST_LETTERS = 24
 
 @cache
 def _sounds() -> tuple[tuple[tuple[re.Pattern[str], str], ...], ...]:
-    """What sounds the same in each language that says so: patterns, and the sign for them."""
+    """Return the patterns for letters that sound alike in some language, each with its sign."""
     tables = (read_language_file(language, "sounds.txt").split("\n") for language in languages())
     rows_by_language = ([row.rpartition("|") for row in rows if "|" in row] for rows in tables)
     return tuple(
@@ -122,14 +128,16 @@ def _sounds_of(words: Sequence[str]) -> Iterator[list[str]]:
 
 
 def _deletions(word: str) -> Iterator[str]:
-    """Give the word, and what is left of it without one of its letters."""
+    """Yield the word, and every variant without one of its letters."""
     yield word
     for k in range(len(word)):
         yield word[:k] + word[k + 1 :]
 
 
 def _is_one_edit_away(word: str, other_word: str) -> bool:
-    """Whether one letter is wrong, missing or too much, or two neighbours are exchanged."""
+    """Return whether one letter is wrong, missing or superfluous, or two neighbours are
+    exchanged.
+    """
     k = 0
     while k < min(len(word), len(other_word)) and word[k] == other_word[k]:
         k += 1
@@ -142,7 +150,7 @@ def _is_one_edit_away(word: str, other_word: str) -> bool:
         return True
     if (
         min(len(word), len(other_word)) + k < _LEAST_SLIP_LETTERS
-    ):  # `AVNZA`: a vowel that nobody texts
+    ):  # `AVNZA`: a vowel omitted as in text messages
         return (
             len(other_word) + k >= _LEAST_SLIP_LETTERS
             and other_word[:1] in tuple("AEIOU")

@@ -13,7 +13,7 @@ from tiniscript.base.kit import Kit
 
 
 class Event(NamedTuple):
-    """What a robot did at `time_ms`: MOTORS, READ, BEEP, SHOW, SET, DONE, FAULT or LIMIT.
+    """An action of a robot at `time_ms`: MOTORS, READ, BEEP, SHOW, SET, DONE, FAULT or LIMIT.
 
     `values` are percent for MOTORS, hertz and milliseconds for BEEP, the number of the device
     and thousandths for READ and SET, thousandths for SHOW; `text` is what a trace prints; `offset`
@@ -31,7 +31,7 @@ class Event(NamedTuple):
 
 
 class Ending(NamedTuple):
-    """How a run ended: `kind` is DONE, FAULT or LIMIT; `offset` is where the code was."""
+    """The end of a run: `kind` is DONE, FAULT or LIMIT; `offset` is the place in the code."""
 
     kind: str
     fault: str
@@ -57,7 +57,7 @@ class Senses:
 
 
 class TracedRobot:
-    """A robot that only records what it is told to do."""
+    """A robot that only records its commands."""
 
     def __init__(self, kit: Kit, senses: Callable[[int], int]) -> None:
         self.kit = kit

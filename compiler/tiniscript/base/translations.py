@@ -1,9 +1,9 @@
-"""What a language has of the English texts: reads its files, and says what is wrong with them.
+"""The translations of a language: reads its files, and finds errors in them.
 
 `es/language.toml` says what the language calls itself, and its forms of a text that counts. Each
 other `es/NAME.toml` has texts by the keys of `en/NAME.toml`. `es/seen.txt` has of which English
 text each is a translation: rows of a file's name, a key and a hash, which `tools/languages.py`
-writes; of a list one for each of its texts, `-` where that is not known. So a text in front of
+writes; of a list one for each of its texts, `-` if that is not known. So a text in front of
 others moves no translation to another text, and a translation of what the English text was before
 is stale: it is not said. Knows no language.
 """
@@ -29,7 +29,7 @@ from tiniscript.base.catalogue_source import (
     parse_rows,
 )
 
-NUMBERS_TRIED = 200  # after the first hundred a rule of plurals repeats itself each hundred
+NUMBERS_TRIED = 200  # after the first hundred numbers, a plural rule repeats itself every hundred
 _SEEN_ROW = re.compile(rf"(\w+ .+?)((?: (?:{UNKNOWN_HASH}|[0-9a-f]{{{HASH_DIGITS}}}))+) *")
 _ENGLISH_RULE = "n != 1"
 _ENGLISH_FORMS = ("one", "other")
@@ -37,9 +37,8 @@ _ENGLISH_FORMS = ("one", "other")
 
 @dataclass
 class Language:
-    """What `languages.Language` says, the `plural_rule` of its plurals, which is one of gettext,
-    and `read_by`: whether somebody has read it whose language it is. One that is complete lacks
-    none.
+    """A `languages.Language` with its gettext `plural_rule`, and `read_by`: whether a native
+    speaker has proofread it. A complete language translates every text.
     """
 
     name: str
@@ -53,7 +52,7 @@ class Language:
 
 
 def read_language(path: Path) -> Language:
-    """Read what a language says of itself; what it does not say is as in English."""
+    """Read the description of a language; omitted parts are as in English."""
     language = Language(path.parent.name, path.parent.name)
     text, language.problems = decode_file(path)
     language_rows, _, problems = parse_rows(text)
@@ -121,7 +120,7 @@ def _form_digits(rule: str, forms: tuple[object, ...]) -> tuple[str, str]:
 
 
 def read_seen(path: Path) -> tuple[dict[str, list[str]], list[Problem]]:
-    """Return the hashes of a language by file and key, and what is wrong with the file of them."""
+    """Return the hashes of a language by file and key, and the problems of their file."""
     hashes_by_key: dict[str, list[str]] = {}
     text, problems = decode_file(path) if path.is_file() else ("", [])
     for line_number, line in enumerate(text.split("\n"), 1):
@@ -139,7 +138,7 @@ def read_seen(path: Path) -> tuple[dict[str, list[str]], list[Problem]]:
 
 @dataclass
 class TranslationFile:
-    """A file of a language: its rows, the forms of each text of a key, what is wrong."""
+    """A file of a language: its rows, the forms of each text of a key, and its problems."""
 
     rows: list[Row] = field(default_factory=list)
     texts: dict[str, list[Forms]] = field(default_factory=dict)
@@ -173,7 +172,7 @@ def read_translation_file(path: Path) -> TranslationFile:
 
 
 def _forms(value: object) -> Forms | None:
-    """Return the forms of a text, none where it is empty; None of what is no text."""
+    """Return the forms of a text, none if it is empty; None if it is not a text."""
     if isinstance(value, str):
         return {"": value} if value else {}
     if isinstance(value, dict) and value and all(isinstance(item, str) for item in value.values()):
@@ -193,7 +192,7 @@ def merge_translations(
     seen_hashes: dict[str, list[str]],
     language: Language,
 ) -> Catalogue:
-    """Return English texts with those of a language, and what is wrong with these."""
+    """Return English texts with the translations of a language, and the problems of these."""
     catalogue = Catalogue(
         {identity: without_translation(entry) for identity, entry in english.entries.items()},
         translation_file.problems[:],
@@ -232,7 +231,9 @@ def without_translation(entry: Entry) -> Entry:
 
 
 def assign_translations(entries: list[Entry], texts: list[Forms], hashes: list[str]) -> str:
-    """Give each English text of a key its translation; return why one has no text, or nothing."""
+    """Assign the translations of a key to its English texts; return the reason if one has none, or
+    "".
+    """
     english_hashes = {index: entry.hash for index, entry in enumerate(entries)}
     indexes_left = {index for index, forms in enumerate(texts) if forms}
     has_moved = False
@@ -255,7 +256,7 @@ def assign_translations(entries: list[Entry], texts: list[Forms], hashes: list[s
 
 
 def find_misfits(entry: Entry, language: Language) -> list[str]:
-    """Return what is wrong with the translation of a text that has not changed."""
+    """Return the errors in the translation of an unchanged text."""
     if not entry.is_translated:
         return []
     used_forms = {language.forms[int(digit)] for digit in language.form_digits}
@@ -285,8 +286,9 @@ def find_misfits(entry: Entry, language: Language) -> list[str]:
 
 
 def texts_of(catalogue: Catalogue) -> dict[str, str | Forms]:
-    """Return what is said by key, and of several texts with one key the second under `key/2`: a
-    text, or its forms. What has no translation that fits is English."""
+    """Return the texts by key: a text, or its plural forms. The second text of a key is under
+    `key/2`. English replaces missing or misfitting translations.
+    """
     texts: dict[str, str | Forms] = {}
     for key, group in catalogue.groups().items():
         for number, entry in enumerate(group, 1):

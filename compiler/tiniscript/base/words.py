@@ -15,7 +15,7 @@ from tiniscript.base.languages import SOURCE_LANGUAGE, languages, read_language_
 
 
 class Argument(NamedTuple):
-    """What an argument means, and what a plain number there may be."""
+    """The meaning of an argument, and of a plain number in its place."""
 
     name: str
     unit: str
@@ -32,12 +32,12 @@ class Argument(NamedTuple):
 
 
 class Role(NamedTuple):
-    """What a word is for. Stages ask for these, or have a table by name of what they do with it."""
+    """The purpose of a word. Stages use these fields, or have their own table by role name."""
 
     name: str
     is_instruction: bool = False  # a robot does something at it
-    lasts: bool = False  # for a time, or until something is so
-    is_move: bool = False  # with a power, and a time or a way
+    lasts: bool = False  # whether it lasts for a time, or until a condition is true
+    is_move: bool = False  # whether it has a power, and a time or a distance
     takes_time: bool = False  # the next instruction comes after the time among its values
     belongs_to_blocks: bool = False
     belongs_to_values: bool = False
@@ -59,12 +59,12 @@ class Word(NamedTuple):
 
     @property
     def has_tone(self) -> bool:
-        """Whether it has a time and a frequency, in this order."""
+        """Return whether it has a time and a frequency, in this order."""
         return self.arguments == (SECONDS, HERTZ)
 
     @property
     def is_call(self) -> bool:
-        """Whether it is an instruction with values in brackets."""
+        """Return whether it is an instruction with values in brackets."""
         return self.role.is_instruction and bool(self.arguments)
 
     @property
@@ -95,7 +95,7 @@ ROLES = {role.name: role for role in (
 SECONDS = Argument("seconds", "s", 0)
 TIME = Argument("time", "s", 0, sample="2")
 POWER = Argument("power", "%", 0, 100_000, "80")
-# What a move may have in the place of its time, by the unit after it.
+# Distances that may replace a move's time, by the unit after them.
 EXTENTS = {"CM": Argument("distance", "cm", 0, sample="20 CM"), "DEG": Argument("angle", "°", 0, sample="90 DEG")}
 UNIT_OF = {"F": "CM", "B": "CM", "L": "DEG", "R": "DEG"}
 LEFT = Argument("left", "%", -100_000, 100_000, "50")
@@ -159,14 +159,14 @@ VERSION_OF_WORD = dict.fromkeys(
 TASKS = ("TASK", "WHEN")  # blocks that run beside the rest of the program
 
 OPPOSITE_MOVES = {"F": "B", "B": "F", "L": "R", "R": "L"}  # the moves, and those that undo them
-# What other languages do, and this one does not: pins, jumps, clocks. What the robot knows instead.
+# Features of other languages that this one lacks: pins, jumps, clocks, with their replacements.
 _REPLACEMENT_HINTS = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "every": "LOOP(FOREVER)", "leaves": "END_DEF"}
 
 # fmt: on
 
 
 class LexiconEntry(NamedTuple):
-    """What the lexicon says of a word: `kind` is a word of TiniScript, or what its `value` is.
+    """A lexicon entry: `kind` is a word of TiniScript, or the kind of its `value`.
 
     A unit has how many thousandths of it the word stands for, too: `unit s 60000`.
     """
@@ -178,7 +178,7 @@ class LexiconEntry(NamedTuple):
 
 @cache
 def lexicon() -> dict[str, list[LexiconEntry]]:
-    """What each word means: all that the languages say of it, English last."""
+    """Return the meanings of each word in all languages, English last."""
     entries_by_word: dict[str, list[LexiconEntry]] = {}
     for language in (*languages()[1:], SOURCE_LANGUAGE):
         for row in read_language_file(language, "lexicon.txt").split("\n"):
@@ -191,7 +191,7 @@ def lexicon() -> dict[str, list[LexiconEntry]]:
 
 @lru_cache(4000)
 def lexicon_meaning(word: str, *kinds: str) -> tuple[str, ...]:
-    """Return what the lexicon says of a word, of these kinds: `("s", "1000")` of SEG, `unit`."""
+    """Return the lexicon values of a word for these kinds: `("s", "1000")` for SEG, `unit`."""
     for kind, value, scale in lexicon().get(word, ()):
         if kind in kinds:
             return (value, scale) if scale else (value or kind,)
@@ -212,13 +212,13 @@ def lexicon_concept(word: str) -> str | None:
 
 
 def names_argument(word: str, argument: Argument) -> bool:
-    """Whether a word is what documents and pupils call a value of a call: POTENCIA, VEL, T."""
+    """Return whether a word is a usual name of an argument: POTENCIA, VEL, T."""
     meaning = lexicon_meaning(word, "value") or lexicon_meaning(word, "letter")
     return meaning[:1] == (argument.name if argument in (LEFT, RIGHT) else argument.unit,)
 
 
 def foreign_word_hints(word: str) -> dict[str, str]:
-    """Return what a message says of a word of another language that has no like here."""
+    """Return the message for a word of another language without an equivalent here."""
     if word.startswith("MOTOR"):
         return {"motors": "M(left, right)"}
     return {kind: hint for kind, hint in _REPLACEMENT_HINTS.items() if lexicon_meaning(word, kind)}

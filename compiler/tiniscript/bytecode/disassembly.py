@@ -18,7 +18,7 @@ _BYTES_WIDTH = 18  # room for six bytes
 
 
 class Row(NamedTuple):
-    """One instruction; `op` is None where the bytes are none."""
+    """One instruction; `op` is None for bytes that are no instruction."""
 
     offset: int
     data: bytes
@@ -33,7 +33,7 @@ class Row(NamedTuple):
 
 
 def rows(code: bytes) -> list[Row]:
-    """Return the instructions of `code`, verified or not; what is none stands alone."""
+    """Return the instructions of `code`, verified or not; other bytes have rows of their own."""
     rows_found = []
     offset = 0
     while offset < len(code):
@@ -95,7 +95,7 @@ def _operand_values(row: Row) -> list[tuple[str, int]]:
 def assemble(text: str) -> bytes:
     """Return the bytes of a disassembly.
 
-    Raises ValueError where a line is none, or its offset is not where it stands.
+    Raises ValueError if a line is none, or its offset is not where it stands.
     """
     code = bytearray()
     for line in text.splitlines():

@@ -33,10 +33,10 @@ class Field(NamedTuple):
 
 
 MAGIC = b"TS"
-# What code may need, and a machine may lack.
+# Features that code may need, and a machine may lack.
 TASKS, GO = NEEDS_TASKS, NEEDS_GO
 ALL_NEEDS = TASKS | GO
-LEAST_ISA = ISA_MAJOR, 0  # of code whose instructions all machines have
+LEAST_ISA = ISA_MAJOR, 0  # the version of code whose instructions all machines have
 STARTS = ("SI", "SB", "PING")
 
 # The first fields lie where they lay in version 1, so that whoever finds a stored program of any
@@ -57,7 +57,7 @@ HEADER_BYTES = sum(field.size for field in FIELDS)
 
 # In the order in which they are looked for; the code is verified before the last one.
 REFUSALS = {
-    # name            number, what is refused
+    # name            number, reason of the refusal
     "NOT_AN_IMAGE":   (1, "It does not begin with `TS`, so it is not a TiniScript program."),
     "OTHER_VERSION":  (2, "It is for another version of the machine."),
     "BAD_HEADER":     (3, "Its header has fewer than 15 bytes, or its code has more than 32767."),
@@ -71,7 +71,7 @@ REFUSALS = {
 }
 # fmt: on
 
-_VERSION_BYTES = 4  # by which an image of any version is known
+_VERSION_BYTES = 4  # bytes that identify an image of any version
 _LAYOUT = "<" + "".join(field.layout for field in FIELDS)
 _CHECKSUM_OFFSET = sum(field.size for field in FIELDS[:-2])
 _CHECKSUM_END = _CHECKSUM_OFFSET + 4

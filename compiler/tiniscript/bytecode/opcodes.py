@@ -20,13 +20,13 @@ from tiniscript.base.words import COMPARATORS
 
 ISA_MAJOR = 2  # a machine runs images of its own major version
 ESCAPE = 0xFF  # the first byte of the codes that have two
-# Bits of an image's `needs`: what a machine may lack.
+# Bits of an image's `needs`: features that a machine may lack.
 NEEDS_TASKS, NEEDS_GO = 0x01, 0x02
 SHORTS = 8  # variables, sensors and actuators that instructions of one byte name
 
 
 class OperandKind(NamedTuple):
-    """How an operand is written: `size` bytes, little-endian, from `low` to `high`."""
+    """The encoding of an operand: `size` bytes, little-endian, from `low` to `high`."""
 
     name: str
     size: int
@@ -82,11 +82,13 @@ class Op(NamedTuple):
 
     @property
     def is_act(self) -> bool:
-        """Whether the robot does something at it: no loop over instructions does it alone."""
+        """Return whether the instruction makes the robot act; a loop over instructions never does
+        so alone.
+        """
         return self.control_role in ("plain", "watch") and self.family not in _OWN_FAMILIES
 
 
-# What stands after the name of a family, but for numbers.
+# Endings after the name of a family, except for numbers.
 _VARIANTS = ("FAR", "F", "B", "L", "R", "EQ", "NE", "LT", "LE", "GT", "GE")
 
 # The instructions between others that ask nothing of the robot, or are done again if they fail.
@@ -175,7 +177,7 @@ def _comparison_ops(code: int, name: str, operands: str, effect: str, role: str,
 
 _MOVES = ("F", "forward"), ("B", "backward"), ("L", "left"), ("R", "right")
 
-# The numbers that one byte pushes: what programs count with, and their powers.
+# Numbers that one byte pushes: counters, and their powers.
 PUSHED_NUMBERS = (*range(11), *range(20, 101, 10))
 
 OPS = (
@@ -282,7 +284,7 @@ OPS = (
       ._replace(needs=NEEDS_GO, since=1) for i, (d, direction_word) in enumerate(_MOVES)),
     *(_op(0xFF48 + i, f"WATCH_GO_{d}", "", "way power --", "watch", f"Prepare to drive {direction_word} by `way`, or until a check is TRUE.")
       ._replace(needs=NEEDS_GO, since=1) for i, (d, direction_word) in enumerate(_MOVES)),
-    # in one byte
+    # One-byte instructions.
     *_shorts(0x80, "PUSH_VAR",    "variable", "-- value",   "value", "Push the value of variable {}."),
     *_shorts(0x88, "PUSH_SENSOR", "sensor",   "-- reading", "value", "Push the kept reading of sensor {}."),
     *_shorts(0x90, "PUSH_READ",   "sensor",   "-- reading", "value", "Take a reading of sensor {}, keep it and push it."),
@@ -290,7 +292,7 @@ OPS = (
     *_shorts(0xA0, "SET_VAR",     "variable", "value --",   "plain", "Put the value into variable {}."),
     *_shorts(0xA8, "SET",         "actuator", "value --",   "plain", "Set actuator {} to the value, rounded and limited to its range."),
     *(_op(0xB0 + i, f"PUSH_NUM_{n}", "", "-- n", "value", f"Push the whole number {n}.") for i, n in enumerate(PUSHED_NUMBERS)),
-    # with a constant to compare to
+    # Comparisons with a constant.
     *_comparison_ops(0xC8, "UNTIL8",   "n:u8",               "a --", "until", "As UNTIL: `stop` is `a {} n`."),
     *_comparison_ops(0xD0, "UNTIL16",  "n:i16",              "a --", "until", "As UNTIL: `stop` is `a {} n`."),
     *_comparison_ops(0xD8, "IF8",      "n:u8 to:fwd8",       "a --", "if",    "Go to `to` unless `a {} n`."),
@@ -300,7 +302,7 @@ OPS = (
 )
 
 FAULTS = (
-    # number, name, meaning: what stops a running program
+    # number, name, meaning: faults of a running program
     (1, "OVERFLOW",       "A result is outside -2147483.648 to 2147483.647."),
     (2, "DIVIDE_BY_ZERO", "A division or a remainder by 0."),
     (3, "NO_POWER",       "A move by `way` would never end at its power."),
@@ -312,7 +314,7 @@ FAULTS = (
 _GO_OPS = tuple(op.name for op in OPS if op.needs == NEEDS_GO)
 _UNTIL_OPS = tuple(op.name for op in OPS if op.control_role == "until")
 _MEASURED_OPS = (*(f"GO_{d}" for d, _ in _MOVES), *_UNTIL_OPS)
-# Which instructions of verified code can fault.
+# The instructions that can fault in verified code.
 FAULTING_OPS = {
     "OVERFLOW":       ("TIME", "RANDOM", "ADD", "SUB", "MUL", "DIV", "NEG", "ABS", "ROUND", "ADD_VAR8", "ADD_VAR", "INC_VAR", "DEC_VAR", *_GO_OPS),
     "DIVIDE_BY_ZERO": ("DIV", "MOD"),
@@ -329,10 +331,10 @@ ISA_MINOR = max(op.since for op in OPS)  # a machine runs images of its own and 
 SINCE_OF_NEED = {
     need: min(op.since for op in OPS if op.needs == need) for need in (NEEDS_TASKS, NEEDS_GO)
 }
-UNO_OPS = tuple(op for op in OPS if not op.needs)  # an Uno has what every machine has
+UNO_OPS = tuple(op for op in OPS if not op.needs)  # an Uno has the features of every machine
 BY_NAME = {op.name: op for op in OPS}
 BY_CODE: list[Op | None] = [None] * 256
-ESCAPED_OPS: dict[int, Op] = {}  # by the second byte
+ESCAPED_OPS: dict[int, Op] = {}  # keyed by the second byte
 for _each in OPS:
     if _each.code > 0xFF:
         assert _each.code >> 8 == ESCAPE and _each.code & 0xFF not in ESCAPED_OPS

@@ -26,6 +26,7 @@ def statement_starts(code: bytes) -> list[int]:
 
 
 def statement_of(starts: Sequence[int], offset: int) -> int:
-    """Return where the statement begins that an offset is in. An instruction of the text may begin
-    in the middle of one: the compiler joins it to the one before."""
+    """Return the start of the statement that contains an offset. An instruction of the text may
+    begin in the middle of a statement, because the compiler joins it to the previous one.
+    """
     return starts[max(0, bisect_right(starts, offset) - 1)]

@@ -37,7 +37,7 @@ from tiniscript.bytecode.opcodes import (
 
 # fmt: off
 RULES = {
-    # name             number, what is refused
+    # name             number, reason of the refusal
     "CODE_LENGTH":     (20, "More than 32767 bytes of code."),
     "UNKNOWN_OPCODE":  (21, "A byte that begins no instruction."),
     "CUT_OPERAND":     (22, "The code ends inside an instruction."),
@@ -74,7 +74,7 @@ class Refused(Exception):
 
 
 class Verdict(NamedTuple):
-    """What accepted code needs: values on the stack, counters and calls open at once in all tasks.
+    """The needs of accepted code: stack values, counters and calls open at once in all tasks.
 
     `uses` are its sensors and actuators, "sensor" or "actuator" and the number, in its order.
     `tasks` are those beside the main one; `needs` is that of its image.
@@ -89,9 +89,9 @@ class Verdict(NamedTuple):
 
 
 def verify(code: bytes, sensors: int, actuators: int, needs: int = 0xFF) -> Verdict:
-    """Return what `code` needs on a machine with so many sensors and actuators.
+    """Return the needs of `code` on a machine with these numbers of sensors and actuators.
 
-    `needs` is what its image says. Raises Refused where a machine must not run it.
+    `needs` is what its image says. Raises Refused if a machine must not run it.
     """
     if len(code) > CODE_BYTES:
         raise Refused("CODE_LENGTH", 0)
@@ -99,13 +99,13 @@ def verify(code: bytes, sensors: int, actuators: int, needs: int = 0xFF) -> Verd
 
 
 class _Join(NamedTuple):
-    """Where an AND_THEN or an OR_ELSE leads, and with how many values on the stack."""
+    """The target of an AND_THEN or an OR_ELSE, and its number of stack values."""
 
     target: int
     depth: int
 
 
-_IF, _REPEAT, _COUNT = "if", "repeat", "count"  # what a block is; a REPEAT loop does not count
+_IF, _REPEAT, _COUNT = "if", "repeat", "count"  # kinds of blocks; a REPEAT loop does not count
 _NEST_WORDS = {_IF: 1, _REPEAT: 2, _COUNT: 2}
 
 
@@ -120,12 +120,12 @@ class _Block:
         self.end = end
 
 
-_DEF, _TASK, _WHEN = "def", "task", "when"  # what a routine is
-_UNTIL = "until"  # whose check is open, or _WHEN
+_DEF, _TASK, _WHEN = "def", "task", "when"  # kinds of routines
+_UNTIL = "until"  # kind of an open check; the other is _WHEN
 
 
 class _Routine:
-    """A DEF, a task or a WHEN; and what is open at once in it, its calls too.
+    """A DEF, a task or a WHEN, with its open loops and calls.
 
     The main task is one that is no other's routine: the code outside of all others.
     """
@@ -145,20 +145,20 @@ class _Verifier:
         self.code = code
         self.allowed = needs
         self.devices = {"sensor": sensors, "actuator": actuators}
-        self.at = 0  # where the instruction that is looked at begins
-        self.after = 0  # where the next one begins
-        self.target = 0  # where it jumps, if it does
+        self.at = 0  # offset of the current instruction
+        self.after = 0  # offset of the next instruction
+        self.target = 0  # target of its jump, if any
         self.depth = 0  # values on the stack
-        self.joins: list[_Join] = []  # that are open, the innermost last
-        self.blocks: list[_Block] = []  # that are open, the innermost last
-        self.check = ""  # whose check is open: that of an UNTIL or of a WHEN
+        self.joins: list[_Join] = []  # open joins, the innermost last
+        self.blocks: list[_Block] = []  # open blocks, the innermost last
+        self.check = ""  # kind of the open check: _UNTIL or _WHEN
         self.counters = 0  # counted loops that are open in this routine
         self.main = _Routine(_TASK, 0, 0)
-        self.routine = self.main  # that is looked at
+        self.routine = self.main  # the current routine
         self.closed: list[_Routine] = []  # the procedures that have ended
-        self.tasks: list[_Routine] = [self.main]  # and all tasks that have begun
+        self.tasks: list[_Routine] = [self.main]  # all tasks begun so far
         self.reads_inside = False  # a PUSH_READ has been met with values below it, or in a join
-        # what the whole code needs
+        # Stack values that the whole code needs.
         self.stack_values = 0
         self.most_counters = 0
         self.most_calls = 0
@@ -241,11 +241,13 @@ class _Verifier:
         self.stack_values = max(self.stack_values, self.depth)
 
     def place(self, op: Op) -> None:
-        """Whether it may stand here: what is no part of an expression leaves an empty stack."""
+        """Check that the instruction is allowed here; outside of expressions the stack must be
+        empty.
+        """
         if op.control_role in _EXPRESSION_ROLES:
             if op.family == "PUSH_READ" and (self.depth > 1 or self.joins):
                 self.reads_inside = True
-                if len(self.tasks) > 1:  # it would end a turn with values on the stack
+                if len(self.tasks) > 1:  # the instruction would end a turn with values on the stack
                     self.refuse("STACK_NOT_EMPTY")
             return
         if self.depth or self.joins or (op.control_role in (_TASK, _WHEN) and self.reads_inside):
@@ -266,7 +268,7 @@ class _Verifier:
 
     @property
     def innermost(self) -> str:
-        """What the innermost open block is, or nothing."""
+        """Return the kind of the innermost open block, or ""."""
         return self.blocks[-1].kind if self.blocks else ""
 
     def open(self, kind: str, end: int) -> None:
@@ -275,11 +277,11 @@ class _Verifier:
             self.refuse("BAD_TARGET")
         enclosing = self.blocks[-1] if self.blocks else None
         if enclosing is not None and enclosing.end:
-            # the end of a loop lies after what closes it
+            # the end of a loop is after its closing instruction
             if end > enclosing.end - (enclosing.kind != _IF):
                 self.refuse("BAD_TARGET")
             if kind == _IF and end == enclosing.end:
-                return  # it shares the block around it
+                return  # the loop shares the block around it
         if sum(_NEST_WORDS[block.kind] for block in self.blocks) + _NEST_WORDS[kind] > NEST_WORDS:
             self.refuse("TOO_DEEP")
         self.blocks.append(_Block(kind, self.after, end))
@@ -314,7 +316,7 @@ class _Verifier:
         loop.end = self.target
 
     def opens(self, counters: int, calls: int) -> None:
-        """Note what is open at once, and refuse what is too deep, in all tasks together."""
+        """Note the counters and calls open at once, and refuse too many in all tasks together."""
         routine = self.routine
         routine.counters = max(routine.counters, counters)
         routine.calls = max(routine.calls, calls)
@@ -347,7 +349,7 @@ class _Verifier:
 
     def if_(self) -> None:
         if self.innermost == _REPEAT and self.target == self.blocks[-1].end:
-            return  # it leaves the loop
+            return  # the jump leaves the loop
         self.open(_IF, self.target)
 
     def else_(self) -> None:
@@ -430,7 +432,7 @@ def load_image(data: bytes, kit: Kit, capabilities: int = ALL_NEEDS) -> Image:
 
 
 def check(image: Image, kit: Kit) -> Verdict:
-    """Return what the code of an image needs. Raises Refused, or ImageRefused."""
+    """Return the needs of an image's code. Raises Refused, or ImageRefused."""
     verdict = verify(image.code, len(kit.readings), len(kit.actuators), image.needs)
     own_hash = kit.hash_of_used(verdict.uses)
     if image.devices != own_hash:

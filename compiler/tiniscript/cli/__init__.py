@@ -22,8 +22,9 @@ from tiniscript.cli.texts.options import LANGUAGE, command_of
 from tiniscript.cli.texts.verbs import VERBS
 
 EXIT_OF_CLOSED_PIPE = 141  # 128 and the number of SIGPIPE
-# Most commands end before there is garbage, and imported modules are none. A collection after each
-# 700 new objects, and one of all objects at the end, takes a sixth of the time of `tsc compile`.
+# Most commands end before there is garbage, and imported modules are not garbage. A collection
+# after every 700 new objects, and a full one at the end, would take a sixth of the time of `tsc
+# compile`.
 GC_THRESHOLD = 50_000
 
 
@@ -36,7 +37,7 @@ def main(arguments: list[str] | None = None) -> int:
     except BrokenPipeError:
         _drop_output()
         return EXIT_OF_CLOSED_PIPE
-    except KeyboardInterrupt:  # before the language is known
+    except KeyboardInterrupt:  # the language is not known yet
         return 2
     except WrongTexts as error:
         print(f"tsc: {error}", file=sys.stderr)
@@ -132,7 +133,7 @@ def _run_verb(arguments: list[str], language: str) -> int:
         return 0
     try:
         name = arguments[0]
-        if name == "--lang" or name.startswith("--lang="):  # before the verb, too
+        if name == "--lang" or name.startswith("--lang="):  # --lang is allowed before the verb
             flag_word_count = 1 if "=" in name else 2
             language_name = name[7:] if "=" in name else arguments[1] if len(arguments) > 1 else ""
             if language_name not in LANGUAGE.choices:

@@ -22,7 +22,7 @@ from tiniscript.library.compiling import Compilation
 from tiniscript.library.named_robot import robot_of
 from tiniscript.robots.profile import Robot
 
-NAME_COLUMNS = 40  # of a file's name in the table; of a longer one the end is shown
+NAME_COLUMNS = 40  # columns for a file's name; a longer one is cut at the start
 
 
 class Row(NamedTuple):
@@ -86,22 +86,24 @@ def _row(file: ProgramFile, options: Namespace, robot: Robot, language: str) -> 
 def _repair(
     program_input: inputs.Input, options: Namespace, robot: Robot, language: str
 ) -> tuple[Compilation, int, str]:
-    """Make or show the sure repairs of a program; return what is left, how many, and a problem."""
-    repaired = repair(program_input, robot)
-    if repaired.repair_count and not options.json:
-        print_difference(program_input.data, repaired.data, program_input.name)
+    """Make or show the certain repairs of a program; return the remaining mistakes, the number of
+    repairs, and a problem.
+    """
+    repaired_program = repair(program_input, robot)
+    if repaired_program.repair_count and not options.json:
+        print_difference(program_input.data, repaired_program.data, program_input.name)
     if options.diff:
         return (
             compilations.compile_input(program_input, robot, is_strict=False),
-            repaired.repair_count,
+            repaired_program.repair_count,
             "",
         )
-    if repaired.repair_count:
+    if repaired_program.repair_count:
         try:
-            outputs.write(Path(program_input.name), repaired.data, "unwritable_source")
+            outputs.write(Path(program_input.name), repaired_program.data, "unwritable_source")
         except CommandError as error:
-            return repaired.compilation, 0, error.plain_sentence(language)
-    return repaired.compilation, repaired.repair_count, ""
+            return repaired_program.compilation, 0, error.plain_sentence(language)
+    return repaired_program.compilation, repaired_program.repair_count, ""
 
 
 def _line(row: Row, language: str) -> str:

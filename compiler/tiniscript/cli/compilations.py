@@ -1,4 +1,4 @@
-"""What the text of an input compiles to, with its diagnostics."""
+"""The compilation of an input's text, with its diagnostics."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ class CommandError(Exception):
             try_label = f" {languages.text('messages', 'label/try', language)}  "
             failure, advice, example = sentence_text.rpartition(
                 try_label
-            )  # what was typed may have it, too
+            )  # the command line may contain it
             return Sentence(
                 f"{failure} {suggestion}{advice}{example}"
                 if advice
@@ -43,13 +43,13 @@ def _value_text(value: str | Exception) -> str:
 
 
 def unwritable_error(key_and_option: str, file: str, cause: str | Exception) -> CommandError:
-    """Return what is said of a file; the sentence's key may be followed by the option it names."""
+    """Return the error for a file that cannot be written; the key may be followed by an option."""
     key, _, option = key_and_option.partition(" ")
     return CommandError(2, key, file=file, why=cause, option=option)
 
 
 def missing_package_error(key: str, error: Exception) -> CommandError:
-    """Return what is said where the packages of a virtual robot are missing."""
+    """Return the error for missing packages of a virtual robot."""
     from tiniscript.library import install_advice
 
     return CommandError(2, key, why=error, how=install_advice.command(install_advice.VIRTUAL))

@@ -33,7 +33,7 @@ def fault_text(
 
 
 def _task_text(task: tuple[str, int] | None, language: str) -> str:
-    """Return which task it was, with a comma before it; nothing where that is not known."""
+    """Return the name of the faulty task after a comma, or "" if it is unknown."""
     if task is None:
         return ""
     word, line = task

@@ -25,9 +25,10 @@ from tiniscript.cli.texts import text
 from tiniscript.flash import children
 from tiniscript.library import install_advice
 
-LOG_FILE = "fetch.log"  # what the last program that failed has said, in the folder of the cache
+LOG_FILE = "fetch.log"  # output of the last program that failed, in the cache folder
 MEASURE_INTERVAL_S = 1.0
-INSTALLING_MESSAGE = "Installing collected packages"  # what pip says when it has fetched everything
+# Printed by pip once it has downloaded everything.
+INSTALLING_MESSAGE = "Installing collected packages"
 _NO_ROOM = re.compile(r"ENOSPC|No space left", re.IGNORECASE)
 _OFFLINE = re.compile(
     r"ENOTFOUND|EAI_AGAIN|ECONN|ETIMEDOUT|EHOSTUNREACH|ENETUNREACH|connection|No matching dist"
@@ -35,21 +36,21 @@ _OFFLINE = re.compile(
 
 
 class Part(NamedTuple):
-    """What is fetched: `key` names the words for it, `mb` says how many megabytes it has, about."""
+    """A download: `key` names its texts, `mb` is its approximate size in megabytes."""
 
     key: str
     mb: int
 
 
 class Step(NamedTuple):
-    """What is done now, the key of its words, and how far it is, in percent."""
+    """The current step: the key of its texts, and its progress in percent."""
 
     key: str
     percent: int
 
 
 class FolderProgress:
-    """How far a folder has grown, in percent of `mb`; the part is another program's to fill."""
+    """The growth of a folder, in percent of `mb`, while another program fills it."""
 
     def __init__(self, folder: Path, mb: int) -> None:
         self.folder, self.mb = folder, mb
@@ -60,7 +61,7 @@ class FolderProgress:
             measured_percent = size_of(self.folder) // (10_000 * self.mb)
             self._percent = min(
                 99, max(self._percent, measured_percent)
-            )  # what is put away is fetched, too
+            )  # files that were put away count as fetched
             self._next_measure_s = monotonic() + MEASURE_INTERVAL_S
         return self._percent
 
@@ -80,7 +81,7 @@ def size_of(folder: Path) -> int:
 def ask_to_fetch(
     missing_text: str, parts: Sequence[Part], minutes: int, options: Namespace, language: str
 ) -> None:
-    """Say what is missing and what is fetched, and ask. Raises CommandError without a yes."""
+    """Print the missing parts and the downloads, and ask. Raises CommandError without a yes."""
     parts_text = ", ".join(text(part.key, language).format(mb=part.mb) for part in parts)
     values = {
         "mb": str(sum(part.mb for part in parts)),
@@ -113,7 +114,7 @@ def install(extra: str, part: Part, language: str) -> None:
             variables,
             lambda output: INSTALLING_MESSAGE not in output,  # half of a package looks whole
         )
-    invalidate_caches()  # of this process, where the package was not there
+    invalidate_caches()  # this process has cached that the package was missing
 
 
 def run(
@@ -152,7 +153,8 @@ def run(
 def _failure(step_text: str, log: str) -> CommandError:
     """Return the sentence for a program that has failed, and keep what it has said."""
     log_path = files.cache_folder() / LOG_FILE
-    files.keep(log_path, log.encode("utf-8", "replace"))  # else the sentence has to do
+    # If the file cannot be written, the message has no path.
+    files.keep(log_path, log.encode("utf-8", "replace"))
     key_patterns = (("fetch_no_room", _NO_ROOM), ("fetch_offline", _OFFLINE))
     key = next((key for key, pattern in key_patterns if pattern.search(log)), "fetch_failed")
     cause = printable_name(children.reason(log))

@@ -29,9 +29,9 @@ from tiniscript.robots.ports import AVRS, ESP32S
 from tiniscript.robots.profile import ProfileRefused, Robot
 
 LOG_FILE = "build.log"  # the output of the last failed build, in the folder of the ready files
-# Of fetching and building, for whoever fetches 10 Mbit a second or more.
+# Minutes to download and build, at 10 Mbit/s or more.
 BUILD_MINUTES, ESP32_BUILD_MINUTES = 3, 10
-AVR_BOARDS = tuple(AVRS)  # that avrdude writes to
+AVR_BOARDS = tuple(AVRS)  # boards that avrdude writes to
 
 
 def robots_on_boards(
@@ -54,11 +54,11 @@ def robots_on_boards(
 def firmware(
     robot: Robot, options: Namespace, language: str, has_breakpoints: bool = False
 ) -> ReadyFile:
-    """Return the firmware of a robot on its board. Raises CommandError where it cannot be built."""
+    """Return the firmware of a robot on its board. Raises CommandError if it cannot be built."""
     if has_breakpoints:
         robot = robot._replace(
             board=robot.board._replace(language=SOURCE_LANGUAGE)
-        )  # it answers no text
+        )  # the robot ignores text
     sources = building.sources()
     ready_file = _find_ready(robot, sources, has_breakpoints)
     if ready_file is not None:
@@ -72,7 +72,7 @@ def firmware(
 
 
 def require_breakpoints(robot: Robot) -> None:
-    """Raise CommandError where nothing is to be left out for breakpoints, or that is not enough."""
+    """Raise CommandError if nothing is to be left out for breakpoints, or that is not enough."""
     if not building.can_have_breakpoints(robot):
         has_room = robot.board.chip not in building.ENVIRONMENT_WITH_BREAKPOINTS
         key = "flash_has_breakpoints" if has_room else "flash_no_breakpoints"
@@ -147,7 +147,7 @@ def _show_build(
 
 
 def _fetch(robot: Robot, values: dict[str, str], options: Namespace, language: str) -> None:
-    """Have what builds the firmware of a robot, if the person agrees. Raises CommandError.
+    """Download the build tools of a robot's firmware if the person agrees. Raises CommandError.
 
     PlatformIO fetches the compiler itself, when it builds.
     """
@@ -170,7 +170,8 @@ def _failure(error: CannotBuild, values: dict[str, str]) -> CommandError:
     """Return the sentence for a failed build, and save the build's output."""
     log_path = ready.firmware_cache() / LOG_FILE
     if error.log:
-        files.keep(log_path, error.log.encode("utf-8", "replace"))  # else the sentence has to do
+        # If the file cannot be written, the message has no path.
+        files.keep(log_path, error.log.encode("utf-8", "replace"))
     install_command = install_advice.command(install_advice.FIRMWARE)
     texts = {
         "why": printable_name(error.last_output),

@@ -36,7 +36,7 @@ def show(make_page: Callable[[str, int], str], language: str) -> None:
 
 
 def list_commands(commands: Iterable[str], language: str, width: int = WIDTH) -> str:
-    """Return what commands do, as a list."""
+    """Return a list of commands with their descriptions."""
     rows = [_row(command, language) for command in commands]
     return "\n".join(_two_columns(rows, _left_width(rows, width * 4 // 10), width)) + "\n"
 
@@ -72,7 +72,7 @@ def overview(language: str, width: int = WIDTH) -> str:
 
 
 def full_help(language: str, width: int = WIDTH) -> str:
-    """Return what `tsc help all` says: every verb, in groups."""
+    """Return the text of `tsc help all`: every verb, in groups."""
     parts = [_paragraphs(verb_text("title", language), width)]
     grouped_rows = command_groups(language)
     left_width = _left_width([row for _, rows in grouped_rows for row in rows], width * 4 // 10)
@@ -90,7 +90,7 @@ def command_groups(language: str) -> list[tuple[str, list[Row]]]:
     for verb, group in VERBS.items():
         commands_alone = (
             [] if verb == SET_COMMAND else [verb]
-        )  # which does nothing without a word after it
+        )  # the option does nothing without a value
         rows = [_row(command, language) for command in (*commands_alone, *steps_of(verb))]
         rows_by_heading.setdefault(verb_text(f"group/{group}", language), []).extend(rows)
     return list(rows_by_heading.items())
@@ -102,7 +102,7 @@ def _row(command: str, language: str) -> Row:
 
 
 def usage(command: str, language: str) -> list[str]:
-    """Return how a command is used: a line for each way."""
+    """Return the usage lines of a command."""
     if usages := verb_sentence(command, "usage", language):
         head = STEPS[command].head if command in STEPS else command
         return [f"tsc {head} {usage_text}" for usage_text in usages.split("\n")]
@@ -110,13 +110,13 @@ def usage(command: str, language: str) -> list[str]:
     for option in shown_of(command):
         if option.is_argument:
             label = option.shown_value(language) + (" ..." if option.repeats else "")
-            is_required = option.kind == PROGRAM  # in whose place -e may stand
+            is_required = option.kind == PROGRAM  # -e may replace the program
             words.append(label if is_required else f"[{label}]")
     return [" ".join([*words, verb_text("usage", language)])]
 
 
 def command_start(command: str, language: str) -> str:
-    """Return how a command begins: `doctor --ports`; `firmware --board NAME|FILE`."""
+    """Return the beginning of a command: `doctor --ports`; `firmware --board NAME|FILE`."""
     words = command_words(command)
     last_word = words.split()[-1]
     options = [option for option in shown_of(command) if option.flags == last_word]
@@ -164,7 +164,7 @@ def _left_width(rows: Iterable[Row], most_width: int) -> int:
 
 
 def _two_columns(rows: Iterable[Row], left_width: int, width: int) -> Iterator[str]:
-    """Yield two columns; what is too long for the first one has a line of its own."""
+    """Yield two columns; texts too long for the first one have a line of their own."""
     indent = " " * (left_width + 4)
     for command, summary in rows:
         lines = _wrap(summary, width - len(indent))
@@ -192,7 +192,7 @@ def _wrap(text: str, width: int) -> list[str]:
 
 
 def _width() -> int:
-    """Return how many columns help has: on a narrow terminal fewer."""
+    """Return the width of help texts, which is smaller on a narrow terminal."""
     if not sys.stdout.isatty():
         return WIDTH
     return max(LEAST_WIDTH, min(WIDTH, get_terminal_size().columns))

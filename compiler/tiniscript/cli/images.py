@@ -78,7 +78,8 @@ def _check_image(program_input: inputs.Input, image: Image, robot: Robot) -> Non
     try:
         check(image, robot.kit)
     except (ImageRefused, Refused) as error:
-        lacks_devices = error.name == "NO_SUCH_DEVICE" and image.devices  # it has fewer
+        # The robot has fewer devices.
+        lacks_devices = error.name == "NO_SUCH_DEVICE" and image.devices
         if error.name == "OTHER_KIT" or lacks_devices:
             other_robot = find_robot_for(image, robot)
             other_name = "FILE" if other_robot is None else other_robot.name

@@ -21,7 +21,7 @@ MOST_NAME_CHARACTERS = 200  # characters of a file's name
 
 
 class Input(NamedTuple):
-    """The bytes of a program. `path` is None where they come from no file.
+    """The bytes of a program. `path` is None if they come from no file.
 
     `has_robot`: `--robot` has chosen the robot, so what the program names does not count.
     """
@@ -33,14 +33,14 @@ class Input(NamedTuple):
 
     @property
     def is_image(self) -> bool:
-        """Whether these bytes are, or are called, a compiled program."""
+        """Return whether the bytes, or their file's name, are those of a compiled program."""
         is_binary = self.data[:2] == b"TS" and self.data[2:3] < b" " and len(self.data) > 2
         has_image_name = self.path is not None and self.path.suffix.lower() == ".bin"
         return has_image_name or (is_binary and self.data[2:3] not in (b"\t", b"\n", b"\r"))
 
 
 def program(options: Namespace) -> Input:
-    """Return the program that the options name. Raises CommandError where there is none."""
+    """Return the program that the options name. Raises CommandError if there is none."""
     has_robot = getattr(options, "robot", None) is not None  # tsc lesson has no such option
     return _program(options)._replace(has_robot=has_robot)
 
@@ -64,7 +64,7 @@ def _program(options: Namespace) -> Input:
 
 
 def read_file(name: str, typed_name: str | None = None) -> Input:
-    """Return what is in a file. Raises CommandError, which names it as it was `typed_name`."""
+    """Return the content of a file. Raises CommandError with the name as it was typed."""
     path, shown_name = Path(name), printable_name(name if typed_name is None else typed_name)
     if sys.platform == "win32":
         from tiniscript.cli.windows_names import is_device
@@ -88,7 +88,7 @@ def read_file(name: str, typed_name: str | None = None) -> Input:
 
 
 def check_port(name: str) -> str:
-    """Return the name of a port that a person has typed. Raises CommandError where it is none."""
+    """Return the name of a port that a person has typed. Raises CommandError if it is none."""
     if not name.strip() or not name.isprintable():
         raise CommandError(2, "no_such_port", found=printable_name(name) or "''")
     return name
@@ -110,13 +110,13 @@ def robot(options: Namespace, language: str) -> Robot:
 
 
 def wired_robot(options: Namespace, language: str) -> Robot:
-    """Return the robot of the options. Raises CommandError where no firmware fits its board."""
-    from tiniscript.robots.firmware import BOARDS  # with all drivers
+    """Return the robot of the options. Raises CommandError if no firmware fits its board."""
+    from tiniscript.robots.firmware import BOARDS  # boards with all drivers
 
     profile = robot(options, language)
     if profile.board.chip not in BOARDS:
-        known = ", ".join(BOARDS)
-        raise CommandError(2, "no_firmware", chip=profile.board.chip, known=known)
+        known_text = ", ".join(BOARDS)
+        raise CommandError(2, "no_firmware", chip=profile.board.chip, known=known_text)
     return profile
 
 
@@ -150,7 +150,7 @@ def refusal(
     error: ProfileRefused, language: str, key: str,
     full_reasons: tuple[str, ...] = ("file_", "no_such_robot", "no_such_world"), **values: str,
 ) -> CommandError:  # fmt: skip
-    """Return why a profile, a world or a lesson is refused: the sentence `key`, with all reasons.
+    """Return the refusal of a profile, a world or a lesson: the sentence `key` with all reasons.
 
     A single reason that begins with one of `full_reasons` says it all.
     """

@@ -42,8 +42,8 @@ from tiniscript.robots.profile import Robot
 from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.world import WorldRefused
 
-MOST_PROGRAMS = 200  # of a folder
-LEAST_COLUMNS = 24  # of a sentence beside its program; below that it stands under it
+MOST_PROGRAMS = 200  # most programs in a folder
+LEAST_COLUMNS = 24  # columns that a sentence needs beside its program; otherwise it goes below
 TEXT_ENDINGS = (*PROGRAM_ENDINGS, ".txt")
 NOTES_NAME = re.compile(r"(?:read ?me|leeme|notes|notas)(?![^\W\d_])", re.IGNORECASE)  # names
 # A line of a program begins so, also a wrong one: `SI|`, `SI`, `F 2`, `ADELANTE (2)`, `x = 3`.
@@ -56,7 +56,7 @@ NO_PROGRAM = "no_program"  # notes beside the programs; they count for nothing
 
 
 class Mark(NamedTuple):
-    """What came of a program. `seed` is that of the world where it failed, 0 for none.
+    """The result of a program. `seed` is the world in which it failed, or 0.
 
     `sentences` are pairs of a criterion's kind and a sentence; `run` is the last run.
     """
@@ -212,7 +212,7 @@ def _programs(options: Namespace) -> Iterator[tuple[str, ProgramFile]]:
 
 
 def _name_notes(marks: Sequence[Mark], options: Namespace, language: str) -> None:
-    """Name the notes of a folder on standard error. Raises CommandError where all are notes."""
+    """Name the notes of a folder on standard error. Raises CommandError if all are notes."""
     notes = [inputs.printable_name(mark.name) for mark in marks if mark.verdict == NO_PROGRAM]
     if len(notes) == len(marks):
         raise CommandError(2, "lesson_empty", file=inputs.printable_name(options.program))
@@ -223,7 +223,7 @@ def _name_notes(marks: Sequence[Mark], options: Namespace, language: str) -> Non
 
 
 def _is_note(file: ProgramFile) -> bool:
-    """Whether a `.txt` is called like notes, and no line looks like a program.
+    """Return whether a `.txt` file is named like notes and has no line that looks like a program.
 
     In doubt it is a program: what a pupil has handed in is marked, however wrong it is.
     """

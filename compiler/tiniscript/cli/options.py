@@ -20,7 +20,7 @@ from tiniscript.cli.texts.options import Option, options_of, selecting_options_o
 from tiniscript.cli.texts.verbs import STEPS, command_words, steps_of, verb_text
 from tiniscript.robots.profile import Robot
 
-# The messages of argparse, and what is said instead.
+# The messages of argparse, and their replacements.
 _MESSAGES = {
     "missing": r"the following arguments are required: (.*)",
     "unknown": r"unrecognized arguments: (.*)",
@@ -29,7 +29,7 @@ _MESSAGES = {
 }
 
 
-# What an option was that is none any more: the command that does it.
+# Former options, and the commands that replace them.
 FORMER_OPTIONS = {("run", "--replay"): "run run.tsr"}
 OTHER_RUN_VERB = {"run": "upload", "upload": "run"}  # a program without a robot, and with one
 
@@ -73,7 +73,7 @@ class Options(ArgumentParser):
         options, unknown_words = self.parse_known_args(arguments, defaults)
         for option in self.table:
             self._check_choice(option, getattr(options, option.name))
-        if unknown_words:  # told of after a wrong value: `tsc set nme TINI`
+        if unknown_words:  # follows a wrong value: `tsc set nme TINI`
             self.error(f"unrecognized arguments: {' '.join(unknown_words)}")
         if sys.platform == "win32" and getattr(options, "programs", None):
             from tiniscript.cli.windows_names import matching_files
@@ -87,7 +87,7 @@ class Options(ArgumentParser):
         return options
 
     def accepts(self, words: list[str]) -> bool:
-        """Whether these words may stand after the command, as far as the table of options says."""
+        """Return whether the table of options allows these words after the command."""
         try:
             self.parse_args(words)
         except CommandError:
@@ -129,7 +129,7 @@ class Options(ArgumentParser):
         raise CommandError(2, "bad_option", detail=message, verb=self.verb, near=suggestion)
 
     def _check_option_of_step(self, unknown_option: str) -> None:
-        """Say with which step of the verb an option goes that is unknown here."""
+        """Print the step of the verb that has an unknown option."""
         verb = self.verb.split()[0]
         steps = [name for name in (verb, *steps_of(verb)) if _has_flag(name, unknown_option)]
         if not steps or not unknown_option.startswith("-"):
@@ -145,7 +145,7 @@ class Options(ArgumentParser):
         )
 
     def _suggest_flag(self, typed_word: str) -> str:
-        """Return what somebody may have meant with a word that is unknown here, or nothing."""
+        """Return a suggestion for an unknown word, or ""."""
         table = [*self.table, *selecting_options_of(self.command)]
         flags = [flag for option in table if not option.is_argument
                  for flag in option.flags.split()]  # fmt: skip
@@ -193,7 +193,7 @@ def whole_number(option: str, typed_value: str | None, default: int, low: int, h
 
 
 def decimal(typed_value: str) -> int | None:
-    """Return the thousandths of a decimal, rounded; None where it is none or far too large."""
+    """Return the thousandths of a decimal, rounded; None if it is none or far too large."""
     digits = typed_value[1:] if typed_value[:1] == "-" else typed_value
     if not re.fullmatch(r"[0-9]+(\.[0-9]+)?|\.[0-9]+", digits, re.ASCII):
         return None

@@ -19,7 +19,7 @@ def write(path: Path, data: bytes, error_key: str, mode: int | None = None) -> N
     """Write a file, all of it or nothing: the old file stays until the new one is whole.
 
     `mode` is what its permissions become. Raises CommandError with the sentence of `error_key`
-    where that is not possible.
+    if that is not possible.
     """
     from tiniscript.base import files
 

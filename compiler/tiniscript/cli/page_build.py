@@ -1,4 +1,4 @@
-"""The studio's page in a clone: built where it is missing, if the person agrees.
+"""The studio's page in a clone: built if it is missing, if the person agrees.
 
 Whoever makes a wheel at a terminal of a clone is asked by it, too.
 """
@@ -17,11 +17,11 @@ from tiniscript.studio import building, serving
 
 NODE, NPM = Part("fetch_node", building.NODE_MB), Part("fetch_npm", building.NPM_MB)
 STEP_KEYS = ("fetch_npm_now", "studio_types", "studio_packing", "studio_bundling")
-STEP_START_PERCENT = (0, 0, 40, 95)  # of the whole build, when a step begins
+STEP_START_PERCENT = (0, 0, 40, 95)  # share of the whole build at the start of each step
 
 
 def prepare(options: Namespace, language: str) -> None:
-    """Build the page where it is missing, and tell where it is stale. Raises CommandError."""
+    """Build a missing page, and print a note about a stale one. Raises CommandError."""
     if not serving.is_built():
         build(options, language)
     elif not building.is_built_from_sources(serving.PAGE):
@@ -58,13 +58,13 @@ def build(options: Namespace, language: str) -> None:
 
 
 def missing_parts() -> list[Part]:
-    """Return what is fetched before the page can be built."""
+    """Return the downloads needed before the page can be built."""
     node = [] if building.find_tools() is not None else [NODE]
     return node if building.are_packages_fetched() else [*node, NPM]
 
 
 def megabytes() -> int:
-    """Return how much `tsc studio` fetches before it opens the page."""
+    """Return the number of megabytes that `tsc studio` downloads before it opens the page."""
     return 0 if serving.is_built() else sum(part.mb for part in missing_parts())
 
 

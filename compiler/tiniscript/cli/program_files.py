@@ -1,6 +1,6 @@
 """The programs that a command names: files, and all programs in folders.
 
-Follows no link to a folder, and opens nothing that is no file: a folder may hold anything.
+Follows no link to a folder, and opens nothing that is not a file: a folder may hold anything.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tiniscript.cli.paths import real_name
 
 
 class ProgramFile(NamedTuple):
-    """A program's file, or, where it cannot be read, why."""
+    """A program's file, or, if it cannot be read, why."""
 
     name: str
     data: bytes
@@ -26,7 +26,7 @@ class ProgramFile(NamedTuple):
 
 
 def are_several(names: Sequence[str]) -> bool:
-    """Whether these names are not just one program."""
+    """Return whether these names are more than one program."""
     return len(names) > 1 or any(_is_folder(name) for name in names)
 
 
@@ -49,7 +49,7 @@ def _is_folder(name: str) -> bool:
 
 
 def in_folder(top: str, endings: tuple[str, ...] = PROGRAM_ENDINGS) -> Iterator[str]:
-    """Yield the names of programs in a folder and those below, in order; none that is hidden.
+    """Yield the names of visible programs in a folder and its subfolders, in order.
 
     `endings` are the ends of their names. A folder that cannot be read is yielded itself.
     """
@@ -60,7 +60,7 @@ def in_folder(top: str, endings: tuple[str, ...] = PROGRAM_ENDINGS) -> Iterator[
             with os.scandir(folder) as entries:
                 sorted_entries = sorted(entries, key=lambda entry: entry.name)
         except OSError:
-            yield folder  # reading it says why
+            yield folder  # reading the file reports the reason
             continue
         for entry in sorted_entries:
             if not entry.name.startswith(".") and entry.name.lower().endswith(endings):
@@ -73,7 +73,9 @@ def in_folder(top: str, endings: tuple[str, ...] = PROGRAM_ENDINGS) -> Iterator[
 
 
 def read(name: str) -> ProgramFile:
-    """Return what is in a file, or why it cannot be read. A pipe or a device is not opened."""
+    """Return the content of a file, or the reason why it cannot be read. Pipes and devices are not
+    opened.
+    """
     try:
         stat_result = Path(name).stat()
         if not (stat.S_ISREG(stat_result.st_mode) or stat.S_ISDIR(stat_result.st_mode)):
@@ -81,7 +83,7 @@ def read(name: str) -> ProgramFile:
                 name, b"", CommandError(2, "file_no_file", file=inputs.printable_name(name))
             )
     except (OSError, ValueError):
-        pass  # reading it says why
+        pass  # reading the file reports the reason
     try:
         return ProgramFile(name, inputs.read_file(name).data)
     except CommandError as error:

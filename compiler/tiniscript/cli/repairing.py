@@ -24,7 +24,9 @@ _RESET = "\033[0m"
 
 
 class RepairedProgram(NamedTuple):
-    """A program with its sure repairs: the bytes of its file, how many, and what is left."""
+    """A program with its certain repairs: the file's bytes, their number, and the remaining
+    mistakes.
+    """
 
     data: bytes
     repair_count: int
@@ -40,11 +42,13 @@ def repair(program_input: Input, robot: Robot) -> RepairedProgram:
     def compile_data(data: bytes) -> Compilation:
         return compilations.compile_input(program_input._replace(data=data), robot, is_strict=False)
 
-    repaired = repair_program(text, lambda new_text: compile_data(new_text.encode()).diagnostics)
-    new_data = repaired.text.encode()
+    repaired_program = repair_program(
+        text, lambda new_text: compile_data(new_text.encode()).diagnostics
+    )
+    new_data = repaired_program.text.encode()
     if program_input.data.startswith(_BOM):
         new_data = _BOM + new_data
-    return RepairedProgram(new_data, repaired.repair_count, compile_data(new_data))
+    return RepairedProgram(new_data, repaired_program.repair_count, compile_data(new_data))
 
 
 def print_difference(old_data: bytes, new_data: bytes, name: str) -> None:

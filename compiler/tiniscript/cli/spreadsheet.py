@@ -18,8 +18,9 @@ from tiniscript.cli.texts import text
 
 MOST_CELL_CHARACTERS = 2000  # characters of a cell
 TABLES = ("check", "lesson")
-# What begins a formula: at the beginning of a cell; in a name wherever a cell may begin, too, since
-# whoever opens the file chooses what ends its cells. Ours end with a comma or a semicolon.
+# Characters that begin a formula: at the beginning of a cell; in a name also wherever a cell may
+# begin, because the person who opens the file chooses the separators. Ours are a comma or a
+# semicolon.
 _FORMULA_SIGN = "(?=[=+\\-@＝＋－＠])"
 _FORMULA_START = re.compile(rf"(^)(\s*){_FORMULA_SIGN}")
 _AFTER_END = re.compile(rf"(^|[;|\"])(\s*){_FORMULA_SIGN}")
@@ -36,7 +37,7 @@ def as_csv(table_name: str, language: str, rows: Iterable[Sequence[object]]) -> 
 
 
 def file_starts() -> tuple[bytes, ...]:
-    """Return how a file of `as_csv` begins, for each table and language: its head, with its end.
+    """Return the first line of an `as_csv` file for each table and language.
 
     A spreadsheet that has kept such a file may have given it other line ends.
     """
@@ -45,7 +46,8 @@ def file_starts() -> tuple[bytes, ...]:
 
 
 def escape_formula(text: str) -> str:
-    """Return what somebody wrote so that a spreadsheet takes it for text, in cells after commas.
+    """Return a user's text such that spreadsheets do not run it as a formula, in cells after
+    commas.
 
     It may take ; for their end, which no quotation marks keep in a cell then.
     """
@@ -57,7 +59,7 @@ def _name(value: object) -> str:
 
 
 def _cell(value: object) -> object:
-    """Return a number, or a sentence, of which nothing but a first sign can be a formula."""
+    """Return a number, or a sentence that only its first character could make a formula."""
     return (
         _FORMULA_START.sub(r"\1\2'", printable(value, MOST_CELL_CHARACTERS))
         if isinstance(value, str)

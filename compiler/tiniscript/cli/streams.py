@@ -22,8 +22,8 @@ from typing import Any, TextIO
 from tiniscript.cli.texts import Sentence
 
 READER_TIMEOUT_S = 1.0  # timeout for a reader when a command is interrupted
-ERROR_HANDLER = "tiniscript_plain"  # of the handler of errors
-# for drawings: as wide as what they stand for
+ERROR_HANDLER = "tiniscript_plain"  # name of the error handler
+# Replacements for drawings; each is as wide as its original.
 _SAME_WIDTH = ("│─├┤█▌▐♪↑↖←↙↓↘→↗", "|-||#==~^\\</v\\>/")
 DRAWING_SUBSTITUTES = str.maketrans(_SAME_WIDTH[0] + "…", _SAME_WIDTH[1] + ".")
 _SUBSTITUTE_WORDS = {
@@ -48,7 +48,7 @@ def _replacement(error: UnicodeError) -> tuple[str | bytes, int]:
     return codecs.backslashreplace_errors(error)
 
 
-# of SetConsoleMode
+# Flag of SetConsoleMode.
 PROCESSED_OUTPUT = 0x0001
 VIRTUAL_TERMINAL_PROCESSING = 0x0004
 
@@ -83,8 +83,8 @@ def has_colors(stream: TextIO) -> bool:
 
 
 def drop_unread_output() -> None:
-    """Have the outputs of which nobody reads what was written go nowhere: a command that is
-    interrupted writes no more there, and waits for nobody.
+    """Redirect outputs without a reader to nowhere, so that an interrupted command neither writes
+    to them nor waits.
 
     A pipe whose reader is only slow takes what is written within UNREAD_S.
     """
@@ -114,7 +114,7 @@ def raise_if_reader_gone() -> None:
         return
     if not (stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode)):
         return
-    import select  # asked only where nothing may be written for long
+    import select  # asked only if nothing may be written for long
 
     poller = select.poll()
     poller.register(descriptor, 0)
@@ -126,7 +126,7 @@ def _write_all(stream: TextIO, pipe: int) -> bool:
     """Write what waits for a pipe; return whether all was taken in time."""
     if sys.platform == "win32":
         return False
-    import select  # of an interrupted command
+    import select  # the module may have been interrupted while loading
 
     end_s = monotonic() + READER_TIMEOUT_S
     os.set_blocking(pipe, False)
@@ -164,7 +164,7 @@ class WrappingStream:
         return self._stream.write(text)
 
 
-# A command, or a sentence: it stays in one row where there is room. People copy a command: one that
+# A command, or a sentence: it stays in one row if there is room. People copy a command: one that
 # begins with the path of a program is never broken.
 _COMMAND = re.compile(r"(?<=[^ ] {2})[^ \n]+(?: [^ \n]+)*")
 

@@ -1,4 +1,4 @@
-"""Which command is meant where no verb stands: `tsc uplod`, `tsc prog.ts`, `tsc help "put on"`.
+"""Which command is meant if no verb stands: `tsc uplod`, `tsc prog.ts`, `tsc help "put on"`.
 
 Knows what a command was called when it was a verb, too. A question may have words of several
 languages: the tables of verbs and options have all of them.
@@ -43,7 +43,7 @@ def refuse(name: str, words: list[str], language: str) -> NoReturn:
 
 
 def _present_command(command: str, words: list[str], language: str) -> str:
-    """Return what is typed for a command that was a verb: with the words after it, if they fit."""
+    """Return the current form of a former verb, followed by the words after it if they fit."""
     head = STEPS[command].head if command in STEPS else command
     for command_text in (head, command_words(command)):
         verb, *all_words = [*command_text.split(), *words]
@@ -56,7 +56,7 @@ def _present_command(command: str, words: list[str], language: str) -> str:
 
 
 def guess_verb(name: str) -> str:
-    """Return the command that somebody means with a word that is no verb, or nothing."""
+    """Return the command that a word other than a verb means, or ""."""
     matching_commands = (
         command
         for command in (*COMMANDS, "--version")
@@ -67,12 +67,12 @@ def guess_verb(name: str) -> str:
 
 
 def is_help(name: str) -> bool:
-    """Whether a word is what help is called in a language: `tsc ayuda`."""
+    """Return whether a word means help in a language: `tsc ayuda`."""
     return _without_accents(name) in _names_in_languages("help").split()
 
 
 def _names_in_languages(verb: str) -> str:
-    """Return what the same is called elsewhere, in each language."""
+    """Return the verb's name in each language."""
     return " ".join(
         _without_accents(verb_sentence(verb, "words", language)) for language in languages()
     )
@@ -103,7 +103,7 @@ def _quote(name: str, is_always_quoted: bool = False) -> str:
 
 
 MOST_VERBS = 5  # verbs in an answer
-LEAST_LETTERS = 3  # letters of a word that says something
+LEAST_LETTERS = 3  # shortest word with a meaning
 STEM_LETTERS = 5  # letters in which forms of a word agree: connect, connected; conecta, conectar
 
 
@@ -131,7 +131,7 @@ def verbs_for(question: str) -> list[str]:
 
 
 def _weights(verb: str) -> dict[str, int]:
-    """Return what each stem of a command's texts counts."""
+    """Return the weight of each stem in a command's texts."""
     options = [option for option in options_of(verb) if option.verbs not in ("*", "tsc")]
 
     def stems_of(part: str) -> set[str]:

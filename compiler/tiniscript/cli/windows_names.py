@@ -1,4 +1,4 @@
-"""Names that Windows gives to no file: whoever writes to one loses what was written.
+"""Reserved names of Windows: data written to such a file is lost.
 
 `con.bin` is the console there and `aux.html` a serial port, in each folder; `sheet:1.html` is a
 hidden part of the file `sheet`. Knows names, and can be asked on every system.

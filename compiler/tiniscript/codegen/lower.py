@@ -46,7 +46,7 @@ class LoweredCode(NamedTuple):
 def lower(program: ir.Program, is_plain: bool = False) -> LoweredCode:
     """Return the code bytes of a program, and where in the text they come from.
 
-    `is_plain` code is made from a program as it is written, not from an optimised one.
+    `is_plain` code is made from a program as written, not from an optimised one.
     """
     lowering = _Lowering(is_plain, len(program.procedures))
     called_numbers = (k for k, procedure in enumerate(program.procedures) if procedure.is_called)
@@ -133,7 +133,7 @@ class _Lowering:
         power = None if move.power is None else self.percentage(move.power, 0)
         name = "WAIT" if power is None else move.direction
         until = move.until
-        if until is None and time is None:  # a move for ever, beside other tasks
+        if until is None and time is None:  # a move forever, beside other tasks
             until = ir.Until((), (ir.Term("YES_NO", 0),))
         if until is None and time is not None and not move.unit:
             time_ms = self.constant_of(time)
@@ -359,7 +359,8 @@ def _assemble(emitter: Emitter) -> LoweredCode:
             for k, item in enumerate(emitter.items)
             if item.label is not None and not _is_in_reach(item, starts[k], targets[item.label])
         }
-        if not too_short or offset > 2 * CODE_BYTES:  # then it is refused, however long it is
+        # Code over the limit is refused, whatever its length.
+        if not too_short or offset > 2 * CODE_BYTES:
             break
         emitter.widen(too_short)
     code = bytearray()

@@ -36,7 +36,7 @@ class Emitter:
     def __init__(self, is_plain: bool = False) -> None:
         self.is_plain = is_plain
         self.items: list[Item] = []
-        self.labels: list[int] = []  # the index of the item that each label stands before
+        self.labels: list[int] = []  # the index of the item after each label
         self.span = Span(0, 0)
         self._last_mark = -1
 
@@ -68,7 +68,7 @@ class Emitter:
         return True
 
     def widen(self, indexes: set[int]) -> None:
-        """Give the jumps at the indexes `indexes` their far forms."""
+        """Change the jumps at these indexes to their far forms."""
         items: list[Item] = []
         new_indexes = []
         for k, item in enumerate(self.items):
@@ -179,7 +179,7 @@ def emit_unless(emitter: Emitter, condition: Expression, target: int) -> None:
         add_value(emitter, condition)
         emitter.add("IF", label=target)
         return
-    # where a part of it begins and ends, and whether its being TRUE branches
+    # Start and end of each part, and whether it branches when TRUE.
     pending_branches = [(0, len(condition), False)]
     while pending_branches:
         start, end, wanted_answer = pending_branches.pop()

@@ -1,4 +1,4 @@
-"""Tests whether somebody else's machine or robot does what the specification says.
+"""Tests of other people's machines and robots against the specification.
 
 Knows the cases that `docs/develop/conformance.md` describes, how a machine is asked as a process of
 its own and a robot over the link, and what differs. Prints nothing.

@@ -1,4 +1,4 @@
-"""What differs between what was wanted and what came: a value for each case.
+"""The difference between expected and actual results, by case.
 
 Knows no process and no port.
 """
@@ -11,13 +11,13 @@ from typing import NamedTuple
 from tiniscript.conformance.kit import MachineCase
 from tiniscript.conformance.machine_process import Problem
 
-AGREES, DIFFERS, LACKS = "agrees", "differs", "lacks"  # or what a Problem says
+AGREES, DIFFERS, LACKS = "agrees", "differs", "lacks"  # or the name of a Problem
 LACKING_ANSWERS = (
     ["REFUSED UNKNOWN_NEEDS"],
     ["REFUSED OTHER_VERSION"],
 )  # the second of a machine of 2.0
-MOST_ENDLESS = 3  # answers that hang or flood; then nobody waits for more of them,
-MOST_SILENT = 20  # nor for a machine whose first so many runs gave no answer
+MOST_ENDLESS = 3  # answers that hang or flood, after which no more are awaited,
+MOST_SILENT = 20  # and first runs without an answer, after which the machine is given up
 
 
 class Verdict(NamedTuple):
@@ -45,7 +45,7 @@ AskMachine = Callable[[str, int], Sequence[str]]
 
 
 def verdicts(cases: Iterable[MachineCase], answer_of: AskMachine) -> Iterator[Verdict]:
-    """Yield the verdict of each case, up to where nobody waits for more.
+    """Yield the verdict of each case, up to if nobody waits for more.
 
     A machine that refuses the first case that needs something lacks it, and is asked for no other.
     `needs` has a bit for each thing.

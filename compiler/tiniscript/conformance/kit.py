@@ -1,4 +1,4 @@
-"""What a machine or a robot on a port must do: what `machine.json` and `link.json` say, as values.
+"""The tests for a machine or a robot on a port: `machine.json` and `link.json` as values.
 
 `python -m tools.builds.conformance` makes the files, which a package of a release has. Knows their
 form, and how a case is told to a machine: `docs/develop/conformance.md` has both. The conversations
@@ -13,15 +13,15 @@ from typing import Any, NamedTuple
 
 FOLDER = Path(__file__).resolve().parent
 MACHINE_FORM = "tiniscript-machine-kit"
-MACHINE_VERSION = 5  # of the form; grows when a reader of the file, or a machine, must know more
+MACHINE_VERSION = 5  # version of the file's form; raised when readers or machines must know more
 
 
 class MachineCase(NamedTuple):
-    """One run. `devices` are the kit's lines, as the specification hashes them, and how fast it is;
-    `readings_by_sensor` are thousandths by the number of the sensor; times are milliseconds. A slow
-    sensor has a period, and from when to when in each it is not ready. `every_ms` has one for each
-    wait,
-    the last for all that follow. A machine may lack what a case `needs`, as images say it."""
+    """One run. `devices` are the kit's lines, in the form that is hashed, and its speed;
+    `readings_by_sensor` are thousandths by sensor number; times are milliseconds. A slow sensor has
+    a period, and ranges in which it is not ready. `every_ms` has an entry for each wait; the last
+    one applies to all further waits. A machine may lack the case's `needs`, which are as in images.
+    """
 
     name: str
     devices: tuple[str, ...]
@@ -64,7 +64,7 @@ class NotMade(Exception):
 
 
 def _read_json(name: str) -> Any:
-    """Return what a file of cases says. Raises NotMade."""
+    """Return the content of a file of cases. Raises NotMade."""
     try:
         return json.loads((FOLDER / name).read_text(encoding="utf-8"))
     except FileNotFoundError:
@@ -133,7 +133,7 @@ class LinkTestSuite(NamedTuple):
 
 
 def link_test_suite() -> LinkTestSuite:
-    """Return what a robot on a port must do. Raises NotMade."""
+    """Return the tests for a robot on a port. Raises NotMade."""
     suite_file = _read_json("link.json")
     assert (suite_file["form"], suite_file["version"]) == (LINK_FORM, LINK_VERSION)
     return LinkTestSuite(

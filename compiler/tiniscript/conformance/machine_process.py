@@ -25,9 +25,9 @@ ENDING_WORDS = (
     "REFUSED",
 )  # a line with one of them is the last of an answer
 CHUNK_BYTES = 1 << 16
-SPARE_BYTES = 1 << 18  # that an answer may be longer than the right one
-TAIL_BYTES = 2000  # of what it writes to standard error, kept to show it
-EXIT_TIMEOUT_S = 0.5  # for a process whose output has ended, to end with its code
+SPARE_BYTES = 1 << 18  # bytes that an answer may exceed the right one by
+TAIL_BYTES = 2000  # bytes of standard error that are kept to be shown
+EXIT_TIMEOUT_S = 0.5  # time for a process to exit after its output has ended
 
 
 class Problem(Exception):
@@ -46,7 +46,7 @@ class CannotStart(Exception):
 
 
 def ends_answer(row: str) -> bool:
-    """Whether a line ends an answer."""
+    """Return whether a line ends an answer."""
     words = row.split(" ", 2)
     return words[0] == "REFUSED" or (
         len(words) > 1 and words[0].isdigit() and words[1] in ENDING_WORDS
@@ -60,7 +60,7 @@ class MachineProcess:
         self.command = command
         self.timeout_s = timeout_s
         self._process: subprocess.Popen[bytes] | None = None
-        self._answer_count = 0  # of this process
+        self._answer_count = 0  # answers of this process
 
     def ask(self, request: str, expected_bytes: int) -> tuple[str, ...]:
         """Return the lines of an answer. Raises Problem and CannotStart.
@@ -91,7 +91,7 @@ class MachineProcess:
         self._requests.put(b"")
         end_s = time.monotonic() + EXIT_TIMEOUT_S
         while self._reader.is_alive() and time.monotonic() < end_s:
-            with contextlib.suppress(queue.Empty):  # it waits where the queue is full
+            with contextlib.suppress(queue.Empty):  # the queue may be full
                 self._chunks.get(timeout=0.01)
         self._error_reader.join(EXIT_TIMEOUT_S)
         lines = bytes(self._tail).decode("utf-8", "replace").strip().splitlines()
@@ -100,7 +100,7 @@ class MachineProcess:
     def _start(self) -> subprocess.Popen[bytes]:
         try:
             command: str | list[str] = self.command
-            if sys.platform != "win32":  # where each program takes its command line apart itself
+            if sys.platform != "win32":  # Windows programs split their command lines themselves
                 command = shlex.split(self.command)
             if not command:
                 raise ValueError("no command")

@@ -34,12 +34,10 @@ SHOW_7 = bytes.fromhex("b739")
 WAIT_20 = bytes.fromhex("bb50")  # no motor turns
 STATES = ("IDLE", "RUNNING", "STOPPED", "FAULTED")
 NO_MESSAGE = 31  # a number that no message has
-EVENT_TIMEOUT_S = 3.0  # for an event after what has caused it
+EVENT_TIMEOUT_S = 3.0  # time for an event after its cause
 BUSY_TRIES, BUSY_PAUSE_S = 50, 0.1
 HEADER_BYTES = 10  # bytes of an image before its checksum
-SILENCE_TIMEOUT_S = (
-    5.0  # at most, until an attached program ends without a frame: it does after 1 s
-)
+SILENCE_TIMEOUT_S = 5.0  # an attached program without a frame ends after 1 s
 ATTENDED_S = 3.0
 
 
@@ -50,7 +48,7 @@ class Check(NamedTuple):
 
 
 def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
-    """Yield the verdict of each check. Raises OSError where the port is gone.
+    """Yield the verdict of each check. Raises OSError if the port is gone.
 
     A robot that answers nothing any more fails a check as `silent_count`; after three in a row the
     rest is left out.
@@ -105,7 +103,7 @@ def all_checks(suite: LinkTestSuite) -> list[Check]:
 
 
 def answer_text(answer: Answer) -> str:
-    """Return an answer as a check writes it: a name, and the detail where there is one."""
+    """Return an answer as a check writes it: a name, and the detail if there is one."""
     if answer.status == -1:
         return "OK with other fields"
     name = name_of(answer.status)
@@ -168,7 +166,7 @@ def _program_check(program: LinkProgram) -> Callable[[WireRobot], tuple[str, ...
 
 
 def _run_events(robot: WireRobot, seconds: float) -> tuple[str, ...]:
-    """Return what a run tells, up to its end."""
+    """Return the events of a run, up to its end."""
     ends = ("DONE", "FAULT", "STOPPED")
     for _ in range(int(seconds / 0.05)):
         if any(event.name in ends for event in robot.events):
@@ -214,7 +212,7 @@ def _check_hello(robot: WireRobot) -> tuple[str, ...]:
 def _check_damaged_frame(robot: WireRobot) -> tuple[str, ...]:
     damaged_before = robot.ask("STATUS").number("damaged")
     frame = bytearray(encode_frame(Frame(BY_NAME["PING"].number, 200, robot.epoch)))
-    frame[-2] ^= 0x55  # of the checksum
+    frame[-2] ^= 0x55  # damages the checksum
     robot.send(b"\0" + bytes(frame).replace(b"\0", b"\x55", len(frame) - 1)[:-1] + b"\0")
     replies = robot.receive(0.3)
     damaged_count = (robot.ask("STATUS").number("damaged") - damaged_before) % 256
@@ -256,7 +254,7 @@ _PLACE_ROWS = ("no place before", "1 of what runs", "no place unasked")
 
 def _check_place(robot: WireRobot) -> tuple[str, ...]:
     if not greet(robot).number("features") & PLACES:
-        return _PLACE_ROWS  # it does not say that it tells places: nobody asks it
+        return _PLACE_ROWS  # the robot does not announce places, so none is requested
     earlier_answer = robot.ask("PING", {"asks": b"?"})
     program = run_live(robot, WAIT_20).number("program")
     place_field = _bytes_field(robot.ask("PING", {"asks": b"?"}), "place")

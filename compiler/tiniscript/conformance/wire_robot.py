@@ -89,7 +89,7 @@ class WireRobot:
         values: Mapping[str, int | bytes] | None = None,
         try_count: int = MOST_TRIES,
     ) -> Answer:
-        """Return the answer to a request with a new number; send it again where none comes."""
+        """Return the answer to a request with a new number; send it again if none comes."""
         message = BY_NAME[name]
         payload = encode_payload(message.request, values or {})
         return self.ask_frame(message.number, payload, try_count, message=name)
@@ -98,7 +98,7 @@ class WireRobot:
         self, number: int, payload: bytes, try_count: int = MOST_TRIES, message: str = "",
         epoch: int | None = None,
     ) -> Answer:  # fmt: skip
-        """The same of any message; `epoch` is another one than the robot's."""
+        """Send any message as a frame and return its reply; `epoch` replaces the robot's."""
         self._seq = (self._seq + 1) & 0xFF
         return self.repeat(number, payload, try_count, message, epoch)
 
@@ -106,7 +106,7 @@ class WireRobot:
         self, number: int, payload: bytes, try_count: int = MOST_TRIES, message: str = "",
         epoch: int | None = None,
     ) -> Answer:  # fmt: skip
-        """The same with the number of the request before."""
+        """Send a request with the number of the previous one."""
         frame = Frame(number, self._seq, self.epoch if epoch is None else epoch, payload)
         for _ in range(try_count):
             self.send(b"\0" + encode_frame(frame))

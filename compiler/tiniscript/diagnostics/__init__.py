@@ -1,1 +1,1 @@
-"""Diagnostics: what is said about a program, by code and span, and which edits repair it safely."""
+"""Diagnostics: messages about a program, by code and span, and safe edits that repair it."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Span
 
-# Diagnostics of one text, after which more help nobody: it is read no further.
+# Diagnostics after which a text is read no further, because more would not help.
 MOST_DIAGNOSTICS = 100
 
 
@@ -28,10 +28,10 @@ class Repair(NamedTuple):
 
 
 class Diagnostic(NamedTuple):
-    """One diagnostic in one place. `values` fill the gaps in its message.
+    """A diagnostic with its place. `values` fill the gaps in its message.
 
-    `place` is what the thing to try stands for, where that is not `span`. `repair` is what
-    who found it says of the change, None where `fixing` looks for it in the values.
+    `place` is what the thing to try stands for, if that is not `span`. `repair` is what
+    who found it says of the change, None if `fixing` looks for it in the values.
     """
 
     code: Code
@@ -198,7 +198,7 @@ TOO_MANY_PARAMETERS = _mistake("TS316")
 TOO_MANY_COPIES = _mistake("TS317")
 LEVEL_VALUES = _mistake("TS318")
 NO_REMOTE = _mistake("TS319")
-# what a teacher would say
+# Warnings that a teacher would give.
 ROUNDED = _warning("TS801")
 NEVER_REACHED = _warning("TS802")
 ZERO_TIME_MOVE = _warning("TS803")
@@ -251,7 +251,7 @@ def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
         key = (diagnostic.code, diagnostic.span)
         start = diagnostic.span.start
         if diagnostic.code is BAD_NAME and start in named_starts:
-            continue  # `Bebé(1, 440)`: the word goes, with its accent
+            continue  # `Bebé(1, 440)`: the word is replaced, with its accent
         if key in keys_seen or (diagnostic.is_mistake and start in mistake_starts):
             continue
         keys_seen.add(key)

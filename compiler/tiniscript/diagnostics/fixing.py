@@ -1,4 +1,4 @@
-"""Makes the sure repairs of a program, and holds what is offered to its law: it is right.
+"""Makes the certain repairs of a program, and checks that offers are right.
 
 What is offered is right: the text with it has no mistake that begins in what it writes, else the
 mistake is told without it (`drop_wrong_offers`). A repair is sure where the message leaves no
@@ -30,11 +30,12 @@ _GAPS_BY_CODE: dict[Code, tuple[str, ...]] = {
     codes.EMPTY_BRACKETS: ("word",), codes.OUT_OF_RANGE: ("fix", "most"),
     codes.LONG_TIME: ("fix", "way"),
 }  # fmt: skip
-_CODES_WITH_PLACE = (codes.QUESTION_AFTER, codes.NOT_CALLABLE)  # without a place they show a way
+# Codes that show a whole line if they have no place.
+_CODES_WITH_PLACE = (codes.QUESTION_AFTER, codes.NOT_CALLABLE)
 
 
 def edits_of(diagnostic: Diagnostic) -> list[Edit] | None:
-    """Return the changes that the thing to try asks for; None where it is no change of the text."""
+    """Return the changes that the thing to try asks for; None if it is no change of the text."""
     if diagnostic.repair is not None:
         return [*diagnostic.repair.edits] or None
     values, place = diagnostic.values, diagnostic.place
@@ -46,7 +47,7 @@ def edits_of(diagnostic: Diagnostic) -> list[Edit] | None:
     return [Edit(place or diagnostic.span, new_text)]
 
 
-MOST_CHECKS = 400  # of one program, fewer of a long one
+MOST_CHECKS = 400  # most checks of one program; a long one gets fewer
 CHECKED_CHARACTERS = 600_000
 MOST_OFFERS = 20  # repairs of one text that are tried
 
@@ -109,7 +110,7 @@ def _tidy(edit: Edit, text: str) -> Edit:
 
 
 def _repair_steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
-    """Give the sure repairs that do not touch, and then each one alone."""
+    """Yield the certain repairs that do not overlap, and then each one alone."""
     sure_repairs = [
         diagnostic.repair.edits
         for diagnostic in diagnostics[: codes.MOST_DIAGNOSTICS]
@@ -135,7 +136,8 @@ def edits_offered(
     source, diagnostic = Source(text), diagnostics[index]
     edits = edits_of(diagnostic) or []
     lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
-    if not edits or any("~" in line for line in lines):  # else it is copied again
+    # Nothing has changed yet, so nothing is copied.
+    if not edits or any("~" in line for line in lines):
         return []
     diagnostics_after = check(apply_edits(text, edits))
     if diagnostic.is_mistake:
@@ -146,7 +148,7 @@ def edits_offered(
 def _removes_warning(
     diagnostics_after: Sequence[Diagnostic], code: Code, diagnostics: Sequence[Diagnostic]
 ) -> bool:
-    """Whether there is one warning fewer of this kind, and no mistake more."""
+    """Return whether a repair removes one warning of this kind without adding a mistake."""
     count_before, count_after = (
         sum(diagnostic.code is code for diagnostic in each_list)
         for each_list in (diagnostics, diagnostics_after)
@@ -180,7 +182,7 @@ def drop_wrong_offers(
             and not (edits and set(edits) <= joined_set
                      and joined_text.is_right(diagnostics_kept[k], edits))
         ]  # fmt: skip
-        # of those that name no changes: each once
+        # Results for offers without edits, so that each is checked once.
         is_right_of_offer: dict[tuple[Code, str], bool] = {}
         for k in suspects[:checks_left]:
             diagnostic = diagnostics_kept[k]
@@ -223,7 +225,7 @@ def _covered_by_offer(
                 and not edits
                 and diagnostic.span.start < diagnostics[k].span.start
             ):
-                codes_and_words.add(codes.NOT_OPEN.number)  # its header may be what nobody can read
+                codes_and_words.add(codes.NOT_OPEN.number)  # the block's header may be unreadable
     return codes_and_words
 
 
@@ -254,7 +256,7 @@ class _EditedText:
         own_edits: Sequence[Edit],
         codes_and_words: Set[str] = frozenset(),
     ) -> bool:
-        """Whether no mistake begins in what is offered, but one of `codes_and_words`."""
+        """Return whether no mistake begins in the offer, except those of `codes_and_words`."""
         shift, spans = 0, []
         for edit in self.edits:
             start = edit.span.start + shift
@@ -272,7 +274,7 @@ class _EditedText:
         )
 
     def _is_in_words(self, words: Set[str], offset: int) -> bool:
-        """Whether a place of the changed text is in one of these words of the text before."""
+        """Return whether an offset of the changed text is in one of these words of the original."""
         text = self.text.upper()
         return any(0 <= text.find(word, max(0, offset - len(word) + 1)) <= offset for word in words)
 
@@ -282,11 +284,12 @@ def _without_offer(diagnostic: Diagnostic) -> Diagnostic:
     gaps = ("fix", "right") if diagnostic.repair else _GAPS_BY_CODE.get(diagnostic.code, ("fix",))
     shown_gap = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
     emptied_gaps = [shown_gap, "whole", "lines", "times"]
-    emptied_gaps += ["line"] if diagnostic.code is not codes.WRONG_END else []  # of its header
+    # The line of its header.
+    emptied_gaps += ["line"] if diagnostic.code is not codes.WRONG_END else []
     emptied_gaps += ["right"] if diagnostic.code is codes.BRACES else []
     values = {gap: "" if gap in emptied_gaps else value for gap, value in diagnostic.values.items()}
     if shown_gap == "near":
-        values["meant"] = diagnostic.values["near"]  # what is asked may lead further
+        values["meant"] = diagnostic.values["near"]  # the question may lead to another word
     return diagnostic._replace(values=values, repair=None)
 
 
@@ -295,7 +298,7 @@ def is_better(
     diagnostics: Sequence[Diagnostic],
     edits: Sequence[Edit],
 ) -> bool:
-    """Whether a repair leaves fewer mistakes.
+    """Return whether a repair leaves fewer mistakes.
 
     Or as many, where it has uncovered one elsewhere: how a block ends is not looked at before its
     header is right, and of several signs that are missing on a line the first one is reported.

@@ -25,11 +25,11 @@ from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 
 CATALOGUE = "messages"
-LINE_COLUMNS = 100  # of a program's line; of a longer one a window is shown
-MOST_COLUMNS_ON_LEFT = 40  # of that window, before the place
-ROW_CHARACTERS = 110  # a longer message has what to try in a row of its own
-VALUE_CHARACTERS = 60  # of a program's text within a message
-FIX_CHARACTERS = 200  # of what to try, which is cut only where nobody would copy it
+LINE_COLUMNS = 100  # columns of a program's line; a longer one is cut to a window
+MOST_COLUMNS_ON_LEFT = 40  # columns of that window before the place
+ROW_CHARACTERS = 110  # a longer message has its suggestion in a row of its own
+VALUE_CHARACTERS = 60  # characters of the program's text within a message
+FIX_CHARACTERS = 200  # characters of a fix, which is cut only if nobody would copy it
 TAB = "    "
 
 _LINE_GAPS = frozenset(("line", "row", "here", "first", "last", "out", "rest"))
@@ -66,8 +66,8 @@ _SUPPLEMENT_GAPS = ("lost", "sample", "samples")
 def message(
     diagnostic: Diagnostic, source: Source, language: str, *, is_on_blocks: bool = False
 ) -> Message:
-    """Return what is said of a diagnostic, and where; to who sees blocks, without what these have
-    not, if there is such a text.
+    """Return the message of a diagnostic and its place; users of blocks get a version for blocks,
+    if there is one.
     """
     number = diagnostic.code.number
     start, end = _shown_range(source.text, diagnostic.span)
@@ -166,7 +166,7 @@ def _term(word: str, language: str) -> str | None:
 
 
 def _templates(key: str, language: str) -> Iterator[str]:
-    """Yield the texts of which one is taken."""
+    """Yield the alternative texts."""
     yield _text(key, language)
     for number in count(2):
         text = languages.find_text(CATALOGUE, f"{key}/{number}", language)
@@ -176,7 +176,7 @@ def _templates(key: str, language: str) -> Iterator[str]:
 
 
 def names_found(diagnostic: Diagnostic) -> bool:
-    """Whether a message says what was found, as it stands in the text."""
+    """Return whether a message quotes the text that it is about."""
     key = f"{diagnostic.code.number}/message"
     template = _first_usable_template(key, diagnostic.values, languages.SOURCE_LANGUAGE)
     return ("", "found") in _GAP.findall(template)
@@ -255,7 +255,7 @@ def _shown_range(text: str, span: Span) -> tuple[int, int]:
 
 
 def _line_window(line: str, start: int, end: int) -> tuple[str, int, int]:
-    """Return what is shown of a line, the columns before the carets, and how many carets.
+    """Return the visible part of a line, the columns before the carets, and their number.
 
     `start` and `end` count characters of the line from 0.
     """
@@ -283,7 +283,7 @@ def _line_window(line: str, start: int, end: int) -> tuple[str, int, int]:
 
 
 def _cell(character: str) -> tuple[str, int]:
-    """Return how a character is shown, and in how many columns of a terminal."""
+    """Return the visible form of a character, and its columns on a terminal."""
     if " " <= character <= "~":
         return character, 1
     if character == "\t":

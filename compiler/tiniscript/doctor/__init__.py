@@ -1,4 +1,4 @@
-"""The doctor: finds out what is wrong with a port, a module or a robot.
+"""The doctor: diagnoses a port, a module or a robot.
 
 It looks at the computer through the door of `system`, at a port through that of `link.wire`, and at
 a robot through that of `robot`. What it finds are data (`findings`); the command says them.

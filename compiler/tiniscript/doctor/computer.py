@@ -1,4 +1,4 @@
-"""What a computer has: USB adapters with their drivers, Bluetooth, and who uses a port.
+"""The equipment of a computer: USB adapters with drivers, Bluetooth, and users of a port.
 
 The same for all systems; `systems` asks each one.
 """
@@ -13,7 +13,7 @@ from tiniscript.link.ports import ListedPort
 
 ON, OFF, NONE, UNKNOWN = "on", "off", "none", "unknown"  # Bluetooth
 
-# USB adapters that boards have: vendor and product, what people call them, the driver of Linux.
+# USB adapters of boards: vendor and product, the common name, the driver of Linux.
 CHIPS: dict[tuple[str, str], tuple[str, str]] = {
     ("1a86", "7523"): ("CH340", "ch341"),
     ("1a86", "5523"): ("CH341", "ch341"),
@@ -41,7 +41,7 @@ class Adapter(NamedTuple):
 
 
 class Computer(NamedTuple):
-    """`adapters` and `paired_names` are None where the system does not tell.
+    """`adapters` and `paired_names` are None if the system does not tell.
 
     `paired_names` are names of Bluetooth devices: they may be those of persons' telephones, and are
     never told. `programs` are those of interest that run.
@@ -56,12 +56,12 @@ class Computer(NamedTuple):
 
     @property
     def has_module(self) -> bool | None:
-        """Whether something that looks like a robot's module is paired; None if nobody knows."""
+        """Return whether a device that looks like a robot's module is paired; None if unknown."""
         return None if self.paired_names is None else any(map(is_module, self.paired_names))
 
 
 class Access(NamedTuple):
-    """Who may use a port, and who uses it: names of programs, if the system tells them.
+    """The access rights of a port, and the names of the programs that use it, if known.
 
     `is_joined`: the user is in the group, but logged in before that.
     """
@@ -87,7 +87,7 @@ def is_module(name: str) -> bool:
 
 
 def looks_wireless(port: str, description: str = "") -> bool:
-    """Whether a port is one of Bluetooth, by its name or the system's description of it."""
+    """Return whether a port is Bluetooth, by its name or the system's description."""
     text = f"{port} {description}".lower()
     return any(word in text for word in ("rfcomm", "bluetooth", "bthenum")) or is_module(text)
 

@@ -1,6 +1,6 @@
 """The way of the doctor: first the computer, then the port, then what answers there.
 
-A port is opened only where nothing else has it, and that of a cable only after a yes: opening it
+A port is opened only if nothing else has it, and that of a cable only after a yes: opening it
 restarts most boards.
 """
 
@@ -46,7 +46,7 @@ def inspect_computer(system: System) -> Computer:
 
 
 def port_access(system: System, port: str) -> Access:
-    """Return who may use a port and who does. Opens no port."""
+    """Return the access rights and the users of a port, without opening it."""
     may_have_owner = system.platform != "win32" and not is_address(port)
     owner = system.owner(port) if may_have_owner else None
     if owner is None:
@@ -59,7 +59,7 @@ REFUSED_MESSAGE, IN_USE_MESSAGE = os.strerror(errno.ECONNREFUSED), os.strerror(e
 
 
 class DoctorServices(NamedTuple):
-    """What the doctor needs from outside. `may_open` asks the user about the port of a cable.
+    """Services of the doctor's environment. `may_open` asks the user about the port of a cable.
 
     `share` opens a port so that other commands share it: a stop gets through while it is watched.
     """
@@ -74,7 +74,7 @@ class DoctorServices(NamedTuple):
 
 
 class Question(NamedTuple):
-    """What the user asks about. `last_port` is the port that was used last, if it is there.
+    """A question to the user. `last_port` is the last port used, if it exists.
 
     `virtual_ports` are the ports of the virtual robots that run on this computer.
     """
@@ -89,7 +89,7 @@ class Question(NamedTuple):
 
 
 class Diagnosis(NamedTuple):
-    """`port` is None where none was looked at; `is_opened`: bytes were sent there."""
+    """`port` is None if none was looked at; `is_opened`: bytes were sent there."""
 
     port: str | None
     findings: tuple[Finding, ...]
@@ -179,7 +179,7 @@ def _only_port(computer: Computer, virtual_ports: tuple[str, ...]) -> str | None
 def _missing_port_findings(
     computer: Computer, virtual_ports: tuple[str, ...]
 ) -> tuple[Finding, ...]:
-    """Return why there is no port to look at; ports that may be no robot's are named beside."""
+    """Return the reasons why there is no port to examine, with ports that may not be robots."""
     listed_ports = ", ".join([*(port.port for port in computer.ports), *virtual_ports])
     if len(computer.ports) > 1:
         return (sure_finding("which_port", ports=listed_ports),)
@@ -190,7 +190,7 @@ def _missing_port_findings(
 
 
 def _no_port_finding(computer: Computer) -> Finding:
-    """Return why an adapter, or any at all, has no port."""
+    """Return the reason why an adapter, or the computer, has no port."""
     for adapter in adapters_without_driver(computer.adapters or ()):
         if adapter.driver == "usbfs" or "brltty" in computer.programs:
             return Finding("brltty", "brltty" in computer.programs, {"chip": adapter.chip})
@@ -226,14 +226,16 @@ def _diagnose_shared(
 
 
 def _port_in_use(system: System, computer: Computer, port: str) -> Finding | None:
-    """Return why this user cannot have the port now, as far as it is known without opening it."""
+    """Return the reason why this user cannot use the port now, as far as known without opening
+    it.
+    """
     access = port_access(system, canonical_port(port))
     if not access.may_use and access.is_joined:
         return sure_finding("login_again", group=access.group)
     if not access.may_use:
         return sure_finding("no_permission", group=access.group)
     if port.startswith(PSEUDO_TERMINALS):
-        return None  # whoever has made it has it open, too
+        return None  # the program that created the port also has it open
     if "ModemManager" in access.using_programs:
         return sure_finding("modem_manager")
     return (
@@ -248,13 +250,13 @@ def _is_listed(system: System, computer: Computer, port: str) -> bool:
 
 
 def open_failure(system: System, port: str, error: PortError) -> Finding:
-    """Return why a port that somebody has tried to open did not open."""
+    """Return the reason why a port failed to open."""
     computer = inspect_computer(system)
     return _port_in_use(system, computer, port) or _open_failure(error, computer, port, system)
 
 
 def _open_failure(error: PortError, computer: Computer, port: str, system: System) -> Finding:
-    """Return why a port did not open."""
+    """Return the reason why a port did not open."""
     if error.reason == errors.MISSING:
         return _missing_port(computer, port, system)
     if error.reason == errors.FORBIDDEN:
@@ -277,7 +279,7 @@ def _open_failure(error: PortError, computer: Computer, port: str, system: Syste
 
 
 def _missing_port(computer: Computer, port: str, system: System) -> Finding:
-    """Return why the port that was named does not exist."""
+    """Return the reason why the named port does not exist."""
     if looks_wireless(port):
         if computer.bluetooth == NONE:
             return sure_finding("no_bluetooth")

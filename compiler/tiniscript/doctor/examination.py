@@ -35,7 +35,7 @@ from tiniscript.link.robot_state import line_error_count
 
 PING_COUNT = 20
 PING_PAUSE_MS = 50  # between two of them
-MOST_LOST = 2  # of 20 that were not answered at once, or that the robot heard damaged
+MOST_LOST = 2  # most messages of 20 that may be repeated or damaged
 LOOK_COUNT = 6  # whether it is still the same robot, and was not restarted meanwhile
 LOOK_INTERVAL_MS = 250
 _STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
@@ -44,7 +44,7 @@ _WATCHDOG = "WATCHDOG"
 
 
 class RobotAnswers(NamedTuple):
-    """What a robot has answered. `trips_ms`: how long it took to answer each PING at once."""
+    """The answers of a robot. `trips_ms`: the times of immediate answers to PING."""
 
     hello: HelloReply
     status: StatusReply
@@ -84,9 +84,9 @@ def examine(
     robot: Robot, hello_reply: Reply[SentReply], expectations: Expectations, watch_ms: int = 0,
     on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
-    """Return what is wrong with a robot whose answer to HELLO is `hello_reply`.
+    """Return the faults of a robot whose answer to HELLO is `hello_reply`.
 
-    Where nothing is, the only finding that is no note is `fine`. `on_step` gets `pings` and
+    If nothing is, the only finding that is not a note is `fine`. `on_step` gets `pings` and
     `watch`.
     """
     hello = hello_values(hello_reply)
@@ -138,7 +138,7 @@ def examine(
 
 
 def _report_fields(hello: HelloReply, expectations: Expectations) -> dict[str, str]:
-    """Return what a report says about a robot: not whose it is."""
+    """Return the facts about a robot for a report, except for its owner."""
     features = [name for bit, name, _ in FEATURES if hello.features & bit]
     return {
         "kit": expectations.name_of_kit(hello.kit) or f"{hello.kit:04x}",
@@ -185,14 +185,14 @@ def _kit_findings(hello: HelloReply, expectations: Expectations) -> list[Finding
 
 
 def _owner_findings(robot: Robot, hello: HelloReply, expectations: Expectations) -> list[Finding]:
-    """Compare who may drive it: what is refused for that looks like a robot that does nothing."""
+    """Compare the allowed drivers: refusals look like a robot that does nothing."""
     may_be_own = not robot.has_shown_keys and expectations.has_key(hello.id)
     is_others = hello.features & (OWNED | YOURS) == OWNED and not may_be_own
     return [sure_finding("of_another_owner")] if is_others else []
 
 
 def _status_findings(status: StatusReply) -> list[Finding]:
-    """Return what the robot says of its supply, its latch and its program."""
+    """Return the findings about the robot's supply, latch and program."""
     findings = []
     if status.saved == SAVED_LOW_SUPPLY:
         findings.append(sure_finding("low_supply"))
@@ -211,7 +211,7 @@ def _link_findings(
     expectations: Expectations,
     on_step: Callable[[str], None],
 ) -> tuple[list[Finding], tuple[float, ...]]:
-    """Send PING, and count what is not answered at once and what the robot heard damaged."""
+    """Send PING, and count late answers and frames that reached the robot damaged."""
     on_step("pings")
     trips_ms = trips_of(robot, expectations.ping_count, lambda: robot.pause(PING_PAUSE_MS))
     missed_count = expectations.ping_count - len(trips_ms)
@@ -251,7 +251,7 @@ def trips_of(
 
 
 def _trim(robot: Robot, hello: HelloReply) -> TrimReply | None:
-    """Return the robot's trim, where whoever asks may know it; None where nothing is known."""
+    """Return the robot's trim, if this user may read it; otherwise None."""
     if hello.features & (OWNED | YOURS) == OWNED:
         return None
     reply = robot.ask("TRIM", try_count=1)
@@ -280,7 +280,7 @@ def _watch_restarts(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Rest
 
 
 def _restart_findings(restarts: list[Restart]) -> list[Finding]:
-    """Return what restarts mean: it was the voltage for sure only where the chip tells it."""
+    """Return the cause of restarts: it was certainly the voltage only if the chip reports that."""
     count = str(len(restarts))
     restarts_while_driving = [restart for restart in restarts if restart.was_running]
     if restarts_while_driving:

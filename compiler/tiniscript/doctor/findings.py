@@ -1,4 +1,4 @@
-"""What doctor, self-test, a module's set-up and trim can find: one table of causes.
+"""The table of causes that the doctor, self-test, module set-up and trim can find.
 
 Knows no sentence: those of a cause, a short name that stays, are in `languages/en/command.toml`,
 and of a board that is not ours in `languages/en/foreign.toml`.
@@ -15,7 +15,7 @@ OK, OPEN, WRONG = "ok", "open", "wrong"  # OPEN: nothing is wrong for sure, and 
 
 
 class FindingKind(NamedTuple):
-    """What a finding means. `part`: what of a robot it is about, where one is looked at whole.
+    """The meaning of a finding. `part`: the part of the robot that it concerns.
 
     `next_key` names the sentence with the next step, if that is not of this cause alone.
     """
@@ -41,12 +41,12 @@ CAUSES = dict((
         "no_permission login_again busy modem_manager other_tsc out_of_reach"),
     *_finding_kinds(WRONG, "",
         "other_host slow_port no_serial_port port_broken port_gone not_opened"),
-    # what answers there
+    # Kinds of answers from a port.
     *_finding_kinds(WRONG, "",
         "echo module_set_up module_alone wrong_baud module_baud crossed one_way"),
     *_finding_kinds(WRONG, "", " ".join(foreign.NAMES)),
     *_finding_kinds(WRONG, "", "bootloader_only garbled silent"),
-    # the robot, by what it says
+    # The robot, by its own answers.
     *_finding_kinds(WRONG, "", "other_robot unproven"),
     *_finding_kinds(OPEN, "", "of_another_owner stopped"),
     *_finding_kinds(WRONG, "kit", "wrong_kit unknown_kit"),
@@ -59,7 +59,7 @@ CAUSES = dict((
     # each part, where it is looked at whole
     *_finding_kinds(OK, "answers", "is_there"),
     *_finding_kinds(WRONG, "answers", "plain", next_key="doctor"),
-     # or of another part: what the robot told
+     # The robot's own facts, or faults of another part.
     *_finding_kinds(OK, "kit", "kit_is"),
     *_finding_kinds(OK, "firmware", "firmware_is"),
     *_finding_kinds(OK, "line", "line_is"),
@@ -75,7 +75,8 @@ CAUSES = dict((
     *_finding_kinds(OK, "motor", "turns"),
     *_finding_kinds(WRONG, "motor", "other_turn", next_key="trim"),
     *_finding_kinds(WRONG, "motor", "still", next_key="wires"),
-    *_finding_kinds(WRONG, "motor", "ended", next_key="batteries"),  # of the buzzer, too
+    # The buzzer ends with the same finding.
+    *_finding_kinds(WRONG, "motor", "ended", next_key="batteries"),
     *_finding_kinds(OPEN, "motor", "unasked", next_key="person"),
     *_finding_kinds(WRONG, "motors", "same_wheel", next_key="pins"),
     *_finding_kinds(WRONG, "motors", "too_weak", next_key="wheels"),

@@ -1,4 +1,4 @@
-"""Finds out what is at the other end of a port: a robot, an echo, a module, another board, nobody.
+"""Identifies the other end of a port: a robot, an echo, a module, another board, nothing.
 
 First it listens, then it says HELLO, then it asks the harmless questions of `link.foreign`. Only on
 a cable, where the user has said yes, it asks at other speeds, too: a radio carries bytes, whatever
@@ -20,7 +20,7 @@ from tiniscript.link.foreign import ECHO_SKETCH, ForeignBoard
 from tiniscript.link.modules import dialects, talk
 from tiniscript.link.wire import Wire
 
-# For each: what it is greeted with, and how its answer begins.
+# The greeting of each bootloader, and the start of its answer.
 GREETINGS: tuple[tuple[Bootloader, bytes, bytes], ...] = (
     (UNO, b"\x30\x20", b"\x14\x10"),
     (NANO_OLD, b"\x30\x20", b"\x14\x10"),
@@ -29,9 +29,7 @@ GREETINGS: tuple[tuple[Bootloader, bytes, bytes], ...] = (
 BLINK_WAIT_MS = 450  # Optiboot blinks first, and hears no more than two bytes meanwhile
 BOOTLOADER_TRIES = 4
 ANSWER_TIMEOUT_MS = 200
-BOOTLOADER_TIMEOUT_MS = (
-    5000  # a bootloader that has heard nothing for so long has gone on to what is behind it
-)
+BOOTLOADER_TIMEOUT_MS = 5000  # silence after which a bootloader has started its sketch
 
 
 def find_bootloader(
@@ -71,13 +69,13 @@ def _greet(wire: Wire, greeting: bytes, answer: bytes) -> bool:
 BOOT_WAIT_MS = 1700
 HELLO_TRIES = 5  # an old Nano's bootloader takes longer
 BAUDS = (9600, 115200, 57600, 38400, 19200)
-LISTEN_MS = 400  # at a speed, to what a sketch prints
-PROBE_TIMEOUT_MS, RADIO_PROBE_TIMEOUT_MS = 200, 500  # for an answer of a board that is not ours
-LEAST_BYTES = 4  # bytes: fewer say nothing
+LISTEN_MS = 400  # time to listen for a sketch's output at one speed
+PROBE_TIMEOUT_MS, RADIO_PROBE_TIMEOUT_MS = 200, 500  # time for the answer of a foreign board
+LEAST_BYTES = 4  # fewer bytes prove nothing
 
 
 class PortFacts(NamedTuple):
-    """What is known of a port; `baud` is the speed that a robot should have there."""
+    """Known facts of a port; `baud` is the expected speed of a robot there."""
 
     baud: int
     is_radio: bool
@@ -88,7 +86,9 @@ def diagnose_line(
     wire: Wire, facts: PortFacts, expectations: Expectations,
     on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
-    """Return what is at the other end. `on_step` gets what is done next, a short name."""
+    """Return the kind of device at the other end. `on_step` gets the short name of each next
+    step.
+    """
     on_step("listen")
     early_bytes = wire.receive(LISTEN_MS if facts.is_radio else BOOT_WAIT_MS)
     robot = _wire_robot(wire, facts, expectations)
@@ -96,16 +96,18 @@ def diagnose_line(
     reply = robot.hello(HELLO_TRIES)
     if reply is not None:
         return examine(robot, reply, expectations, on_step=on_step)
-    received = early_bytes + robot.received
-    if _has_module_error(received):
+    received_bytes = early_bytes + robot.received
+    if _has_module_error(received_bytes):
         return [sure_finding("module_set_up", baud=str(facts.baud))]
     boards = _ForeignBoards(wire, RADIO_PROBE_TIMEOUT_MS if facts.is_radio else PROBE_TIMEOUT_MS)
-    finding = boards.find(received, robot.sent, partial(_identify_echo, wire, facts, expectations))
+    finding = boards.find(
+        received_bytes, robot.sent, partial(_identify_echo, wire, facts, expectations)
+    )
     if finding is not None:
         return [finding]
     if facts.is_radio:
-        return [boards.best_finding() or _diagnose_radio(received)]
-    return _diagnose_cable(wire, facts, expectations, received, boards, on_step)
+        return [boards.best_finding() or _diagnose_radio(received_bytes)]
+    return _diagnose_cable(wire, facts, expectations, received_bytes, boards, on_step)
 
 
 def _wire_robot(wire: Wire, facts: PortFacts, expectations: Expectations) -> WireRobot:
@@ -115,49 +117,49 @@ def _wire_robot(wire: Wire, facts: PortFacts, expectations: Expectations) -> Wir
     )
 
 
-def _is_echo(received: bytes, sent: bytes) -> bool:
-    """Whether at least one whole frame that was sent came back."""
-    frames = [part for part in sent.split(b"\0") if part]
-    return any(frame in received for frame in frames)
+def _is_echo(received_bytes: bytes, sent_bytes: bytes) -> bool:
+    """Return whether at least one whole frame came back."""
+    frames = [part for part in sent_bytes.split(b"\0") if part]
+    return any(frame in received_bytes for frame in frames)
 
 
-def _has_module_error(received: bytes) -> bool:
-    """Whether a module in its set-up mode complains."""
-    return b"ERROR:(" in received or b"ERROR=" in received
+def _has_module_error(received_bytes: bytes) -> bool:
+    """Return whether a module in command mode reports an error."""
+    return b"ERROR:(" in received_bytes or b"ERROR=" in received_bytes
 
 
 class _ForeignBoards:
-    """Looks for boards that are not ours in what is heard. What is sure is told at once; of the
-    rest the best is kept until nothing else is found."""
+    """Looks for foreign boards in the received bytes. A certain finding is reported at once; the
+    best uncertain one waits until nothing else is found.
+    """
 
     def __init__(self, wire: Wire, wait_ms: int) -> None:
         self._wire, self._wait_ms = wire, wait_ms
         self._probable_findings: list[Finding] = []
 
     def find(
-        self, received: bytes, sent: bytes, identify_echo: Callable[[], Finding]
+        self, received_bytes: bytes, sent_bytes: bytes, identify_echo: Callable[[], Finding]
     ) -> Finding | None:
-        """Return what is surely there. `identify_echo` returns what it is that sends back what is
-        sent, and says nothing else."""
-        finding = self.identify(received)
-        is_echo = _is_echo(received, sent)
+        """Return a certain finding. `identify_echo` returns the kind of a pure echo."""
+        finding = self.identify(received_bytes)
+        is_echo = _is_echo(received_bytes, sent_bytes)
         if finding is None and not (is_echo and self.best_finding() is None):
-            finding = self.probe(received, not is_echo)
+            finding = self.probe(received_bytes, not is_echo)
         if finding is None and is_echo:
-            text = _text_beside(received, sent)
+            text = _text_beside(received_bytes, sent_bytes)
             finding = sure_finding(ECHO_SKETCH, said=text) if text else identify_echo()
         return finding
 
-    def identify(self, received: bytes) -> Finding | None:
-        """Return what has surely sent these bytes, by its row or as a robot that does not hear."""
-        if foreign.is_robot(received):
+    def identify(self, received_bytes: bytes) -> Finding | None:
+        """Return the certain sender of these bytes: by its row, or a robot that does not hear."""
+        if foreign.is_robot(received_bytes):
             return probable_finding("one_way")
-        board = foreign.identify_board(received)
+        board = foreign.identify_board(received_bytes)
         return (
             None if board is not None and board.name in foreign.GENERAL_ROWS else self._judge(board)
         )
 
-    def probe(self, received: bytes, may_be_text: bool) -> Finding | None:
+    def probe(self, received_bytes: bytes, may_be_text: bool) -> Finding | None:
         """Send the probes, and return what surely answers, or is surely text without them.
 
         Each answer is looked at by itself: one who says again what it gets must not be taken for a
@@ -167,26 +169,26 @@ class _ForeignBoards:
             if row.probe:
                 self._wire.send(row.probe)
                 finding = self._judge(
-                    foreign.identify_board(received + self._wire.receive(self._wait_ms))
+                    foreign.identify_board(received_bytes + self._wire.receive(self._wait_ms))
                 )
                 if finding is not None:
                     return finding
         if (best := self.best_finding()) is not None and best.cause == "at_firmware":
             self._wire.send(foreign.AT_VERSION_QUESTION)
             finding = self._judge(
-                foreign.identify_board(received + self._wire.receive(dialects.ANSWER_MS))
+                foreign.identify_board(received_bytes + self._wire.receive(dialects.ANSWER_MS))
             )
             if finding is not None:
                 return finding
-        return self._judge(foreign.identify_stranger(received)) if may_be_text else None
+        return self._judge(foreign.identify_stranger(received_bytes)) if may_be_text else None
 
-    def identify_any(self, received: bytes) -> Finding | None:
-        """Return what has sent these bytes, where no question would help."""
-        board = foreign.identify_board(received)
+    def identify_any(self, received_bytes: bytes) -> Finding | None:
+        """Return the sender of these bytes if a question would not help."""
+        board = foreign.identify_board(received_bytes)
         return None if board is None else self._judge(board)
 
     def best_finding(self) -> Finding | None:
-        """Return what is probably there."""
+        """Return the most probable finding."""
         return self._probable_findings[0] if self._probable_findings else None
 
     def _judge(self, board: ForeignBoard | None) -> Finding | None:
@@ -200,7 +202,7 @@ class _ForeignBoards:
 
 
 def _identify_echo(wire: Wire, facts: PortFacts, expectations: Expectations) -> Finding:
-    """Return what sends back: a sketch has one speed, a wire has every one."""
+    """Return the kind of echo: a sketch has one speed, a wire works at any."""
     if facts.is_radio:
         return probable_finding("echo")
     wire.set_baud(next(baud for baud in BAUDS if baud != facts.baud))
@@ -212,15 +214,15 @@ def _identify_echo(wire: Wire, facts: PortFacts, expectations: Expectations) -> 
 
 
 def _identify_echo_of_one_speed(wire: Wire, baud: int) -> Finding:
-    """Return what sends back at this speed only: what takes commands may do so, too."""
+    """Return the device that echoes at this speed only, possibly one that accepts commands."""
     return _find_module(wire, (baud,)) or sure_finding(ECHO_SKETCH, said="")
 
 
-def _text_beside(received: bytes, sent: bytes) -> str:
-    """Return the text that came with what was sent and came back, if any did."""
-    for frame in sent.split(b"\0"):
-        received = received.replace(frame, b"") if frame else received
-    return foreign.readable_line(received.replace(b"\0", b""))
+def _text_beside(received_bytes: bytes, sent_bytes: bytes) -> str:
+    """Return the text received beside an echo, if any."""
+    for frame in sent_bytes.split(b"\0"):
+        received_bytes = received_bytes.replace(frame, b"") if frame else received_bytes
+    return foreign.readable_line(received_bytes.replace(b"\0", b""))
 
 
 def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
@@ -228,7 +230,7 @@ def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
     module = talk.find_module(wire, bauds, wakes=False)
     if module is None:
         return None
-    if not module.version:  # no module has told which one it is
+    if not module.version:  # no module has identified itself
         wire.send(foreign.AT_VERSION_QUESTION)
         board = foreign.identify_board(wire.receive(dialects.ANSWER_MS))
         if board is not None:
@@ -237,10 +239,10 @@ def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
     return sure_finding(cause, baud=str(module.baud), module=module.dialect.name)
 
 
-def _diagnose_radio(received: bytes) -> Finding:
-    """The module has answered, for its port is open: what is behind it?"""
-    if len(received) >= LEAST_BYTES:
-        return probable_finding("module_baud", n=str(len(received)))
+def _diagnose_radio(received_bytes: bytes) -> Finding:
+    """Diagnose the device behind a module that answers while its port is open."""
+    if len(received_bytes) >= LEAST_BYTES:
+        return probable_finding("module_baud", n=str(len(received_bytes)))
     return probable_finding("crossed")
 
 
@@ -248,11 +250,11 @@ def _diagnose_cable(
     wire: Wire,
     facts: PortFacts,
     expectations: Expectations,
-    received: bytes,
+    received_bytes: bytes,
     boards: _ForeignBoards,
     on_step: Callable[[str], None],
 ) -> list[Finding]:
-    garbage_bytes = len(received)
+    garbage_bytes = len(received_bytes)
     for baud in BAUDS:
         if baud == facts.baud:
             continue

@@ -1,4 +1,4 @@
-"""What Linux says about a computer: `/sys`, `/proc`, `/etc/group`, and bluetoothctl."""
+"""Facts about a computer on Linux: `/sys`, `/proc`, `/etc/group`, and bluetoothctl."""
 
 from __future__ import annotations
 

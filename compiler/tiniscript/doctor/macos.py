@@ -1,4 +1,4 @@
-"""What macOS says about a computer: system_profiler and lsof."""
+"""Facts about a computer on macOS: system_profiler and lsof."""
 
 from __future__ import annotations
 

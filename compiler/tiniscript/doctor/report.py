@@ -1,4 +1,4 @@
-"""A report to send: which facts go into it, and what is taken out of them.
+"""A report to send: its facts, and the parts removed from them.
 
 No name of a person, a computer, a network or a telephone leaves this computer, and no serial
 number: many systems make the name of a port from one.
@@ -16,22 +16,22 @@ from tiniscript.doctor.findings import Finding
 from tiniscript.link.port_names import is_address
 
 REPORT_MARK = "TiniScript doctor report 1"  # the first line: the file is one of ours
-SELFTEST_MARK = "TiniScript selftest report 1"  # that of `tsc doctor --selftest`
+SELFTEST_MARK = "TiniScript selftest report 1"  # first line of a report by `tsc doctor --selftest`
 HIDDEN = "…"
-# Values of findings that are made by others or tell whose robot it is: its name and number, what a
-# sketch prints, system messages.
+# Values of findings that come from others or identify the robot: its name and number, output of a
+# sketch, system messages.
 PRIVATE_VALUES = ("name", "id", "said", "why", "by")
 PROGRAMS = ("ModemManager", "brltty", "avrdude", "arduino", "Arduino IDE", "screen", "minicom",
             "picocom", "putty", "tsc", "python", "python3", "java", "thonny", "code")  # fmt: skip
 
 
 def is_ours(data: bytes) -> bool:
-    """Whether a file is a report, which a new one may replace."""
+    """Return whether a file is a report, which a new one may replace."""
     return data.split(b"\n", 1)[0].strip() in (REPORT_MARK.encode(), SELFTEST_MARK.encode())
 
 
 def head(mark: str, title: str, facts: Iterable[tuple[str, str]], port: str | None) -> list[str]:
-    """Return how every report begins: what it is, by which tsc, of which computer and port."""
+    """Return the first lines of a report: its kind, and tsc's version, computer and port."""
     rows = [mark, title, "", f"tsc: {__version__}, Python {platform.python_version()}"]
     rows += [f"{name}: {value}" for name, value in facts]
     return [*rows, "", f"port: {shown_port(port) if port else '-'}"]
@@ -64,7 +64,7 @@ def values_of(finding: Finding) -> dict[str, str]:
 
 
 def facts(computer: Computer) -> list[tuple[str, str]]:
-    """Return what is said about the computer: names of things, and numbers."""
+    """Return the facts about the computer: names of devices, and numbers."""
     adapters = "?"
     if computer.adapters is not None:
         adapters = ", ".join(

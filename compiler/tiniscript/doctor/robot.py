@@ -20,10 +20,10 @@ from tiniscript.link.requests import OK, Reply, reply_of
 from tiniscript.link.wire import Wire
 
 MOST_TRIES = 3
-MOST_READS = 4  # of the wire in one try: what the robot tells by itself may come in between
-CABLE_TIMEOUT_MS, RADIO_TIMEOUT_MS = 300, 700  # for an answer
-SHARED_TIMEOUT_MS = 4000  # for one through another tsc, with its own retries
-MOST_UNANSWERED = 3  # of these without an answer, one after another: the robot is asked no more
+MOST_READS = 4  # most reads of the wire in one try, because events may come in between
+CABLE_TIMEOUT_MS, RADIO_TIMEOUT_MS = 300, 700  # time for an answer
+SHARED_TIMEOUT_MS = 4000  # time for an answer through another tsc, which retries itself
+MOST_UNANSWERED = 3  # unanswered questions in a row after which the check ends
 
 
 class Robot(ABC):
@@ -35,7 +35,7 @@ class Robot(ABC):
 
     @abstractmethod
     def ask(self, name: str, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
-        """Return the reply to HELLO, STATUS, PING or TRIM; None where none came."""
+        """Return the reply to HELLO, STATUS, PING or TRIM; None if none came."""
 
     @abstractmethod
     def pause(self, wait_ms: int) -> None: ...
@@ -63,14 +63,14 @@ class WireRobot(Robot):
         isa = LEAST_ISA
         hello = {"major": MAJOR, "minor": MINOR, "isa_major": isa[0], "isa_minor": isa[1],
                  "kit": kit, "nonce": nonce}  # fmt: skip
-        # without a value the robot tells the trim that it has
+        # TRIM without a value returns the stored trim.
         self._values: dict[str, Mapping[str, int | bytes]] = {"HELLO": hello, "TRIM": {"trim": b""}}
 
     def pause(self, wait_ms: int) -> None:
         self.received += self.wire.receive(wait_ms, wait_ms)
 
     def ask(self, name: str, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
-        """Ask until an answer comes; 0x00 goes before each try, as `docs/develop/link.md` says."""
+        """Ask until an answer arrives; each try begins with 0x00, as in `docs/develop/link.md`."""
         values = self._values.get(name, {})
         self._seq = (self._seq + 1) & 0xFF
         message = BY_NAME[name]
@@ -106,7 +106,7 @@ class WireRobot(Robot):
 
 
 class SharedRobot(Robot):
-    """The robot behind a connection, which does the retries and shows keys.
+    """A robot on a shared connection, which does the retries and shows keys.
 
     `wait` waits for a request, if somebody is to be told that it takes long.
     """
@@ -142,7 +142,7 @@ class SharedRobot(Robot):
 
 
 def hello_values(reply: Reply[SentReply] | None) -> HelloReply | None:
-    """Return what a robot says of itself, where its answer to HELLO is OK."""
+    """Return a robot's answer to HELLO, if it is OK."""
     if reply is None or reply.status != OK:
         return None
     return reply.values if isinstance(reply.values, HelloReply) else None

@@ -87,7 +87,7 @@ class System:
             return ""
 
     def output(self, *command: str) -> str | None:
-        """Return what a program prints, or None where there is no such program."""
+        """Return the output of a program, or None if there is no such program."""
         try:
             process = subprocess.run(
                 command,

@@ -1,4 +1,4 @@
-"""What Windows says about a computer: pnputil, whose words are in the language of the system.
+"""Facts about a computer on Windows: pnputil, whose output is in the system's language.
 
 Only what is the same in every language is read: the numbers of devices.
 """

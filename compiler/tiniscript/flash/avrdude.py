@@ -20,13 +20,13 @@ from tiniscript.flash.bootloaders import Bootloader
 
 # Timeouts without output: before a bootloader has answered, and after that.
 NO_ANSWER_TIMEOUT_S, SILENCE_TIMEOUT_S = 15.0, 30.0
-EXIT_TIMEOUT_S = 5.0  # that it has after its last output
+EXIT_TIMEOUT_S = 5.0  # time to exit after its last output
 RUN_TIMEOUT_S = (
     300.0  # timeout of the whole run: writing and reading back a Mega's 256 KB takes 50 s
 )
 MOST_OUTPUT_BYTES = 200_000  # limit of its output; about 2,000 are normal
-MOST_ATTEMPTS = 2  # of its ten, which take five seconds each
-BAR_MARKS = 50  # of a whole bar
+MOST_ATTEMPTS = 2  # attempts before giving up; avrdude would make ten, of five seconds each
+BAR_MARKS = 50  # marks of a full bar
 
 WRITING, READING = "writing", "reading"
 # How it may end.
@@ -64,7 +64,7 @@ def find_avrdude() -> list[str] | None:
     path = shutil.which("avrdude")
     if path:
         return [path]
-    if sys.platform == "win32":  # comes as a package of its own
+    if sys.platform == "win32":  # distributed as a package of its own
         try:
             from avrdude_windows import get_avrdude_path
         except ImportError:
@@ -127,7 +127,7 @@ def write(
 
 
 class _GivenUp(Exception):
-    """It is not waited for any longer."""
+    """Raised when the wait for a program is over."""
 
     def __init__(self, outcome: str) -> None:
         super().__init__(outcome)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 
 class Bootloader(NamedTuple):
-    """How avrdude calls it, and the bits per second at which it listens."""
+    """The avrdude name of a bootloader, and its speed in bits per second."""
 
     name: str
     programmer: str
@@ -22,8 +22,7 @@ NANO = Bootloader("nano", "arduino", "m328p", 115_200)
 NANO_OLD = Bootloader("nano-old", "arduino", "m328p", 57_600)
 MEGA = Bootloader("mega", "wiring", "m2560", 115_200)
 
-# For each value of `--chip`: the board of the firmware, and the bootloaders to try. Which of the
-# two a Nano has cannot be seen from outside.
+# Board and bootloaders to try, by value of `--chip`. A Nano does not show which of two it has.
 BOARDS: dict[str, tuple[str, tuple[Bootloader, ...]]] = {
     "uno": ("uno", (UNO,)),
     "nano": ("nano", (NANO, NANO_OLD)),

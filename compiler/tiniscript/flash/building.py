@@ -34,19 +34,19 @@ HEADER_ORIGIN = "tsc firmware, from a robot profile."
 FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
 # It is too large, and is built once more, without tasks or without a remote control.
 WITHOUT_TASKS, WITHOUT_REMOTE = "less_tasks", "less_remote"
-CORE_FILE_COUNT = 26  # of Arduino's core, about
-# For a robot that does not fit on its board with all of it: one of more devices than tinibot.
+CORE_FILE_COUNT = 26  # approximate number of files in Arduino's core
+# Environments for robots whose full firmware is too large: those with more devices than tinibot.
 SMALLER_FIRMWARE = {
     "uno": ("uno_without_tasks", WITHOUT_TASKS),
     "nano": ("nano_without_remote", WITHOUT_REMOTE),
 }
-# For a robot with discs on its wheels, which have the place of the reader of text.
+# Environments for robots with discs, whose code replaces the reader of text.
 ENVIRONMENT_WITH_DISCS = {"uno": "uno_tinibot2", "nano": "nano_tinibot2"}
 # Breakpoints are there, too: a Mega and an ESP32 have them always.
 ENVIRONMENT_WITH_BREAKPOINTS = {"uno": "uno_breakpoints", "nano": "nano_breakpoints"}
-PLATFORMIO_MB = 4  # what pip fetches, measured
-# What PlatformIO fetches for a board with these chips: its platform, and the megabytes of compiler,
-# core and build tools, by estimate from what public indexes say of their archives for Linux.
+PLATFORMIO_MB = 4  # measured download size of PlatformIO
+# PlatformIO's downloads for a board with these chips: its platform, and the megabytes of compiler,
+# core and build tools, estimated from public indexes of the archives for Linux.
 _COMPILER_PACKAGES = {"esp32dev": ("espressif32", 350), "esp32c3": ("espressif32", 430)}
 _AVR_COMPILER_PACKAGE = ("atmelavr", 50)
 
@@ -57,7 +57,8 @@ _UNWANTED_LINE = re.compile(
 )
 _COMPILING = re.compile(r"^Compiling ", re.M)
 _INSTALLING = re.compile(r"^.*Manager: Installing (\S+)", re.M)
-_NETWORK_MESSAGE = re.compile(r"Installing|HTTP|Internet|[Cc]onnection")  # what needs the internet
+# Output that shows a need for the internet.
+_NETWORK_MESSAGE = re.compile(r"Installing|HTTP|Internet|[Cc]onnection")
 _WRITING = re.compile(r"Writing at 0x[0-9a-f]+.*?(\d+)(?:\.\d+)? ?%")  # esptool
 _PERCENT = re.compile(r"(\d+)%")
 _TOO_LARGE = re.compile(r"size \((\d+) bytes\) is greater than maximum allowed \((\d+) bytes")
@@ -102,7 +103,7 @@ class Sources(NamedTuple):
 
 
 def sources() -> Sources | None:
-    """Return the sources, or None where this package has none."""
+    """Return the sources, or None if this package has none."""
     for folder in SOURCE_FOLDERS:
         if (folder / SETTINGS_FILE).is_file():
             paths = [
@@ -133,7 +134,7 @@ def platformio() -> list[str] | None:
 
 
 def missing_mb(robot: Robot) -> int:
-    """Return how many megabytes PlatformIO fetches before it builds for a board, about."""
+    """Return the approximate megabytes that PlatformIO downloads to build for a board."""
     platform, mb = _COMPILER_PACKAGES.get(robot.board.chip, _AVR_COMPILER_PACKAGE)
     core_folder = Path(os.environ.get("PLATFORMIO_CORE_DIR") or _core_folder())
     platforms_folder = Path(os.environ.get("PLATFORMIO_PLATFORMS_DIR") or core_folder / "platforms")
@@ -141,7 +142,7 @@ def missing_mb(robot: Robot) -> int:
 
 
 def _core_folder() -> Path:
-    """Return where PlatformIO keeps what it has fetched; a short folder of Windows comes first."""
+    """Return PlatformIO's download folder; on Windows, a short path comes first."""
     home = Path.home() / ".platformio"
     short_folder = Path(home.drive + "\\.platformio")
     return short_folder if sys.platform == "win32" and short_folder.is_dir() else home
@@ -197,8 +198,9 @@ class _Project:
 
 
 def can_have_breakpoints(robot: Robot) -> bool:
-    """Whether a robot's board has room for breakpoints in the place of the reader of text; discs on
-    its wheels have that place already."""
+    """Return whether a board can have breakpoints instead of the reader of text; discs already
+    replace it.
+    """
     return robot.board.chip in ENVIRONMENT_WITH_BREAKPOINTS and not robot.board.discs
 
 
@@ -208,7 +210,7 @@ def build(
 ) -> bytes:  # fmt: skip
     """Return the firmware of a robot for its board, an Intel HEX file.
 
-    `on_progress` is called often. Raises CannotBuild, and OSError where there is no room to build.
+    `on_progress` is called often. Raises CannotBuild, and OSError if there is no room to build.
     """
     with _temporary_folder() as folder:
         project = _Project(sources, robot, folder, has_breakpoints)

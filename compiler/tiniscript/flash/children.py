@@ -15,9 +15,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Thread, current_thread, main_thread
 
-LOG_BYTES = 1 << 20  # of what a program says; the last ones
+LOG_BYTES = 1 << 20  # most bytes of a program's output that are kept, the last ones
 LOOK_INTERVAL_S = 0.1
-KILL_DELAY_S = 5.0  # that a program has to end by itself
+KILL_DELAY_S = 5.0  # time that a program gets to exit by itself
 
 
 class CannotStart(OSError):
@@ -35,7 +35,7 @@ def run(
     """Run a program in a folder, or here; return its exit code, and what it has said.
 
     `on_output` gets what it has said until now, ten times a second. An exception, such as Ctrl-C,
-    ends the program and its children; where it may not end after what it has said, it is waited for
+    ends the program and its children; if it may not end after what it has said, it is waited for
     first. Raises CannotStart, and TimeoutExpired where it has not ended `exit_timeout_s` after its
     last output.
     """
@@ -48,7 +48,8 @@ def run(
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
-                start_new_session=True,  # it has children, which end with it
+                # Puts its children in the same group, so that they end with it.
+                start_new_session=True,
             )
         except OSError as error:
             raise CannotStart(*error.args) from error
@@ -65,7 +66,7 @@ def run(
         try:
             release_interrupt()
             reader.start()
-            while True:  # one look at least, also at what has ended meanwhile
+            while True:  # looks at least once, because it may already have ended
                 reader.join(LOOK_INTERVAL_S)
                 on_output(output.decode(errors="replace"))
                 if not reader.is_alive():
@@ -80,13 +81,14 @@ def run(
             if reader.is_alive():  # a thread that reads while Python ends can take it down
                 reader.join(KILL_DELAY_S)
             raise
-    _kill(process)  # what it has started may go on, and hold a port
+    _kill(process)  # its children may go on, and hold a port
     return exit_code, output.decode(errors="replace")
 
 
 @contextmanager
 def _hold_interrupt() -> Iterator[Callable[[], None]]:
-    """Keep Ctrl-C until what is yielded is called: nobody would end a program that just starts.
+    """Delay Ctrl-C until the yielded function is called, because a starting program could not be
+    ended.
 
     Only the main thread hears of it.
     """
@@ -115,12 +117,12 @@ def _end(process: subprocess.Popen[bytes]) -> None:
             with suppress(OSError, subprocess.TimeoutExpired):
                 os.killpg(process.pid, signal.SIGINT)
                 process.wait(KILL_DELAY_S)
-    finally:  # also at a second Ctrl-C
+    finally:  # a second Ctrl-C must not skip this
         _kill(process)
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
-    with suppress(OSError):  # it has ended, and nothing is left of it
+    with suppress(OSError):  # the process and its group may be gone
         if sys.platform != "win32":
             os.killpg(process.pid, signal.SIGKILL)
         elif process.poll() is None:

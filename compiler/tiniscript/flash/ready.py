@@ -16,11 +16,11 @@ from tiniscript.robots.profile import Robot, language_number
 FOLDER = Path(__file__).resolve().parent / "ready"
 NOTICE_FILE = "NOTICE.txt"
 MOST_FILES = 30  # files in the cache; the oldest go first
-BREAKPOINTS = "breakpoints"  # in a title
-MOST_NAME_CHARACTERS = 24  # of a title, in a file's name
-IMAGE_OFFSETS = {"esp32dev": 0x1000, "esp32c3": 0}  # where an image begins in the flash of each
-IMAGE_MAGIC = b"\xe9"  # its first byte
-DATA_RECORD, END_RECORD = "00", "01"  # in the row of a HEX file
+BREAKPOINTS = "breakpoints"  # part of a title
+MOST_NAME_CHARACTERS = 24  # most characters of a title in a file's name
+IMAGE_OFFSETS = {"esp32dev": 0x1000, "esp32c3": 0}  # offset of the image in each board's flash
+IMAGE_MAGIC = b"\xe9"  # the first byte of an image
+DATA_RECORD, END_RECORD = "00", "01"  # record types in a HEX file
 
 
 class ReadyFile(NamedTuple):
@@ -33,7 +33,7 @@ class ReadyFile(NamedTuple):
 
     @property
     def flash_bytes(self) -> int:
-        """How many bytes of flash it fills."""
+        """Return the number of bytes of flash that it uses."""
         rows = self.path.read_text(encoding="ascii").splitlines()
         return sum(int(row[1:3], 16) for row in rows if row[7:9] == DATA_RECORD)
 
@@ -44,7 +44,7 @@ def firmware_cache() -> Path:
 
 
 def title_of(robot: Robot, has_breakpoints: bool = False) -> str:
-    """Return a robot's name, and the language of its answers where that is not English.
+    """Return a robot's name, and the language of its answers if that is not English.
 
     A firmware without answers in a language is the English one; one with breakpoints, which has no
     answers, has a title of its own.
@@ -71,7 +71,7 @@ def files(folder: Path = FOLDER) -> list[ReadyFile]:
 
 
 def images(folder: Path = FOLDER) -> list[ReadyFile]:
-    """Return what ESP32s get: whole firmware from address 0 on, as `esptool merge_bin` makes it."""
+    """Return the complete firmware of ESP32s from address 0, as `esptool merge_bin` makes it."""
     ready_files = []
     for path in sorted(folder.glob("*-*-*.bin")):
         title, board, digest = path.stem.rsplit("-", 2)

@@ -23,10 +23,10 @@ NAMED = re.compile(r"\{([a-z_]+(?:\.[a-z_]+)?)\}")
 
 
 def fill_numbers(page: str, file: str, lesson: Lesson) -> str:
-    """Return a page with its numbers. Raises LessonRefused where the lesson has none of a name."""
+    """Return a page with its numbers. Raises LessonRefused if the lesson has none of a name."""
     number_of_name = dict(
         reversed([*_numbers(lesson)])
-    )  # of two criteria of a kind the first one counts
+    )  # the first of two criteria of a kind counts
 
     def number(match: re.Match[str]) -> str:
         if match[1] not in number_of_name:
@@ -53,7 +53,7 @@ def _numbers_of(criterion: Criterion, lesson: Lesson) -> Iterator[tuple[str, flo
     if criterion.area:
         for key, (low, high) in zip(("x_cm", "y_cm"), criterion.area, strict=True):
             yield key, high - low
-    if criterion.places:  # where the first of them is, from the start
+    if criterion.places:  # the distance to the first place, from the start
         start = lesson.world.start
         x, y = point_of(criterion.places[0], lesson.world, False)
         along = math.radians(start.heading)
@@ -64,7 +64,7 @@ def _numbers_of(criterion: Criterion, lesson: Lesson) -> Iterator[tuple[str, flo
 
 
 FOLDER = Path(__file__).parent
-PUPIL, TEACHER = "pupil", "teacher"  # who a page is for
+PUPIL, TEACHER = "pupil", "teacher"  # readers of a page
 
 
 def folders() -> list[Path]:
@@ -74,9 +74,9 @@ def folders() -> list[Path]:
 
 def folder_of(name: str) -> Path:
     """Return the folder of a lesson: a number, or the path of a folder. Raises LessonRefused."""
-    shipped = folders()
-    if name.isascii() and name.isdigit() and 1 <= int(name[:9]) <= len(shipped):
-        return shipped[int(name[:9]) - 1]
+    shipped_paths = folders()
+    if name.isascii() and name.isdigit() and 1 <= int(name[:9]) <= len(shipped_paths):
+        return shipped_paths[int(name[:9]) - 1]
     path = Path(name)
     try:
         if (path / "lesson.toml").is_file():
@@ -84,7 +84,7 @@ def folder_of(name: str) -> Path:
     except (OSError, ValueError):  # a name that no folder can have
         pass
     raise LessonRefused(
-        ("no_such_lesson", {"name": printable_value(name), "most": str(len(shipped))})
+        ("no_such_lesson", {"name": printable_value(name), "most": str(len(shipped_paths))})
     )
 
 

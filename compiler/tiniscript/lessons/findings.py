@@ -1,4 +1,4 @@
-"""What judging a run is made of: a finding, the task that it is compared with, the way it took.
+"""The parts of judging a run: findings, the task they belong to, and the path.
 
 Knows no criteria and no languages.
 """
@@ -20,10 +20,10 @@ STILL_CM = 1.0  # less is no move
 
 
 class Finding(NamedTuple):
-    """What is missing. `kind` is that of the criterion, or "" for the run as a whole.
+    """A missing result. `kind` is that of the criterion, or "" for the whole run.
 
     `key` names a sentence. `labels` is what its place is called in each language. `ms`: when it
-    happened; None where it is known only at the end of the run.
+    happened; None if it is known only at the end of the run.
     """
 
     kind: str
@@ -34,7 +34,7 @@ class Finding(NamedTuple):
 
 
 class Task(NamedTuple):
-    """What a criterion is compared with: a run, and whether its world is mirrored."""
+    """The reference for a criterion: a run, and whether its world is mirrored."""
 
     run: Run
     is_flipped: bool

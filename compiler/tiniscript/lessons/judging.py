@@ -1,4 +1,4 @@
-"""Compares a run with the criteria of a lesson: what is missing becomes findings.
+"""Compares a run with the criteria of a lesson: missing results become findings.
 
 A finding is the name of a sentence and the values of its gaps; `sentences` makes words of it.
 Knows no languages. `place_judging` has the criteria that name places, `text_judging` those of the
@@ -23,22 +23,22 @@ from tiniscript.virtual.geometry import join_points
 
 STILL_DEGREES = 5.0  # less is no turn
 EARLY_MS = 5000  # within them a robot that turns to the wrong side has lost its line
-STANDING_LOOP_MS = 1000  # of a loop that took no time: so long it was where it is
-REST_MS = 3000  # without power at the end of the time: there it stays
+STANDING_LOOP_MS = 1000  # a loop that takes no time counts as standing for so long
+REST_MS = 3000  # time without power after which the robot is at its end
 SAMPLE_CM = 5.0  # between two points of a line that is followed
-LATE_MS = 600  # after which a robot does what is held now
+LATE_MS = 600  # time after which a robot obeys the keys held now
 OBEYED_CM, OBEYED_DEGREES = 3.0, 10.0  # more is a move, or a turn
 MOVE_CRITERIA = frozenset({"ends_in", "reaches", "stands_before", "follows", "drives", "faces"})
 END_CRITERIA = frozenset(
     {"ends_in", "stands_before", "faces"}
-)  # where the robot is when it is over
+)  # the robot's place at the end of the run
 PLACE_CRITERIA = END_CRITERIA | {"reaches"}
-# What is to be changed before the place of a wait or a sound.
+# Causes to mend before the place of a wait or a sound.
 EARLIER_CRITERIA = {"pauses": {"reaches"}, "beeps": {"reaches", "ends_in", "pauses"}}
 
 
 def judge_run(run: Run, lesson: Lesson) -> list[Finding]:
-    """Return what is missing in a run; nothing: it is right."""
+    """Return the findings about a run; none if it is right."""
     if run.ending == ASKS:
         return [Finding("", "asks")]
     if run.ending == FAULT:
@@ -67,7 +67,7 @@ def judge_run(run: Run, lesson: Lesson) -> list[Finding]:
             findings.append(finding)
     if (
         run.ending == BUSY and not findings
-    ):  # it stands where it should, and may drive on from there
+    ):  # it stands in the right place, and may drive on from there
         return busy
     return _drop_consequences(findings)
 
@@ -83,8 +83,8 @@ def _drop_consequences(findings: list[Finding]) -> list[Finding]:
     has_missed = any(
         finding.kind == "reaches" and finding.key not in ("reaches/late", "reaches/around")
         for finding in findings
-    )  # then its way back is not what is to be changed first
-    is_lost = bool(kinds & {"never_touches", ""})  # then it is not where it should be
+    )  # in that case its way back is not the first thing to change
+    is_lost = bool(kinds & {"never_touches", ""})  # a lost robot is not at its place
     return [
         finding
         for finding in findings
@@ -110,7 +110,7 @@ def _had_power(run: Run) -> bool:
 
 
 def _ends_at_rest(run: Run) -> bool:
-    """Whether its motors were off at the end, and had been for REST_MS."""
+    """Return whether the motors were off at the end, for at least REST_MS."""
     powered_rows = [k for k, (_, *powers) in enumerate(run.motors) if any(powers)]
     rows_at_rest = run.motors[powered_rows[-1] + 1 :] if powered_rows else ()
     return not powered_rows or bool(rows_at_rest and run.end_ms - rows_at_rest[0][0] >= REST_MS)
@@ -190,7 +190,7 @@ def _judge_distance(criterion: Criterion, task: Task) -> Finding | None:
 
 
 def _standstills(run: Run) -> list[tuple[int, int]]:
-    """Return when the robot stood between two moves: from and to."""
+    """Return the start and end of each pause between two moves."""
     standstills: list[tuple[int, int]] = []
     stopped_ms: int | None = None
     for ms, left, right in run.motors:
@@ -247,7 +247,7 @@ def _first_missed_place(
     seconds: Sequence[str],
 ) -> Finding | None:
     """Return the first place of a criterion that none of the poses is near, or None."""
-    within_cm = criterion.number_by_key.get("within_cm", 0.0)  # none where it has no places
+    within_cm = criterion.number_by_key.get("within_cm", 0.0)  # empty if it has no places
     kind = criterion.kind
     key = f"{kind}/place" if len(criterion.places) == 1 else f"{kind}/places"
     for number in range(len(criterion.places)):
@@ -266,7 +266,7 @@ def _judge_order(criterion: Criterion, task: Task) -> Finding | None:
     event_words = iter(task.run.event_words)
     previous_word = ""
     for k, word in enumerate(criterion.words):
-        if word not in event_words:  # which goes on after the one that it has found
+        if word not in event_words:  # the event comes after the one just found
             times = criterion.words[:k].count(previous_word) if word in criterion.words[:k] else 1
             return Finding("order", f"order/{previous_word}/{word}", {"times": str(times)})
         previous_word = word
@@ -299,7 +299,7 @@ def _motion_finding(from_ms: float, to_ms: float) -> Finding:
 
 
 def _key_effect(key: str, run: Run, from_ms: float, to_ms: float) -> tuple[str, bool]:
-    """Return what a key is for, and whether the robot did it."""
+    """Return the purpose of a key, and whether the robot did it."""
     ahead_cm, degrees = _displacement(run, from_ms, to_ms)
     effect_of_key = {
         "KEY_UP": ("forward", ahead_cm > OBEYED_CM),
@@ -319,7 +319,7 @@ def _stood_still(run: Run, from_ms: float, to_ms: float) -> bool:
 
 
 def _displacement(run: Run, from_ms: float, to_ms: float) -> tuple[float, float]:
-    """Return how far a robot went ahead in a time, and how far it turned to the left."""
+    """Return the robot's distance ahead in a time, and its rotation to the left."""
     ahead_cm = degrees = 0.0
     for sample, next_sample in pairwise(run.track):
         if from_ms <= sample.ms and next_sample.ms <= to_ms:
@@ -364,7 +364,7 @@ def _expected_value(
     shown_value: ShownValue, sensor_name: str, expected_number: float, run: Run
 ) -> float | None:
     """Return the thousandths that a value should be, or None for any."""
-    if sensor_name == TIME:  # that of the moment, or of any since it has stopped
+    if sensor_name == TIME:  # the time is that of any moment since it stopped
         return float(min(max(shown_value.value, _stopped_ms(shown_value, run)), shown_value.ms))
     if sensor_name:
         names = [device.name for device in run.robot.profile.kit.sensors]
@@ -373,7 +373,7 @@ def _expected_value(
 
 
 def _stopped_ms(shown_value: ShownValue, run: Run) -> int:
-    """Return since when the robot stood as it showed a value, or that moment if it drove."""
+    """Return when the robot stopped before it showed a value, or that moment if it drove."""
     since_ms = shown_value.ms
     for ms, *powers in run.motors:
         if ms > shown_value.ms:

@@ -13,8 +13,8 @@ from tiniscript.lessons.running import DONE
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 
 MOVES = frozenset("FBLRM")
-FORWARD_MOVES = frozenset("FBM")  # what is more than a turn
-CONSTANT_WORDS = frozenset({"TRUE", "FALSE", "NOT", "AND", "OR"})  # of a question
+FORWARD_MOVES = frozenset("FBM")  # moves that are more than a turn
+CONSTANT_WORDS = frozenset({"TRUE", "FALSE", "NOT", "AND", "OR"})  # constant words of a question
 STATEMENTS = frozenset({"W", "S", "BEEP", "SHOW"})  # an UNTIL after them is not that of a move
 
 
@@ -33,17 +33,17 @@ class Question(NamedTuple):
 
 
 class _Block:
-    """An open block: whether it stands in one that repeats, and what it asks."""
+    """An open block: whether it is inside a repeating one, and its question."""
 
     def __init__(self, start: int, word: str, words: list[str], is_repeated: bool) -> None:
         self.start, self.word, self.words = start, word, words
         self.is_repeated = is_repeated
         self.is_else = False
-        self.needed_truth = ""  # what its question must give for a move in it, once there is one
+        self.needed_truth = ""  # answer that its question needs before a move, once there is one
 
     def question(self) -> Question | None:
         """Return its question, if it may be what keeps the robot from moving."""
-        if self.word == "WHILE" and not self.needed_truth:  # it waits
+        if self.word == "WHILE" and not self.needed_truth:  # a WHILE without a move waits
             return Question(self.start, self.word, "FALSE", True, self.words)
         if self.word in ("LOOP", "DEF", "TASK") or not self.needed_truth:
             return None
@@ -55,7 +55,7 @@ class _Block:
 
 
 def find_moves(tokens: Sequence[Token], moves: Collection[str] = MOVES) -> list[int]:
-    """Return where there are moves that have time and power, as far as the text says it."""
+    """Return the places of moves with a time and a power in the text."""
     return [
         k
         for k, token in enumerate(tokens)
@@ -86,7 +86,7 @@ def _values(tokens: Sequence[Token], index: int) -> list[list[Token]]:
 
 
 def end_of_values(tokens: Sequence[Token], index: int) -> int:
-    """Return where in the text the bracket after a word closes, or where the word ends."""
+    """Return the index of the bracket that closes after a word, or of the word's end."""
     values = [token for value in _values(tokens, index) for token in value]
     closing_brackets = [token for token in tokens[index + 1 :] if token.text == ")"]
     values_end = values[-1].end if values else tokens[index].end
@@ -94,7 +94,7 @@ def end_of_values(tokens: Sequence[Token], index: int) -> int:
 
 
 def count_ahead(tokens: Sequence[Token]) -> int:
-    """Return how many moves a text has that are no turns on the spot."""
+    """Return the number of moves that are no turns on the spot."""
     return sum(
         token.kind == WORD and token.text in FORWARD_MOVES and not _is_turn(tokens, k)
         for k, token in enumerate(tokens)
@@ -102,7 +102,7 @@ def count_ahead(tokens: Sequence[Token]) -> int:
 
 
 def _is_turn(tokens: Sequence[Token], index: int) -> bool:
-    """Whether a move is M(-x, x) or M(x, -x)."""
+    """Return whether a move is M(-x, x) or M(x, -x)."""
     values = [[token.text for token in value] for value in _values(tokens, index)]
     if tokens[index].text != "M" or len(values) != 2:
         return False
@@ -111,7 +111,7 @@ def _is_turn(tokens: Sequence[Token], index: int) -> bool:
 
 
 def count_unasked(tokens: Sequence[Token]) -> int:
-    """Return how many UNTIL have nothing in their question that may change."""
+    """Return the number of UNTILs without anything variable in their question."""
     return sum(
         token.text == "UNTIL" and not set(_words(tokens, k)) - CONSTANT_WORDS
         for k, token in enumerate(tokens)
@@ -119,7 +119,7 @@ def count_unasked(tokens: Sequence[Token]) -> int:
 
 
 def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question | None:
-    """Return what kept a robot from each of its moves, or from all but turns; None: no question.
+    """Return what prevented each move of a robot, or all moves except turns; None: no question.
 
     `tokens` are those of a program without what nothing calls.
     """

@@ -14,7 +14,7 @@ from tiniscript.lessons.forms import TEXT, in_form
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.virtual.world import World
 
-WORLD_PARTS = ("start", "walls", "boxes", "lines", "lamps")  # of a world
+WORLD_PARTS = ("start", "walls", "boxes", "lines", "lamps")  # parts of a world
 
 
 class LessonRefused(ProfileRefused):
@@ -33,7 +33,7 @@ class Place(NamedTuple):
 
 
 class Criterion(NamedTuple):
-    """What a run or a program must be like. `kind` is a row of `criteria.KINDS`.
+    """A requirement for a run or a program. `kind` is a row of `criteria.KINDS`.
 
     `number_by_key` has the numbers of that row by their keys, `words` its words, `places` its places.
     `labels[language]` is what a place is called in sentences. `area` is around a place: from and
@@ -49,7 +49,7 @@ class Criterion(NamedTuple):
 
 
 class Variation(NamedTuple):
-    """How far chance moves a part of the world: from and to, in centimetres and degrees."""
+    """The random displacement of a part of the world: ranges in cm and degrees."""
 
     place: Place
     x_cm: tuple[float, float]
@@ -106,7 +106,7 @@ class Answer(NamedTuple):
     sentence_by_language: Mapping[str, str]
 
 
-LARGEST_NUMBER = 10_000.0  # of any number
+LARGEST_NUMBER = 10_000.0  # the largest number allowed
 
 
 class Number(NamedTuple):
@@ -119,7 +119,7 @@ class Number(NamedTuple):
 
 
 class CriterionKind(NamedTuple):
-    """What a criterion takes besides `kind`, and what it means.
+    """The fields of a kind of criterion besides `kind`, and its meaning.
 
     `places` are how many places at least; 0: it has none. `words` is what its words are: "" for
     none, "word" of the language or a sensor, "event" of EVENTS, "block" of REMOVABLE_BLOCKS; or, as its
@@ -137,12 +137,13 @@ class CriterionKind(NamedTuple):
     has_area: bool = False
 
 
-DEVICE_KINDS = ("value", "sensor", "switch")  # of `CriterionKind.words`, whose key is `what`
-REMOVABLE_BLOCKS = ("LOOP", "DEF", "WHEN", "TASK")  # what a program may be tried without
+# Kinds in `CriterionKind.words` that use the key `what`.
+DEVICE_KINDS = ("value", "sensor", "switch")
+REMOVABLE_BLOCKS = ("LOOP", "DEF", "WHEN", "TASK")  # blocks that a lesson may remove from a program
 EVENTS = ("moves", "stops", "beeps", "shows")
 TIMES = Number("times", 1, 100, 1)
 WITHIN = Number("within_cm", 1, 500, 10)
-AREA_KEYS = ("x_cm", "y_cm")  # from and to, around a place
+AREA_KEYS = ("x_cm", "y_cm")  # ranges around a place
 
 # fmt: off
 KINDS: dict[str, CriterionKind] = {
@@ -169,5 +170,5 @@ KINDS: dict[str, CriterionKind] = {
 }
 # fmt: on
 
-TIME = "TIME"  # a value of `shows` that no sensor gives
-ANY_VALUE = LARGEST_NUMBER + 1  # of `shows`, where no value is asked for
+TIME = "TIME"  # a value of `shows` that no sensor reads
+ANY_VALUE = LARGEST_NUMBER + 1  # value of `shows` that accepts any value

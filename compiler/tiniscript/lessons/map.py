@@ -24,7 +24,7 @@ DASHES = ' stroke-dasharray="4 2.5"'
 
 
 def plan(lesson: Lesson, title: str) -> str:
-    """Return the drawing, one unit of which is a centimetre. `title` is for who cannot see it."""
+    """Return the drawing, in units of centimetres. `title` is for people who cannot see it."""
     world = lesson.world
     width, height = world.width_cm, world.height_cm
     varied_parts = {

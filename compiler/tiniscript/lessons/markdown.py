@@ -83,12 +83,12 @@ def _paragraph(lines: list[str]) -> list[Block]:
 
 
 def printed_part(page: str) -> str:
-    """Return what is printed of a page."""
+    """Return the printed part of a page."""
     return _section(page, {"print": ""})
 
 
 def studio_part(page: str) -> str:
-    """Return what is read of a page in the studio; a hint is a paragraph that begins with HINT."""
+    """Return the part of a page for the studio; a hint is a paragraph that begins with HINT."""
     return _section(page, {"page": "", "hint": HINT})
 
 

@@ -20,7 +20,7 @@ PASSED, FAILED = "passed", "failed"
 
 
 class Outcome(NamedTuple):
-    """What came of a program. `seed` is that of the world where it failed, 0 for none.
+    """The result of a program. `seed` is the world in which it failed, or 0.
 
     `findings` say what is missing; `run` is the last run.
     """
@@ -46,7 +46,7 @@ class Marking:
         lesson: Lesson,
         seeds: Sequence[int],
     ) -> None:
-        """`compile_image` returns the image of a text, or None where that has mistakes."""
+        """`compile_image` returns the image of a text, or None if that has mistakes."""
         image = compile_image(text)
         assert image is not None, "a program with mistakes"
         self._image = image
@@ -57,7 +57,7 @@ class Marking:
         self._seeds = list(seeds)
         self._text = text
         self._text_findings = judge_text(text, lesson)
-        self._trial: Trial | None = None  # none before a world
+        self._trial: Trial | None = None  # none before the first world
         self._words_to_try = [
             (word, lesson._replace(criteria=lesson.criteria[:k]))
             for k, criterion in enumerate(lesson.criteria)
@@ -73,16 +73,16 @@ class Marking:
         return self._seeds[0]
 
     def run_to_end(self) -> Outcome:
-        """Return what came of it in the end. Raises WorldRefused, as `go`."""
+        """Return the final result. Raises WorldRefused, like `go`."""
         while True:
             outcome = self.go()
             if outcome is not None:
                 return outcome
 
     def go(self, most_ms: int | None = None) -> Outcome | None:
-        """Let the robot's time go on, at most by `most_ms`; return what came of it, once it has.
+        """Advance the robot's time by at most `most_ms`; return the result once it is known.
 
-        Raises WorldRefused where the robot does not fit into the world of `seed`.
+        Raises WorldRefused if the robot does not fit into the world of `seed`.
         """
         if self._trial is None:
             self._trial = Trial(self._image, self._robot, self._lesson, self.seed)

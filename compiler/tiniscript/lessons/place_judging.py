@@ -32,7 +32,7 @@ def _end_pose(run: Run) -> Pose:
 
 
 def _is_outside(criterion: Criterion, task: Task, points: Iterable[Point]) -> bool:
-    """Whether one of the points is not in the area of a criterion."""
+    """Return whether a point is outside the area of a criterion."""
     assert criterion.area is not None
     (left, right), (low, high) = criterion.area
     if task.is_flipped:
@@ -54,7 +54,7 @@ def _judge_final_place(criterion: Criterion, task: Task) -> Finding | None:
     way_cm = math.dist(place, start[:2])
     gaps_cm = [math.dist(place, pose[:2]) for _, pose in run.track]
     key = "away"
-    if way_cm > within_cm:  # else it should come back
+    if way_cm > within_cm:  # otherwise the robot should come back
         ux, uy = (place.x - start.x_cm) / way_cm, (place.y - start.y_cm) / way_cm
         dx, dy = end.x_cm - start.x_cm, end.y_cm - start.y_cm
         along_cm, beside_cm = dx * ux + dy * uy, abs(dy * ux - dx * uy)
@@ -70,7 +70,7 @@ def _judge_final_place(criterion: Criterion, task: Task) -> Finding | None:
 
 
 def _came_back(gaps_cm: list[float], within_cm: float) -> bool:
-    """Whether it had left a place, and came by there again."""
+    """Return whether the robot left a place and came back to it."""
     left_index = next((k for k, gap_cm in enumerate(gaps_cm) if gap_cm > within_cm), len(gaps_cm))
     return any(gap_cm <= within_cm for gap_cm in gaps_cm[left_index:])
 
@@ -85,7 +85,9 @@ def _judge_places(criterion: Criterion, task: Task) -> Finding | None:
 
 
 def _gap_cm(criterion: Criterion, task: Task, number: int, point: TrackPoint) -> float:
-    """Return how far a place is from the robot's middle, or a part of the world from a sensor."""
+    """Return the distance of a place from the robot's middle, or of a part of the world from a
+    sensor.
+    """
     if not criterion.words:
         return math.dist(task.point(criterion, number), (point.x_cm, point.y_cm))
     sensor = task.run.robot.profile.body.places[criterion.words[0]]
@@ -107,7 +109,7 @@ def _gap_cm(criterion: Criterion, task: Task, number: int, point: TrackPoint) ->
 def _count_reached(
     criterion: Criterion, task: Task, order: Sequence[int]
 ) -> tuple[int, Finding | None]:
-    """Return how many of its places the robot has reached in this order, and what is missing."""
+    """Return the number of places reached in this order, and the missing part."""
     within_cm = criterion.number_by_key["within_cm"]
     track_points = points_between(task.run.track)
     points = iter(track_points)
@@ -144,7 +146,7 @@ def _overshoot_cm(
     origin: TrackPoint,
     track_points: list[TrackPoint],
 ) -> float:
-    """Return how far from a place that it had reached the robot stood for the first time."""
+    """Return the distance from a reached place at which the robot first stopped."""
     for previous, point in pairwise(track_points[track_points.index(origin) :]):
         if point.driven_cm == previous.driven_cm:
             return _gap_cm(criterion, task, number, point)
@@ -198,7 +200,7 @@ def _missed_sentence(
 
 
 def _is_approaching(track_points: list[TrackPoint], place: Point) -> bool:
-    """Whether the last STRETCH_CM led to a place, and never before it was nearer."""
+    """Return whether the last STRETCH_CM led to a place, which was never nearer before."""
     gaps_cm = [math.dist(place, (point.x_cm, point.y_cm)) for point in track_points]
     start_index = next(
         k
@@ -264,7 +266,7 @@ def _judge_heading(criterion: Criterion, task: Task) -> Finding | None:
     off_degrees = (_end_pose(task.run).heading - expected_degrees + 180) % 360 - 180
     if abs(off_degrees) <= criterion.number_by_key["within_degrees"]:
         return None
-    key = "left" if off_degrees > 0 else "right"  # it looks too far to the left
+    key = "left" if off_degrees > 0 else "right"  # the robot faces too far to the left
     if abs(off_degrees) > OTHER_WAY_DEGREES:
         key = "behind"
     return Finding("faces", f"faces/{key}", {"degrees": f"{abs(off_degrees):.0f}"})

@@ -56,7 +56,7 @@ SENTENCE_VALUES = (
     "question",
     "what",
     "times",
-)  # values of which a sentence is made besides
+)  # further values of the sentence
 
 
 def read(text: str, world: World, name: str) -> Lesson:
@@ -113,7 +113,7 @@ def _answer(table: Table, is_wrong: bool) -> Answer:
 
 
 def _sentences(table: Table) -> dict[str, str]:
-    """Return in each language the sentence of a finding: its key, its values, and its place.
+    """Return the sentences of a finding by language: its key, values and place.
 
     That one is `place`, or a text in each language.
     """
@@ -165,7 +165,7 @@ def _variation(table: Table, world: World) -> Variation:
 
 
 def _presses(tables: list[Table]) -> tuple[Press, ...]:
-    """Return what is held, one after the other: each begins when the one before has ended."""
+    """Return the key presses in sequence: each begins when the previous one has ended."""
     keys = [device.name for device in REMOTE if device.is_yes_no]
     presses: list[Press] = []
     for table in tables:
@@ -179,7 +179,7 @@ def _presses(tables: list[Table]) -> tuple[Press, ...]:
 
 
 def _span(table: Table, key: str, greatest: int) -> tuple[float, float]:
-    """Return from and to; both are 0 if they are left out."""
+    """Return the start and end of a range; both are 0 if omitted."""
     low, high = table.pair(key, "") if table.check_for(key) else (0, 0)
     if low > high:
         table.complain("range_empty", key)
@@ -190,7 +190,7 @@ def _span(table: Table, key: str, greatest: int) -> tuple[float, float]:
 
 
 def _known_words(robot: Robot) -> dict[str, tuple[str, ...]]:
-    """Return what a criterion may name, by `Kind.words`."""
+    """Return the names that a criterion may use, by `Kind.words`."""
     sensors = tuple(device.name for device in robot.kit.sensors)
     return {
         "word": (*WORDS, *(device.name for device in robot.kit.readings)),

@@ -23,7 +23,7 @@ from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World
 
 STEP_MS = 20  # between two looks at where the robot is
-MOST_EVENTS = 200_000  # that a run may have
+MOST_EVENTS = 200_000  # most events in a run
 BRINGING_MS = 60_000  # limit for the way of a program to the robot
 PUSH_MS = 60
 
@@ -32,14 +32,14 @@ DONE, FAULT, LIMIT, BUSY, ASKS = "DONE", "FAULT", "LIMIT", "BUSY", "ASKS"
 
 
 class Sample(NamedTuple):
-    """Where the robot was. Times of a run are milliseconds since its start."""
+    """The robot's pose at a time, in milliseconds since the start of the run."""
 
     ms: int
     pose: Pose
 
 
 class Collision(NamedTuple):
-    """It came against something: `obstacle` is "wall", "box" or "border"."""
+    """A collision: `obstacle` is "wall", "box" or "border"."""
 
     ms: int
     obstacle: str
@@ -69,7 +69,8 @@ class SwitchedOn(NamedTuple):
 
 
 class Run(NamedTuple):
-    """What a program did. `ending` is DONE, FAULT, LIMIT, BUSY (it took no time) or ASKS (PING).
+    """The record of a program's run. `ending` is DONE, FAULT, LIMIT, BUSY (no time passed) or ASKS
+    (PING).
 
     `motors` are the settings of both motors, each with its time; `event_words` are words of
     `criteria.EVENTS` in their order.
@@ -96,9 +97,9 @@ class Run(NamedTuple):
 
 
 def run(image: Image, profile: Robot, lesson: Lesson, seed: int) -> Run:
-    """Return what a program does in the world of a seed.
+    """Return the run of a program in the world of a seed.
 
-    Raises WorldRefused where the robot does not fit into that world.
+    Raises WorldRefused if the robot does not fit into that world.
     """
     run = Trial(image, profile, lesson, seed).go()
     assert run is not None, "it goes on to the end"
@@ -109,7 +110,7 @@ class Trial:
     """A program on its way through the world of a seed."""
 
     def __init__(self, image: Image, profile: Robot, lesson: Lesson, seed: int) -> None:
-        """Raises WorldRefused where the robot does not fit into that world."""
+        """Raises WorldRefused if the robot does not fit into that world."""
         robot = self.robot = VirtualRobot(
             profile, vary(lesson, seed), Settings(seed=seed, noise=lesson.noise, eeprom_us=0)
         )
@@ -128,7 +129,7 @@ class Trial:
         self._limit_ms = self._witness.started_ms + round(lesson.seconds * 1000)
 
     def go(self, most_ms: int | None = None) -> Run | None:
-        """Let the robot's time go on, at most by `most_ms`; return what it did, once it is over."""
+        """Advance the robot's time by at most `most_ms`; return the run once it is over."""
         robot, witness = self.robot, self._witness
         if self._is_ping:
             return witness.run(ASKS)
@@ -147,7 +148,7 @@ class Trial:
         return witness.run(FAULT if robot.fault else DONE)
 
     def step(self, until_ms: int) -> None:
-        """Let the robot's time go on, by STEP_MS at most, while what is to be held is held."""
+        """Advance the robot's time by at most STEP_MS, with the keys held as planned."""
         robot = self.robot
         if not self._presses:
             robot.step(until_ms)
@@ -254,7 +255,7 @@ class _Witness:
         self._event_words.insert(len(self._event_words) - count_at_once, "stops")
 
     def _nearest_obstacle(self, pose: Pose) -> str:
-        """Return what the robot is nearest to."""
+        """Return the kind of the nearest obstacle."""
         world, hull = self.robot.world, self.robot.driving.hull
         segments_of_kind = {
             "wall": [segment for wall in world.walls for segment in join_points(list(wall))],

@@ -1,4 +1,4 @@
-"""What there is to say of a finding: what the robot did, and what to try.
+"""Sentences about findings: what the robot did, and a suggestion.
 
 Knows every key of `judging`. Does not know when one applies.
 """
@@ -24,7 +24,7 @@ EXAMPLES = {
 
 
 def sentence(finding: Finding, language: str, form: str = TEXT) -> str:
-    """Return what is said of a finding; in the form for blocks code is between back quotes."""
+    """Return the sentence about a finding; for blocks, code is between back quotes."""
     key = finding.key
     if find_text("lessons", f"said/{key}", language) is None:
         key = key.partition("/")[0]
@@ -62,6 +62,6 @@ def _example(word: str, question: str, form: str) -> str:
         example = EXAMPLES[word].format(question=question)
         if form == TEXT:
             return example
-        *parts, end_word = example.split(" ... ")  # which ends a block
+        *parts, end_word = example.split(" ... ")  # the last part ends a block
         return "` … `".join(parts or [end_word])
     return WORDS[word].example if word in WORDS else word

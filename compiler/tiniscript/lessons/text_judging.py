@@ -17,18 +17,18 @@ from tiniscript.lessons.kept import MOVES
 from tiniscript.lessons.lesson import Criterion, Lesson
 from tiniscript.syntax.lexer import NUMBER, WORD, Token, scan
 
-# What a run lacked altogether, by the sentence for it, and the word that does it.
+# Parts that a run lacked completely, by their sentence, with the word for them.
 MISSING_KEYS = {
     "still": "move", "still/brief": "move", "order//moves": "move",
     "ends_in/turned": "move", "reaches/turned": "move",
     "shows/nothing": "SHOW", "order//shows": "SHOW", "beeps/none": "BEEP", "order//beeps": "BEEP",
 }  # fmt: skip
-TASKS = ("WHEN", "TASK")  # no block stands around them, and none of them in another one
+TASKS = ("WHEN", "TASK")  # they are not nested, in other blocks or in each other
 ACTING_WORDS = MOVES | {"S", "BEEP", "SHOW"}  # waiting alone is nothing to repeat
 
 
 def judge_text(text: str, lesson: Lesson) -> list[Finding]:
-    """Return what is missing in a program's text, whatever it does."""
+    """Return the findings about a program's text, independent of its run."""
     question = {"question": _question(lesson.robot)}
     tokens = scan(text).tokens
     findings = (
@@ -42,31 +42,31 @@ def judge_text(text: str, lesson: Lesson) -> list[Finding]:
 
 
 def explain(findings: Sequence[Finding], text: str, lesson: Lesson, ending: str) -> list[Finding]:
-    """Return what is missing in a run that ended so, with the reason that the text has for it.
+    """Return the findings about a run, with the reasons found in the text.
 
     Where the robot did nothing, and the text has what it should do, then it was never reached.
     """
     tokens = scan(text).tokens
     words = [token.text for token in tokens if token.kind in (WORD, NUMBER)]
     is_endless = any(finding.key in ("ends", "long") for finding in findings)
-    uncalled: list[Finding] = []
+    uncalled_findings: list[Finding] = []
     explained = []
     for finding in findings:
         word = MISSING_KEYS.get(finding.key, "")
         name = _name_of_uncalled(word, tokens, words) if word else ""
         if name:
-            uncalled = [Finding("uses", "uses/uncalled", {"name": _call_of(name, tokens)})]
+            uncalled_findings = [Finding("uses", "uses/uncalled", {"name": _call_of(name, tokens)})]
         elif word == "move":
             explained.append(_with_condition(finding, tokens, words, lesson, ending))
         elif word not in words:
             explained.append(finding)
         elif not is_endless:
             explained.append(finding._replace(key="unreached", values={"word": word}))
-    return uncalled + explained
+    return uncalled_findings + explained
 
 
 def _name_of_uncalled(word: str, tokens: Sequence[Token], words: Sequence[str]) -> str:
-    """Return a word of DEF that nothing calls, and that has what is missing."""
+    """Return a DEF's word that is never called, and contains the missing part."""
     for name in _uncalled_words(words):
         tokens_inside = [token for def_name, token in _tokens_with_def(tokens) if def_name == name]
         if (
@@ -79,7 +79,7 @@ def _name_of_uncalled(word: str, tokens: Sequence[Token], words: Sequence[str]) 
 
 
 def _call_of(name: str, tokens: Sequence[Token]) -> str:
-    """Return how a word of DEF is called, with the names of its values: `SQUARE(SIZE)`."""
+    """Return a call of a DEF with the names of its values: `SQUARE(SIZE)`."""
     texts = [token.text for token in tokens]
     index = next(k for k, pair in enumerate(pairwise(texts)) if pair == ("DEF", name)) + 2
     if texts[index : index + 1] != ["("]:
@@ -105,10 +105,12 @@ def _with_condition(
     finding: Finding, tokens: Sequence[Token], words: Sequence[str], lesson: Lesson, ending: str
 ) -> Finding:
     """Return a finding of a robot that stays where it is; with a question that kept it, that."""
-    uncalled = _uncalled_words(words)
-    called_tokens = [token for name, token in _tokens_with_def(tokens) if name not in uncalled]
+    uncalled_words = _uncalled_words(words)
+    called_tokens = [
+        token for name, token in _tokens_with_def(tokens) if name not in uncalled_words
+    ]
     is_turned = finding.key.endswith("/turned")
-    if finding.key == "still/brief":  # it had power, so no IF kept it
+    if finding.key == "still/brief":  # it had power, so no IF kept it from moving
         words_called = {token.text for token in called_tokens}
         if "M" in words_called and "UNTIL" not in words_called:
             return finding
@@ -145,9 +147,9 @@ def _judge_words(criterion: Criterion, tokens: Sequence[Token]) -> Finding | Non
             values = {"word": word, "times": str(times), "found": str(word_counts[word])}
             return Finding("uses", key, values)
     def_names = _def_names(words)
-    uncalled = _uncalled_words(words)
-    if "DEF" in criterion.words and len(def_names) - len(uncalled) < times and uncalled:
-        return Finding("uses", "uses/uncalled", {"name": _call_of(uncalled[0], tokens)})
+    uncalled_words = _uncalled_words(words)
+    if "DEF" in criterion.words and len(def_names) - len(uncalled_words) < times and uncalled_words:
+        return Finding("uses", "uses/uncalled", {"name": _call_of(uncalled_words[0], tokens)})
     if "LOOP" in criterion.words and not any(
         ACTING_WORDS.union(def_names).intersection(inside) for inside in _loop_bodies(words)
     ):
@@ -187,7 +189,7 @@ def _uncalled_words(words: Sequence[str]) -> list[str]:
 
 
 def _loop_bodies(words: Sequence[str]) -> list[list[str]]:
-    """Return what is inside of each LOOP that repeats: LOOP(1) and LOOP(0) do not."""
+    """Return the bodies of repeating LOOPs: LOOP(1) and LOOP(0) do not repeat."""
     bodies: list[list[str]] = []
     open_loops: list[list[str]] = []
     for word in words:
@@ -242,7 +244,7 @@ def _end_of_block(tokens: Sequence[Token], index: int) -> int:
 
 
 def idle_finding(word: str, text: str) -> Finding:
-    """Return what is missing where the task is done without a word of BLOCKS, too."""
+    """Return the finding for a word of BLOCKS that the solution does not need."""
     def_names = _def_names(_words(scan(text).tokens))
     return Finding("needs", f"needs/{word}", {"name": def_names[0] if def_names else ""})
 

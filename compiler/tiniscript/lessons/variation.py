@@ -1,7 +1,7 @@
 """Makes the world of a seed: chance moves its parts, and may exchange left and right.
 
 The same lesson and seed give the same world on every computer. The seed 1 of a lesson without
-variations is the world as it is written.
+variations is the world as written.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ MIRRORED_KEYS = {"KEY_LEFT": "KEY_RIGHT", "KEY_RIGHT": "KEY_LEFT"}
 
 
 def presses_of(lesson: Lesson, seed: int) -> tuple[Press, ...]:
-    """Return what is held in the world of a seed."""
+    """Return the key presses in the world of a seed."""
     if not is_mirrored(lesson, seed):
         return lesson.presses
     return tuple(
@@ -43,12 +43,14 @@ def presses_of(lesson: Lesson, seed: int) -> tuple[Press, ...]:
 
 
 def is_mirrored(lesson: Lesson, seed: int) -> bool:
-    """Whether left and right are exchanged: in every other world, beginning with the second."""
+    """Return whether left and right are exchanged: in every other world, beginning with the
+    second.
+    """
     return lesson.is_mirrored and seed % 2 == 0
 
 
 def point_of(place: Place, world: World, is_flipped: bool) -> Point:
-    """Return where a place is: a point, the start, a lamp, the middle of another part."""
+    """Return the point of a place: itself, the start, a lamp, or the middle of another part."""
     if not place.part:
         return Point(place.x_cm, world.height_cm - place.y_cm if is_flipped else place.y_cm)
     if place.part == "start":

@@ -1,4 +1,4 @@
-"""The functions behind `import tiniscript`, and what the command shares with them.
+"""The functions of `import tiniscript`, and those shared with the command.
 
 `compiling` goes from text to image, one line per stage; `client` is the client of a robot for
 library, command and studio.

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 REQUEST_TIMEOUT_MS = (
-    EXCHANGE_TIMEOUT_MS  # of a robot that does not answer, or is busy, from its last progress
+    EXCHANGE_TIMEOUT_MS  # time without progress after which a robot counts as silent or busy
 )
 SAVE_TIMEOUT_S = 10.0  # timeout for saving a program while the motors stand
 # Timeout while the voltage is too low for saving: the robot checks every 0.5 s.
@@ -89,28 +89,31 @@ class Client:
 
     @property
     def holds_for_others(self) -> bool:
-        """Whether another command drives the robot through this one, or is about to: the end of
-        what this one has done is no stop of that one's program."""
+        """Return whether another command drives the robot through this one, or is about to, so that
+        the end of this command must not stop its program.
+        """
         server = self.server
         return server is not None and not self.connection.has_ended and server.is_needed
 
     @property
     def drives_another(self) -> bool:
-        """Whether the robot does what another command has started through this one."""
+        """Return whether the robot runs a program that another command started through this one."""
         return self.server is not None and self.server.has_run
 
     def hold_for_others(self, goes_on: Callable[[], bool] = lambda: True) -> None:
-        """Hold the port until they have ended. Raises RobotError where it is gone."""
+        """Hold the port until they have ended. Raises RobotError if it is gone."""
         while self.holds_for_others and goes_on():
             self.event()
 
     def close(self, stop_s: float | None = None, has_run: bool = False) -> None:
-        """Close the port. First stop what a client of the server has started, or what may run
-        where `may_have_run`: wait `stop_s` for that, by default as long as a stop may take."""
+        """Close the port. First stop the runs of the server's clients, or possible ones if
+        `may_have_run`: wait `stop_s` for that, by default as long as a stop may take.
+        """
         try:
             if self.server is not None:
                 self.server.close()  # until then a client may start a run
-                has_run = has_run or self.server.may_have_run  # its client can no longer stop it
+                # Its client can no longer stop the run.
+                has_run = has_run or self.server.may_have_run
             if has_run and not self.connection.has_ended:
                 self.stop(stop_s)
         finally:
@@ -143,7 +146,7 @@ class Client:
             return self.wait(self.search())
         from tiniscript.link import ports
 
-        if ports.is_radio(self.port):  # else opening it has reset the board
+        if ports.is_radio(self.port):  # opening a cable's port resets the board
             return self.wait(self.search())
         sleep(opening.QUIET_S_BY_BOARD.get(board or self.profile.board.chip, 0.0))
         reply = self.wait(self.search(opening.CABLE_ANSWER_TIMEOUT_MS))
@@ -151,7 +154,7 @@ class Client:
             sleep(opening.LONG_QUIET_S)
             reply = self.wait(self.search(opening.CABLE_ANSWER_TIMEOUT_MS))
         if reply.status == LOST and self.connection.heard_count and not self.connection.is_echoed:
-            return self.wait(self.search())  # what is heard may be a robot that answers late
+            return self.wait(self.search())  # the data may come from a robot that answers late
         return reply
 
     def search(self, limit_ms: int | None = None) -> PendingRequest[HelloReply]:
@@ -170,7 +173,7 @@ class Client:
             request.limit_ms = limit_ms or REQUEST_TIMEOUT_MS
             return request
 
-        self._poll()  # a robot that answers at once makes nobody wait
+        self._poll()  # a robot that answers at once causes no wait
         with self._convert_loss():
             return self.connection.begin(with_limit)
 
@@ -267,7 +270,7 @@ class Client:
             return "port_taken" if str(loss) == errors.TAKEN else "broker_gone"
         if (
             self.connection.heard_count and self.connection.robot is None
-        ):  # it reported busy, and closed
+        ):  # the port was busy, and is closed
             return "port_busy"
         return "port_gone"
 
@@ -294,8 +297,9 @@ class Client:
 
 
 class Saving:
-    """How far the robot is with saving a program: the next command that opens the port may reset
-    the robot, which would end it."""
+    """The progress of saving a program. The next command that opens the port may reset the robot,
+    which would interrupt the save.
+    """
 
     def __init__(self, receipt: ReceiptReply) -> None:
         self.program, self.saved = receipt.program, receipt.saved
@@ -305,7 +309,7 @@ class Saving:
         return self.saved not in (SAVED_SAVING, SAVED_LOW_SUPPLY)
 
     def update(self, status: StatusReply) -> None:
-        """Take what the robot says; of another program: somebody has sent that since."""
+        """Update from a robot's status; another program has been sent meanwhile."""
         self.saved = status.saved if status.program == self.program else SAVED_STORED
 
     def polls(self) -> Iterator[None]:

@@ -28,7 +28,7 @@ from tiniscript.syntax.parser import parse
 
 
 class Compilation(NamedTuple):
-    """What became of a text. Where a diagnostic is a mistake, `image` is empty.
+    """The result of compiling a text. If a diagnostic is a mistake, `image` is empty.
 
     `program` is the checked program, as written, and `lowered_program` what the code was made of;
     `locations` says where in the text each instruction comes from, `yes_no_flags` which of its
@@ -62,7 +62,7 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compilation:
 
 
 def _add_findings(compilation: Compilation, kit: Kit) -> Compilation:
-    """Return a wrong program with what is said about it."""
+    """Return a wrong program with its diagnostics."""
     from tiniscript.recovery.told import diagnose
 
     diagnostics_of = cache(
@@ -75,7 +75,7 @@ def _add_findings(compilation: Compilation, kit: Kit) -> Compilation:
 
 
 def analyze(text: str, kit: Kit, name: str = "") -> Compilation:
-    """Return the checked program of a text, and what is wrong with it; no repair is vouched for."""
+    """Return the checked program of a text with its diagnostics; repairs are not verified."""
     source = Source(text, name)
     parse_result = parse(source)
     kit = _kit_in(text, kit)
@@ -214,14 +214,14 @@ def compile_source(
     """Return the result of compiling a program's text.
 
     `is_strict`: a program that is too large for the robot is a mistake, else a warning.
-    `names_robots`: a word of another robot is said to be that; not where no other can be chosen.
+    `names_robots`: a word of another robot is said to be that; not if no other can be chosen.
     `is_chosen`: the robot is what somebody has chosen, else what `named_robot` says of the text.
     """
     text = text_of(data, name)
     if not isinstance(text, str):
         return text
     unknown_robot_diagnostic = None if is_chosen else unknown_robot(text)
-    if unknown_robot_diagnostic is not None:  # which words there are nobody knows
+    if unknown_robot_diagnostic is not None:  # nobody knows the words of an unknown robot
         return Compilation(Source(text, name), [unknown_robot_diagnostic])
     compilation = compile_text(text, robot.kit, name, optimize)
     if not compilation.is_right:
@@ -262,7 +262,9 @@ def image_of(compilation: Compilation, robot: Robot) -> Image:
 
 
 def image_maker(robot: Robot) -> Callable[[str], Image | None]:
-    """Return what makes the image of a text for a robot, or None where the text has mistakes."""
+    """Return a function that compiles a text for a robot; it returns None for texts with
+    mistakes.
+    """
 
     def make_image(text: str) -> Image | None:
         compilation = compile_source(text.encode(), robot, "", is_strict=True)

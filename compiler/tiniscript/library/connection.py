@@ -47,8 +47,9 @@ LOOK_INTERVAL_S = 0.1
 
 
 class RobotInfo(NamedTuple):
-    """What a robot reports of itself. `name` is its given name, or empty; `robot` is the name of
-    its profile, or None if this computer does not know it; `room` is in bytes of code."""
+    """A robot's description. `name` is its given name, or empty; `robot` is its profile, or None if
+    unknown here; `room` is in bytes of code.
+    """
 
     name: str
     id: int
@@ -102,7 +103,7 @@ class RobotConnection:
 
     @property
     def info(self) -> RobotInfo:
-        """What the robot reports of itself."""
+        """The robot's description of itself."""
         device_info = self._client.device_info
         profile = robot_of_kit(device_info.kit)
         name = None if profile is None else profile.name
@@ -164,7 +165,7 @@ class RobotConnection:
         brings the later one back.
 
         What runs ends, and nothing starts. Returns when the robot holds it; `close` waits until
-        that is saved. Raises RobotError, with the reason `NO_PREVIOUS` where there is none.
+        that is saved. Raises RobotError, with the reason `NO_PREVIOUS` if there is none.
         """
         self._check_open()
         reply = self._client.request(lambda session: session.undo())
@@ -176,7 +177,7 @@ class RobotConnection:
     def events(self, timeout: float | None = None) -> Iterator[RobotEvent]:
         """Yield the robot's events until the program that this connection has started ends (that
         event is the last one) or `timeout` seconds have passed. If it has started none, only the
-        timeout ends the events: None is for ever. Raises RobotError if the robot is lost.
+        timeout ends the events: None is forever. Raises RobotError if the robot is lost.
         """
         self._check_open()
         if timeout is not None:
@@ -204,7 +205,7 @@ class RobotConnection:
                 return
 
     def _follow(self, follower: Follower, event: Event) -> bool:
-        """The same for sentences of this connection, which knows from then on what has happened."""
+        """Process an event for this connection, and remember its effects."""
         try:
             return follower.follow(event, opening.printable_name(self.port), self.language)
         except RobotError as error:
@@ -233,7 +234,7 @@ class RobotConnection:
         so, in percent to the right and up, and nothing else.
 
         It counts for half a second: press anew before. Without keys all are let go. Returns when
-        the robot has it, or has not answered in time. Raises RobotError where it takes none.
+        the robot has it, or has not answered in time. Raises RobotError if it takes none.
         """
         self._check_open()
         for axis, percent in (("x", x), ("y", y)):
@@ -265,12 +266,12 @@ class RobotConnection:
     # -- leaving ----------------------------------------------------------------------------------
 
     def _leave(self, is_clean: bool, is_interrupted: bool = False) -> None:
-        """Ctrl-C stops the robot, whoever has started what it does."""
+        """Leave the connection; Ctrl-C stops the robot, whoever started the run."""
         if self._is_closed:
             return
         if self._follower is not None and self._ending is None:
             with suppress(RobotError):
-                for _ in self.events(0):  # it may have been replaced since
+                for _ in self.events(0):  # the program may have been replaced since
                     pass
         self._is_closed = True
         is_run_of_others = (self._client.drives_another or self._is_replaced) and not is_interrupted

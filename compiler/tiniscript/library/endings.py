@@ -1,4 +1,4 @@
-"""How a run ends, by the events of the link. Knows nothing of programs."""
+"""The end of a run by the events of the link, independent of programs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class End(NamedTuple):
 
     @property
     def was_caused_by_program(self) -> bool:
-        """Whether the program has ended by itself, by a fault of its own too."""
+        """Return whether the program ended by itself, including by a fault of its own."""
         return self.name == DONE or (self.fault is not None and self.fault < FIRST_LINK_FAULT)
 
 
@@ -32,8 +32,9 @@ class Follower:
         self.has_begun = run is None  # earlier events are of another run
 
     def follow(self, event: Event, port: str, language: str = "en") -> bool:
-        """Whether an event may be about the run. Raises RobotError if the robot is lost or has
-        another program."""
+        """Return whether an event may concern the run. Raises RobotError if the robot is lost or
+        has another program.
+        """
         if event.name == "LOST":
             raise RobotError("link_lost", language, {"port": port})
         if event.name == "RESTARTED":

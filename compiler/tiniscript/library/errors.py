@@ -42,7 +42,7 @@ class TiniScriptError(Exception):
         sentence_text: str | None = None,
     ) -> None:  # fmt: skip
         """`sentence_text` replaces the sentence that `reason` has in the catalogue `library`."""
-        self.key = reason  # of its sentence, which may say more than the reason
+        self.key = reason  # key of its message, which may be more specific than the reason
         self.reason = _REASON_WITHOUT_HINT.get(reason, reason)
         self.values = dict(values or {})
         super().__init__(

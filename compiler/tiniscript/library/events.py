@@ -36,7 +36,7 @@ class RobotEvent(NamedTuple):
 
 
 class Ending(NamedTuple):
-    """How a program has ended. `name` is DONE, FAULT or STOPPED."""
+    """The end of a program. `name` is DONE, FAULT or STOPPED."""
 
     name: Literal["DONE", "FAULT", "STOPPED"]
     fault: Fault | None = None

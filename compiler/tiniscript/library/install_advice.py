@@ -2,7 +2,7 @@
 
 Depends on how tsc was installed: from a clone, by pip, by pipx. A clone installs its own extras;
 an installed package names the packages behind an extra, so that `tiniscript` itself is named only
-where that is needed.
+if that is needed.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ PACKAGE = Path(__file__).resolve().parent.parent
 CLONE = PACKAGE.parent.parent
 # The extras of pyproject.toml.
 VIRTUAL, FIRMWARE, RADIO, BROKER, STUDIO = "virtual", "firmware", "radio", "broker", "studio"
-# Of an extra that only a clone needs: each file that pip may fetch, by its digest.
+# The lock file of each extra that only a clone needs, with the digest of every file pip may fetch.
 LOCKS = {STUDIO: CLONE / "tools" / "studio" / "requirements.txt"}
 
 
@@ -38,7 +38,7 @@ def command(extra: str) -> str:
 def install_command(extra: str) -> list[str] | None:
     """Return the command with which this Python installs the packages of an extra for itself.
 
-    None where that is not its business: it has no pip, or pipx or the system manages it.
+    None if that is not its business: it has no pip, or pipx or the system manages it.
     """
     needed_packages = requirements(extra)
     if not needed_packages or is_pipx() or is_managed() or find_spec("pip") is None:
@@ -53,7 +53,7 @@ def install_command(extra: str) -> list[str] | None:
 
 
 def is_clone(folder: Path) -> bool:
-    """Whether tsc runs from a clone of its repository."""
+    """Return whether tsc runs from a clone of its repository."""
     return (folder / "pyproject.toml").is_file() and (folder / "compiler" / "tiniscript").is_dir()
 
 
@@ -62,7 +62,9 @@ def is_pipx() -> bool:
 
 
 def is_managed() -> bool:
-    """Whether pip refuses to install because the system manages this Python, as on Debian 12."""
+    """Return whether pip refuses to install because the system manages this Python, as on Debian
+    12.
+    """
     marker = Path(sysconfig.get_path("stdlib")) / "EXTERNALLY-MANAGED"
     return sys.prefix == sys.base_prefix and marker.is_file()
 

@@ -20,7 +20,7 @@ def shipped_name_of_kit(fingerprint: int) -> str | None:
 
 
 def robot_name_of_kit(fingerprint: int) -> str | None:
-    """Return the name of the robot that has this kit, or None where this computer knows none."""
+    """Return the name of the robot that has this kit, or None if this computer knows none."""
     robot = robot_of_kit(fingerprint)
     return None if robot is None else robot.name
 
@@ -74,7 +74,7 @@ def is_runnable(image: Image, robot: Robot) -> bool:
 def lacks(needs: int, robot: Robot) -> bool:
     """Return whether the robot's firmware lacks something of `needs` in an image."""
     capabilities = CHIPS[robot.board.chip].capabilities
-    if robot.board.discs:  # on a Nano they have the place of the reader of text, and leave some
+    if robot.board.discs:  # on a Nano, discs replace the reader of text, and free some memory
         capabilities |= TASKS
     if not robot.kit.speed and not robot.kit.turn:
         capabilities &= ~GO

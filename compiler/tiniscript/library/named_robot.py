@@ -1,4 +1,4 @@
-"""Which robot a program is for: the one that somebody has chosen, else the one that it names.
+"""The robot of a program: the chosen one, or else the one it names.
 
 It names one in a comment before its first instruction: `// robot: liner`.
 """
@@ -23,7 +23,7 @@ _ROBOT_LINE = re.compile(
 
 
 class NamedRobot(NamedTuple):
-    """The name as it is written, and its place."""
+    """The name as written, and its place."""
 
     name: str
     span: Span
@@ -58,7 +58,7 @@ def shipped_name_in(data: bytes) -> str | None:
 
 
 def robot_name(data: bytes) -> str | None:
-    """Return how a program's text names its robot, or None; an image names none."""
+    """Return the robot named in a program's text, or None; an image names none."""
     try:
         robot_in_text = named_robot(decode(data))
     except Unreadable:

@@ -29,18 +29,18 @@ if TYPE_CHECKING:
     from tiniscript.link.port_connection import PortConnection
 
 BUSY_TIMEOUT_S = 3.0  # timeout for a busy port: its owner may be leaving, or be about to share it
-STOP_BUSY_TIMEOUT_S = 10.0  # the same for a stop: an owner with a silent robot gives up only slowly
+STOP_BUSY_TIMEOUT_S = 10.0  # the same for a stop: a silent robot's owner gives up slowly
 RETRY_INTERVAL_S = 0.05
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
 OPEN_TIMEOUT_S = 20.0  # timeout for opening a port
 MOST_NAME_CHARACTERS = 200  # characters of a name in a sentence
 
 ANSWER_TIMEOUT_MS = 6000  # timeout for HELLO by radio
-# By cable the timeout is shorter, and HELLO has two tries: an Uno takes 1.4 s after a reset.
+# A cable has a shorter timeout, and HELLO gets two tries: an Uno needs 1.4 s after a reset.
 CABLE_ANSWER_TIMEOUT_MS = 2000
 # A Mega begins 0.9 s after a reset. Bytes that arrive earlier keep it in its bootloader until the
 # line has been silent for 4.2 s.
-QUIET_S_BY_BOARD = {"mega": 1.2}  # by board
+QUIET_S_BY_BOARD = {"mega": 1.2}  # keyed by the board's name
 LONG_QUIET_S = 4.5
 CONFIRM_TIMEOUT_S = 7.0  # timeout for the answer to a stop, a little longer than stops are sent
 
@@ -88,7 +88,7 @@ def connection_to(
 
 
 def _is_suspended(address: str) -> bool:
-    """Whether the command that shares a port is suspended: it does not answer."""
+    """Return whether the command that shares a port is suspended and does not answer."""
     registration = registry.find_registration(address)
     return registration is not None and holders.is_suspended(registration.pid)
 
@@ -145,9 +145,9 @@ def _open_connection(
         cleanup.callback(opened_port.close)
         if directory.belongs_to_another(
             address
-        ):  # asked of who has let us in, before anything is sent
+        ):  # the confirmation by the other end, before anything is sent
             raise RobotError("port_of_another", language, {"port": printable_name(port)})
-        # who claims a robot has it before them: one of many, perhaps, at the same cable
+        # Keys are stored before a claim, because several robots may share one cable.
         keys = KeyFile(serves_virtual_robots=is_virtual(address), accepts_all=verb == "set owner")
         canonical_port = port_names.canonical_port(
             port
@@ -246,7 +246,7 @@ def _resolve_address(port: str, language: str) -> str:
 
 
 def _claim(port: str, language: str) -> IO[bytes] | None:
-    """Return the lock of an address, or None for other ports and where no file can be locked."""
+    """Return the lock of an address, or None for other ports and if no file can be locked."""
     if not is_address(port):
         return None
     try:

@@ -23,9 +23,9 @@ from tiniscript.robots import given
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.lexer import WORD, scan
 
-SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copied
+SHOWN_CHARACTERS = 60  # most characters of a path in a message; a longer one could not be copied
 _UNKNOWN_CODES = (UNKNOWN_NAME, UNKNOWN_WORD)
-BUTTON = "BUTTON"  # of some kits; each robot has one that starts it
+BUTTON = "BUTTON"  # a sensor of some kits; every robot has a button that starts it
 LESSON_ROBOTS = ("grabber", "liner", "tinibot")
 _ORDINALS = ("first", "second", "third")
 
@@ -39,8 +39,12 @@ def with_robot_hints(
     """
     if not any(diagnostic.code in (*_UNKNOWN_CODES, OTHER_ROBOT) for diagnostic in diagnostics):
         return diagnostics
-    hinted = hints_among(_other_kits(), diagnostics, text, robot.name, robot.kit)
-    return hinted if is_chosen else [_add_robot_name(diagnostic, text) for diagnostic in hinted]
+    hinted_diagnostics = hints_among(_other_kits(), diagnostics, text, robot.name, robot.kit)
+    return (
+        hinted_diagnostics
+        if is_chosen
+        else [_add_robot_name(diagnostic, text) for diagnostic in hinted_diagnostics]
+    )
 
 
 def _add_robot_name(diagnostic: Diagnostic, text: str) -> Diagnostic:
@@ -99,7 +103,8 @@ def hints_among(
             robots_with_word = [
                 robot for robot in robots_with_word if robot in complete_robots
             ] or robots_with_word
-            # that which the program names is meant, else one with more of its words, or of a lesson
+            # The robot that the program names comes first, then one with more of its words or of a
+            # lesson.
             robots_with_word.sort(
                 key=lambda robot: (
                     robot != named_robot_name,
@@ -121,7 +126,9 @@ def hints_among(
 
 
 def has_words_of_other_robots(diagnostics: list[Diagnostic]) -> bool:
-    """Whether a program has words of another robot: they have been through `with_robot_hints`."""
+    """Return whether a program uses another robot's words: its diagnostics went through
+    `with_robot_hints`.
+    """
     if any(diagnostic.code is OTHER_ROBOT for diagnostic in diagnostics):
         return True
     words = {
@@ -129,7 +136,7 @@ def has_words_of_other_robots(diagnostics: list[Diagnostic]) -> bool:
         for diagnostic in diagnostics
         if diagnostic.code in _UNKNOWN_CODES
     }
-    # of profiles with paths that are too long for a message
+    # Profiles whose paths are too long for a message are left out.
     return bool(words) and any(words & set(robot.kit.names) for _, robot in given.profiles())
 
 

@@ -24,10 +24,10 @@ from tiniscript.library.source_map import SourceMap
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.refusals import describe
 
-Language = str  # the code of one, such as "en"
+Language = str  # a language code, such as "en"
 MOST_VALUE_CHARACTERS = 200  # characters of a name or a value in a sentence
 MOST_REMARK_CHARACTERS = 60  # characters of a line in a disassembly
-MOST_FILE_BYTES = 1_000_000  # of a file
+MOST_FILE_BYTES = 1_000_000  # most bytes of a file
 FILE_ENDINGS = (*PROGRAM_ENDINGS, ".bin")
 
 
@@ -149,7 +149,7 @@ def program_of(
 ) -> Program:  # fmt: skip
     """Return a program for a robot; by default for the program's own robot or the default robot.
 
-    Raises ProgramError, and UsageError for an argument that is no program.
+    Raises ProgramError, and UsageError for an argument that is not a program.
     """
     if isinstance(program, Program) and robot is None:
         return program
@@ -215,8 +215,7 @@ def _compile_for(
     text: str, robot: str | os.PathLike[str] | Robot | None, name: str, language: Language,
     is_strict: bool = True, optimize: bool = True,
 ) -> tuple[Compilation, Robot]:  # fmt: skip
-    """Return what becomes of a text for a robot; for None, for the one that it names, or the
-    default one."""
+    """Return the compilation of a text for a robot; None means the named or the default one."""
     data = _encode(text)
     if robot is None:
         profile = robot_of(data, profile_of(robots.DEFAULT, language))
@@ -256,14 +255,14 @@ def _read_image(data: bytes, profile: Robot, language: Language) -> Image:
     image = _unpack(data, language)
     try:
         verify.check(image, profile.kit)
-    except Refused as refused:
-        if refused.name == "NO_SUCH_DEVICE" and image.devices:  # an image for a larger kit
+    except Refused as refusal:
+        if refusal.name == "NO_SUCH_DEVICE" and image.devices:  # an image for a larger kit
             raise ProgramError("OTHER_KIT", language, {"robot": profile.name}) from None
-        values = {"offset": f"{refused.offset:04x}", "rule": refused.name}
+        values = {"offset": f"{refusal.offset:04x}", "rule": refusal.name}
         text = sentence("bad_code", language, values)
-        raise ProgramError(refused.name, language, values, text) from None
-    except ImageRefused as refused:
-        raise ProgramError(refused.name, language, {"robot": profile.name}) from None
+        raise ProgramError(refusal.name, language, values, text) from None
+    except ImageRefused as refusal:
+        raise ProgramError(refusal.name, language, {"robot": profile.name}) from None
     return image
 
 

@@ -16,7 +16,9 @@ from tiniscript.robots.profile import Robot
 
 
 def refusal(image: Image, profile: Robot, device_info: DeviceInfo) -> Reply[Any] | None:
-    """Return why a robot may not run a program: another kit, or what it lacks. None: it may."""
+    """Return the reason why a robot may not run a program: another kit, or a missing feature; None
+    if it may.
+    """
     if lacks(image.needs, profile):
         return Reply(REFUSALS["UNKNOWN_NEEDS"][0])
     if lacks_remote(image.code, profile.kit, device_info):

@@ -68,7 +68,8 @@ class ShowFinder:
 
     def __init__(self, own_maps: Mapping[int, SourceMap] | None = None) -> None:
         self._own_maps = {} if own_maps is None else own_maps
-        self._runs: dict[int, tuple[int, SourceMap]] = {}  # its program, which comes round again
+        # Program and map by run; numbers of runs repeat.
+        self._runs: dict[int, tuple[int, SourceMap]] = {}
         self._shows: tuple[SourceMap, Shows] | None = None
 
     def begin(self, run: int, program: int) -> None:

@@ -60,20 +60,20 @@ def virtual_robot(
         checked_number("motors", motor, LEAST_MOTOR_PERCENT, MOST_MOTOR_PERCENT, language)
     reading_lists = thousandths(sensors or {}, profile, language)
     settings = Settings(seed=seed, noise=noise, motors=(left, right), given_readings=reading_lists)
-    simulated = SimulatedRobot(
+    simulated_robot = SimulatedRobot(
         _make_robot(profile, os.fspath(world), settings, language),
         0.0 if hurry == math.inf else hurry,
     )
-    return VirtualRobotConnection(simulated, profile, language)
+    return VirtualRobotConnection(simulated_robot, profile, language)
 
 
 class VirtualRobotConnection(RobotConnection):
     """A connection to a virtual robot, with its true position in the world."""
 
-    def __init__(self, simulated: SimulatedRobot, profile: Robot, language: Language) -> None:
+    def __init__(self, simulated_robot: SimulatedRobot, profile: Robot, language: Language) -> None:
         """Internal: use `virtual_robot` instead."""
-        self._simulated = simulated
-        super().__init__(simulated.port, profile, True, None, language)
+        self._simulated = simulated_robot
+        super().__init__(simulated_robot.port, profile, True, None, language)
 
     @property
     def pose(self) -> tuple[float, float, float]:

@@ -47,7 +47,7 @@ class SourceMap(NamedTuple):
     yes_no_flags: tuple[bool, ...] = ()
 
     def location_at(self, offset: int) -> MapLocation | None:
-        """Return where the instruction at `offset` comes from."""
+        """Return the source location of the instruction at `offset`."""
         last_location = None
         for location in self.locations:
             if location.offset > offset:
@@ -58,7 +58,7 @@ class SourceMap(NamedTuple):
     def task_of(self, location: MapLocation) -> tuple[str, int] | None:
         """Return the word and the line of the TASK or WHEN around a place; "" and 0 outside.
 
-        Returns None where there are no tasks, and in a DEF, which any of them may have called.
+        Returns None if there are no tasks, and in a DEF, which any of them may have called.
         """
         blocks = [(self._word(block_location), block_location) for block_location in self.locations]
         if not any(word in TASKS for word, _ in blocks):
@@ -183,5 +183,5 @@ def _forget_oldest(folder: Path) -> None:
 def _modification_s(path: Path) -> float:
     try:
         return path.stat().st_mtime
-    except OSError:  # another command has just removed it
+    except OSError:  # another command has just removed the file
         return 0.0

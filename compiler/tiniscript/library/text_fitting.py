@@ -1,4 +1,4 @@
-"""What a level's reader does not take of a right program, as diagnostics.
+"""Features of correct programs that a level's reader lacks, as diagnostics.
 
 Knows the table of levels and how much memory a program needs. Looks for no mistake of the language:
 those have been reported.
@@ -21,10 +21,10 @@ from tiniscript.syntax.parser import parse
 
 
 def find_misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
-    """Return what a robot of this level lacks for a checked program."""
+    """Return the features of a checked program that robots of this level lack."""
     parsed_program = parse(source)
     tokens = list(spell_out(parsed_program.scan.tokens))
-    end_roles = ("end", "alias")  # what begins their block says it
+    end_roles = ("end", "alias")  # the word that begins their block explains them
     lacking_words = {word for word in level.lacks if WORDS[word].role.name not in end_roles}
     diagnostics = [
         Diagnostic(codes.LEVEL_WORD, token.span, {"level": level.name, "word": token.text})

@@ -20,8 +20,8 @@ from tiniscript.link.seal import Seal, session_key, siphash
 NOT_OWNER, WRONG_KEY, HOLD_BUTTON, STALE = (
     STATUSES[name] for name in ("NOT_OWNER", "WRONG_KEY", "HOLD_BUTTON", "STALE")
 )
-MOST_PENDING_KEYS = 1  # keys before a new one: each that is shown takes time
-HOLD_PAUSE_MS = 200  # while the button is not held down
+MOST_PENDING_KEYS = 1  # keys tried before a new one, because each takes time
+HOLD_PAUSE_MS = 200  # pause between questions while the button is up
 FREE, OWNED_BY_YOU, OWNED_BY_OTHER = "free", "yours", "other"
 
 
@@ -58,7 +58,7 @@ class KeyRing:
         raise NotImplementedError
 
     def _change_keys(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
-        """Keep what is made of all keys; return whether that was possible."""
+        """Change the stored keys; return whether that was possible."""
         raise NotImplementedError
 
     def keys_of_robot(self, robot_id: int | None) -> list[RobotKey]:
@@ -87,7 +87,7 @@ class KeyRing:
         return None
 
     def remember_robot(self, place: str, robot_id: int) -> None:
-        """One of our robots has proved at a place who it is."""
+        """Remember the place at which one of our robots has proved its identity."""
 
     def accepts(self, robot_id: int) -> bool:
         """Return whether a robot may answer in the place of one of ours."""
@@ -106,14 +106,14 @@ class KeyRing:
 
     def mark_stale(self, key: RobotKey) -> None:
         """The robot has another key than this one: it is stale, until it is right after all."""
-        self._change_keys(lambda before: [
-            item._replace(is_stale=True) if item[:3] == key[:3] else item for item in before
+        self._change_keys(lambda keys_before: [
+            item._replace(is_stale=True) if item[:3] == key[:3] else item for item in keys_before
         ])  # fmt: skip
 
     def drop_key(self, key: RobotKey) -> None:
         """The robot has not taken, or no longer has, this key."""
         self._change_keys(
-            lambda before: [robot_key for robot_key in before if robot_key.key != key.key]
+            lambda keys_before: [robot_key for robot_key in keys_before if robot_key.key != key.key]
         )
 
 
@@ -126,7 +126,7 @@ def ownership_of(robot: DeviceInfo) -> str:
 
 
 def has_to_seal(ring: KeyRing | None, robot: DeviceInfo | None) -> bool:
-    """Return whether our keys say that a robot seals; where none is known, whether any does."""
+    """Return whether our keys say that a robot seals; if none is known, whether any does."""
     if ring is None:
         return False
     keys = ring.keys_of_robot(None if robot is None else robot.id)
@@ -134,8 +134,8 @@ def has_to_seal(ring: KeyRing | None, robot: DeviceInfo | None) -> bool:
 
 
 def is_impostor(ring: KeyRing | None, place: str, robot: DeviceInfo) -> bool:
-    """Return whether somebody answers in the place of a robot of ours that seals: where that one
-    has answered before, or with its name. One whose key we have too has to prove itself.
+    """Return whether another device answers in the place of one of our sealing robots: at its last
+    place, or with its name. A robot whose key we have must prove its identity.
     """
     our_keys = [] if ring is None else ring.keys_of_robot(None)
     our_keys = [key for key in our_keys if key.uses_seals and not key.is_pending]
@@ -173,7 +173,7 @@ def show_keys(
             if proven_key != key:
                 ring.settle_key(proven_key)
         if ring is not None and reply.status == WRONG_KEY:
-            ring.mark_stale(key)  # kept all the same: the robot is not known to have said so
+            ring.mark_stale(key)  # stored anyway: the robot may have accepted it
         if reply.status != WRONG_KEY:
             break
     return reply
@@ -206,7 +206,7 @@ def _show_key(
 
 
 def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
-    """Give the robot a new key, when its button was held down in the time of the request."""
+    """Claim the robot with a new key, if its button was held during the request."""
     key = ring.create_pending_key(robot.id, which, robot.name)
     if key is None:
         return Reply(UNKEPT)

@@ -38,13 +38,13 @@ from tiniscript.link.wifi import BrokerSettings, Network
 if TYPE_CHECKING:
     from tiniscript.link.foreign import ForeignBoard
 
-STATUS = "status"  # the robot's status says why
+STATUS = "status"  # the robot's status contains the reason
 
 
-FOREIGN = "link_foreign"  # `find_stranger` says what answers instead of a robot
-EXCHANGE_TIMEOUT_MS = 20_000  # of a request, unless another is given
-MOST_EARLY_BYTES = 2048  # of what comes before a robot has answered
-CLAIM_TIMEOUT_MS = 30_000  # the robot waits for a hand on its button so long, and no longer
+FOREIGN = "link_foreign"  # `find_stranger` identifies the other device
+EXCHANGE_TIMEOUT_MS = 20_000  # default timeout of a request
+MOST_EARLY_BYTES = 2048  # most bytes that are kept before a robot answers
+CLAIM_TIMEOUT_MS = 30_000  # the time for which the robot waits for a hand on its button
 T = TypeVar("T")
 
 
@@ -103,7 +103,7 @@ class Requester:
         return self._ask("upload", ReceiptReply, starts, image=image, **options)
 
     def undo(self) -> PendingRequest[ReceiptReply]:
-        """Have the robot hold the program before again; what runs ends."""
+        """Restore the robot's previous program; a running program ends."""
         return self._ask("undo", ReceiptReply)
 
     def name(self, name: bytes) -> PendingRequest[EmptyReply]:
@@ -125,13 +125,14 @@ class Requester:
         return self._ask("press", EmptyReply, keys=keys, x=x, y=y, speaker=speaker)
 
     def break_at(self, places: Sequence[int]) -> PendingRequest[EmptyReply]:
-        """Have what runs halt at these offsets of its code, MOST_BREAKPOINTS at most, or else the
-        program that the robot holds; none takes them away."""
-        packed = b"".join(place.to_bytes(2, "little") for place in places)
-        return self._ask("break_at", EmptyReply, places=packed)
+        """Set breakpoints at these offsets of the running program, or of the stored one,
+        MOST_BREAKPOINTS at most; an empty list removes them.
+        """
+        packed_bytes = b"".join(place.to_bytes(2, "little") for place in places)
+        return self._ask("break_at", EmptyReply, places=packed_bytes)
 
     def resume(self, how: int) -> PendingRequest[ResumeReply]:
-        """Let a program that is halted go on: `how` is one of RESUMES."""
+        """Resume a halted program: `how` is one of RESUMES."""
         return self._ask("resume", ResumeReply, how=how)
 
     def read_variables(self, first: int = 0) -> PendingRequest[ReadVariablesReply]:
@@ -143,7 +144,7 @@ class Requester:
         return self._ask("read_tasks", ReadTasksReply)
 
     def tell_readings(self, is_on: bool) -> PendingRequest[EmptyReply]:
-        """Have READING come for each changed reading of a program, in this session."""
+        """Turn READING events for changed readings on or off, in this session."""
         return self._ask("tell_readings", EmptyReply, is_on=is_on)
 
     def identify(self) -> PendingRequest[EmptyReply]:
@@ -173,7 +174,7 @@ class Requester:
         return self._ask("wifi", WifiReply)
 
     def join(self, network: Network) -> PendingRequest[WifiReply]:
-        """Have the robot join a network, or be its access point, now and after each reset.
+        """Join a network, or serve as its access point, now and after each reset.
 
         The password goes to another process of this user at most, and into no file.
         """
@@ -187,7 +188,7 @@ class Requester:
         return self._ask("broker", WifiReply)
 
     def use_broker(self, broker: BrokerSettings | None) -> PendingRequest[WifiReply]:
-        """Have the robot use a broker, or none, now and after each reset."""
+        """Use a broker, or none, now and after each reset."""
         return self._ask("use_broker", WifiReply, broker=broker)
 
 
@@ -238,7 +239,7 @@ class LinkConnection:
         raise NotImplementedError
 
     def enable_place_events(self) -> None:
-        """Have PLACE events come from now on, from a robot that tells where its program is."""
+        """Turn on PLACE events from robots that report their program's place."""
         raise NotImplementedError
 
     def stop(self) -> int:
@@ -250,7 +251,7 @@ class LinkConnection:
 
 
 def reason_of(connection: LinkConnection, reply: Reply[object]) -> str:
-    """Return why a reply is not OK."""
+    """Return the reason why a reply is not OK."""
     if reply.status == CANCELLED:
         return "stopped_midway" if reply.detail == DETAIL_MIDWAY else "stopped_elsewhere"
     if reply.status == UNPROVEN:
@@ -272,7 +273,9 @@ def reason_of(connection: LinkConnection, reply: Reply[object]) -> str:
 
 
 def find_stranger(connection: LinkConnection) -> ForeignBoard | None:
-    """Return what answers instead of a robot, as far as its bytes tell."""
+    """Return the foreign device that answers instead of a robot, as far as its bytes identify
+    it.
+    """
     if connection.robot is not None or not connection.early_bytes:
         return None
     from tiniscript.link import foreign

@@ -1,4 +1,4 @@
-"""What is at the other end of a line if it is no robot of ours: a table with a row for each kind.
+"""The table of foreign devices at the other end of a line.
 
 A row looks at the bytes that have come, and may have a probe: a question that such a board answers
 and that changes nothing. What boards send is known from their sources and documents, as of
@@ -36,8 +36,8 @@ from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import FIRST_EVENT
 
 CATALOGUE = "foreign"
-MOST_TEXT_CHARACTERS = 60  # characters that are told
-LEAST_BYTES = 4  # bytes: fewer say nothing
+MOST_TEXT_CHARACTERS = 60  # characters of the message
+LEAST_BYTES = 4  # fewer bytes prove nothing
 LEAST_PRINTABLE_SHARE = 0.9  # the share of printable characters in text
 LEAST_DIFFERENT_BYTES = 3  # different bytes in text: the noise of a wrong speed repeats itself
 ROBOT_LINE_START = "//"  # a robot's lines begin so
@@ -58,8 +58,9 @@ class ForeignBoard(NamedTuple):
 
 
 class BoardKind(NamedTuple):
-    """`recognise` returns what such a board has said, and whether that is sure; None where these
-    bytes are not its own. `probe` is what provokes them, or empty."""
+    """`recognise` returns the message of such a board, and whether it is certain; None if the bytes
+    are not its own. `probe` provokes the message, or is empty.
+    """
 
     name: str
     recognise: Callable[[bytes], tuple[str, bool] | None]
@@ -106,7 +107,7 @@ def _recognise_mbot(data: bytes) -> tuple[str, bool] | None:
         text = match[2].decode("ascii") if match[2] else text or match[0].hex(" ").upper()
     version = _VERSION_OF_MBOT.search(data)
     if version is not None:
-        return version[1].decode("ascii"), bool(text)  # another sketch may print such a line
+        return version[1].decode("ascii"), bool(text)  # other sketches may print such a line
     return (_printable(text), True) if text else None
 
 
@@ -127,7 +128,7 @@ _SNEK = _line_recogniser(r"Welcome to [Ss]nek")
 def _recognise_snek(data: bytes) -> tuple[str, bool] | None:
     if banner := _SNEK(data):
         return banner
-    text = re.sub(rb"[\x11\x13]", b"", data)  # XON and XOFF may come anywhere
+    text = re.sub(rb"[\x11\x13]", b"", data)  # XON and XOFF may appear anywhere
     if re.search(rb"(?:^|\n)[>+] \x14?$", text) is None:
         return None
     return (">", b"\x14" in text)
@@ -143,7 +144,7 @@ def _recognise_at(data: bytes) -> tuple[str, bool] | None:
 
 
 BOARD_KINDS = (
-    # Its supply first: whatever is on such a board, nothing works before that is right.
+    # Its supply first, because nothing on such a board works before that is right.
     BoardKind(
         "esp32_brownout",
         _line_recogniser(r"[Bb]rownout detector was triggered|\([A-Z_]*BROWN_?OUT"),
@@ -163,14 +164,14 @@ BOARD_KINDS = (
 )
 BY_NAME = {row.name: row for row in BOARD_KINDS}
 NAMES = (*BY_NAME, ECHO_SKETCH, OTHER_SKETCH)
-GENERAL_ROWS = ("esp32", OTHER_SKETCH)  # of whatever runs there: a question may tell what that is
+GENERAL_ROWS = ("esp32", OTHER_SKETCH)  # rows that fit anything; a question may find out more
 AT_VERSION_QUESTION = (
-    b"\r\nAT+GMR\r\n"  # what an AT firmware says of itself; modules of radio refuse it
+    b"\r\nAT+GMR\r\n"  # an AT firmware reports its version, which radio modules refuse
 )
 
 
 def identify_board(data: bytes) -> ForeignBoard | None:
-    """Return what has sent these bytes, if it has a row; None for a robot's, for text and noise."""
+    """Return the row of the sender of these bytes; None for robots, text and noise."""
     if is_robot(data):
         return None
     for kind in BOARD_KINDS:
@@ -181,7 +182,7 @@ def identify_board(data: bytes) -> ForeignBoard | None:
 
 
 def identify_stranger(data: bytes) -> ForeignBoard | None:
-    """Return what has sent these bytes: what has a row, or another sketch if they are text.
+    """Return the row of the sender of these bytes, or that of another sketch for text.
 
     Sure text has a whole line. None for a robot's bytes, and for noise.
     """
@@ -193,7 +194,7 @@ def identify_stranger(data: bytes) -> ForeignBoard | None:
 
 
 def is_robot(data: bytes) -> bool:
-    """Whether a robot of ours has sent some of these bytes: a whole frame, or a line of text."""
+    """Return whether a robot has sent some of these bytes: a whole frame, or a line of text."""
     for packet in data.split(b"\0"):
         frame = decode_frame(packet) if packet else None
         if frame is not None and (frame.is_reply or frame.number >= FIRST_EVENT):
@@ -210,7 +211,7 @@ def last_robot_line(data: bytes) -> str:
 def readable_line(data: bytes) -> str:
     """Return a line of bytes that are text, else an empty text.
 
-    Where no line ends all of them have to be.
+    If no line ends all of them have to be.
     """
     if len(data) < LEAST_BYTES or len(set(data)) < LEAST_DIFFERENT_BYTES:
         return ""
@@ -235,7 +236,7 @@ def _printable(line: str) -> str:
 
 
 class Explanation(NamedTuple):
-    """What such a board is, perhaps with what it says, and what to do next."""
+    """The description of a foreign board, perhaps with its message, and the next step."""
 
     meaning: str
     advice: str

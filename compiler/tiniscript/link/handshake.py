@@ -105,7 +105,7 @@ class Handshake:
                 key_reply = yield from self.show_keys(is_needed=must_seal and not is_owned)
                 if key_reply.status == STATUSES["STALE"]:  # the robot was reset meanwhile
                     return as_refusal(key_reply)
-                # what is shown is sealed, and says whether HELLO has told the truth
+                # The answer is sealed, and proves whether HELLO was genuine.
                 if not is_owned and (key_reply.status != OK or key_reply.values.features & OWNED):
                     self.is_open = False
                     return Reply(UNPROVEN)
@@ -130,7 +130,8 @@ class Handshake:
             return as_refusal(hello)
         if hello.status != OK or self._state.state != resting_state:
             return reply
-        return (yield from self.with_key(make))  # that came before, and nothing of this was done
+        # The frame arrived earlier, and was not carried out.
+        return (yield from self.with_key(make))
 
     def with_key(self, make: Callable[[], Exchange[T]]) -> Exchange[T]:
         """Make and run an exchange; again, if the robot wants to be shown its key before."""
@@ -172,16 +173,16 @@ class Handshake:
 
     @property
     def is_unproven(self) -> bool:
-        """Whether what is not sealed is not the robot's, as far as our keys tell."""
+        """Return whether unsealed frames may be forged, as far as our keys show."""
         return authority.has_to_seal(self._keys, self.robot)
 
     def may_have_done(self, name: str) -> bool:
-        """Whether this robot may have done a request without a seal."""
+        """Return whether this robot may have executed a request without a seal."""
         features = self.robot.values.features if self.robot else 0
         return name in KEYLESS_MESSAGES or features & (OWNED | SEALS) != OWNED | SEALS
 
     def prove_stopped(self, is_sealed: Callable[[], bool]) -> Exchange[StatusReply]:
-        """Have the robot prove that it is stopped, if it is one that seals."""
+        """Make a sealing robot prove that it is stopped."""
         hello = yield from self.hello()
         if hello.status != OK:
             return as_refusal(hello)
@@ -311,12 +312,12 @@ _EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
 
 
 def exchange_by_name(name: str) -> Callable[..., Exchange[Any]]:
-    """Return what carries out the request of this name, of a handshake and what is given."""
+    """Return the function for the request of this name; it takes a handshake and arguments."""
     if name in _EXCHANGES:
         return _EXCHANGES[name]
     message = name.upper()
-    return lambda handshake, **given: requests.send_single(
-        Request(message, given), REPLIES[message]
+    return lambda handshake, **arguments: requests.send_single(
+        Request(message, arguments), REPLIES[message]
     )
 
 

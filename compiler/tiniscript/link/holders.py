@@ -22,14 +22,14 @@ PS_TIMEOUT_S = 1.0  # timeout of `ps`
 
 class Holder(NamedTuple):
     pid: int
-    name: str  # of its program
+    name: str  # name of its program
 
     @property
     def is_suspended(self) -> bool:
         return is_suspended(self.pid)
 
     def wake(self) -> bool:
-        """Let a suspended process go on; return whether that was possible."""
+        """Resume a suspended process; return whether that was possible."""
         if sys.platform == "win32" or not self.is_suspended:
             return False
         with suppress(OSError):
@@ -41,7 +41,7 @@ class Holder(NamedTuple):
 def find_holder(path: str, pid: int | None = None) -> Holder | None:
     """Return the process that has a port or a lock open; `pid` is the one that says so of itself.
 
-    None where nobody tells.
+    None if nobody tells.
     """
     holder_pid = next(_pids_with_open_file(path), None) if sys.platform == "linux" else pid
     holder_pid = pid if holder_pid is None else holder_pid
@@ -52,7 +52,7 @@ def find_holder(path: str, pid: int | None = None) -> Holder | None:
 
 
 def is_suspended(pid: int) -> bool:
-    """Whether a process is suspended, as with Ctrl-Z."""
+    """Return whether a process is suspended, as with Ctrl-Z."""
     if sys.platform == "linux":
         with suppress(OSError, IndexError):
             stat_line = Path(f"/proc/{pid}/stat").read_bytes()
@@ -68,7 +68,7 @@ def _pids_with_open_file(path: str) -> Iterator[int]:
     except (OSError, ValueError):
         return
     for process in Path("/proc").glob("[0-9]*"):
-        with suppress(OSError):  # it has ended, or is another user's
+        with suppress(OSError):  # the process has ended, or belongs to another user
             if int(process.name) != os.getpid() and any(
                 os.path.samestat(port_status, path.stat()) for path in (process / "fd").iterdir()
                 if path.exists()

@@ -24,9 +24,9 @@ from tiniscript.link.messages import KEY_BYTES, KEYS
 FILE_BYTES = 1_000_000
 NAME_CHARACTERS = 16
 MOST_KEYS = 2000  # keys in a file
-FILE_MODE = 0o600  # only this person reads it
+FILE_MODE = 0o600  # readable by this user only
 _LOCK = Lock()  # the robots of a fleet have threads of their own
-# What a file calls a field of a key.
+# Names of a key's fields in the file.
 _MARK_FIELDS = {"is_pending": "is_pending", "is_stale": "is_stale", "seals": "uses_seals"}
 _KEY_KINDS = tuple(name.lower() for name, _ in KEYS)
 
@@ -44,7 +44,7 @@ class TooManyKeys(BadKeys):
 
 
 class KeyFile(KeyRing):
-    """The keys in a file; the user's own where no path is given. Each call reads it anew."""
+    """The keys in a file; the user's own if no path is given. Each call reads it anew."""
 
     def __init__(
         self,
@@ -52,16 +52,15 @@ class KeyFile(KeyRing):
         serves_virtual_robots: bool = False,
         accepts_all: bool = False,
     ) -> None:
-        """`serves_virtual_robots`: whoever answers may be a virtual robot that begins anew each
-        time, with the same id and without the owner that it had. `accepts_all`: any robot may
-        answer where another one did.
+        """`serves_virtual_robots`: the robot may be a virtual one that starts anew each time, with
+        the same id and without its former owner. `accepts_all`: any robot may replace another one.
         """
         self._accepts_all = accepts_all
         self.path = path or files.settings_folder() / "keys.json"
         self._serves_virtual_robots = serves_virtual_robots
 
     def all(self) -> list[RobotKey]:
-        """Return all keys. Raises BadKeys where the file is none."""
+        """Return all keys. Raises BadKeys if the file is none."""
         try:
             data = files.read_limited(self.path, FILE_BYTES)
         except FileNotFoundError:
@@ -75,7 +74,7 @@ class KeyFile(KeyRing):
 
         Raises BadKeys, and TooManyKeys where keys that are there would go for it.
         """
-        with self._locked():
+        with self._lock():
             stored_keys = self.all()
             all_keys = with_keys_added(stored_keys, keys)
             changed_count = sum(key not in stored_keys for key in all_keys)
@@ -85,11 +84,11 @@ class KeyFile(KeyRing):
 
     def forget(self, robot_id: int) -> None:
         """Take the keys of a robot out of the file. Raises BadKeys."""
-        with self._locked():
+        with self._lock():
             self._write_keys([key for key in self.all() if key.id != robot_id])
 
     def accept(self, robot_id: int) -> None:
-        """Let a robot answer where another one did, or with its name. Raises BadKeys."""
+        """Accept another robot at the same place or with the same name. Raises BadKeys."""
         try:
             met_robots.accept(self._met_robots_path, robot_id)
         except OSError as failure:
@@ -126,7 +125,7 @@ class KeyFile(KeyRing):
 
     def _change_keys(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         try:
-            with self._locked():
+            with self._lock():
                 old_keys = self.all()
                 new_keys = change(old_keys)
                 if new_keys != old_keys:
@@ -136,7 +135,7 @@ class KeyFile(KeyRing):
         return True
 
     @contextmanager
-    def _locked(self) -> Iterator[None]:
+    def _lock(self) -> Iterator[None]:
         """No other thread and no other process changes the file. Raises BadKeys."""
         with _LOCK:
             try:
@@ -200,7 +199,7 @@ def encode_keys(keys: Iterable[RobotKey]) -> bytes:
 
 
 def decode_keys(data: bytes) -> list[RobotKey]:
-    """Return the keys in a file. Raises BadKeys where it is none, without anything from it."""
+    """Return the keys in a file. Raises BadKeys if it is none, without anything from it."""
     try:
         document = json.loads(data)
         if document["tiniscript_keys"] != 1:

@@ -59,7 +59,7 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
 
 
 def _is_same(port: str, other: str) -> bool:
-    """Whether two names always mean the same port; a link in /dev may mean another tomorrow."""
+    """Return whether two names always mean the same port; a link in /dev may change."""
     if is_address(port) and is_address(other):
         return canonical_port(port) == canonical_port(other)
     return port == other

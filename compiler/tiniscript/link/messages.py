@@ -13,11 +13,13 @@ import struct
 from collections.abc import Mapping
 from typing import NamedTuple
 
-# A network of WiFi comes in several frames: its name, its password, and what to do with both.
+# Settings of a WiFi network are sent in several frames: its name, its password, and the action.
 NETWORK_BYTES, PASSWORD_BYTES = 32, 63
-LEAST_PASSWORD, WIFI_TEXT_BYTES = 8, 32  # of WPA2; of a name or of a part of a password
-CLASS_BYTES, BROKER_PLACE_BYTES = 16, 6  # of a class: a to z, 0 to 9, -; of an address and a port
-BROKER_NAME_BYTES, TRUST_BYTES = 96, 2048  # of the name of a computer; of a certificate in DER
+# Shortest password of WPA2; longest name, or part of a password.
+LEAST_PASSWORD, WIFI_TEXT_BYTES = 8, 32
+# Bytes of a class name (a to z, 0 to 9, -), and of an address with its port.
+CLASS_BYTES, BROKER_PLACE_BYTES = 16, 6
+BROKER_NAME_BYTES, TRUST_BYTES = 96, 2048  # bytes of a computer's name, and of a certificate in DER
 WIFI_STEPS = (
     ("TELL", "Changes nothing."),
     ("NETWORK", "The name of a network. The robot forgets any earlier step."),
@@ -73,17 +75,17 @@ WIFI_STATES = (
 )
 
 
-MAJOR = 2  # if it differs, robot and computer understand only each other's HELLO
+MAJOR = 2  # a robot and a computer with different versions understand only each other's HELLO
 MINOR = 2  # grows when messages, statuses or features are added
 
 # Bytes of a frame before COBS. A large one has a 0 after its head, so that its first byte on the
-# wire is 4 at most. Any robot takes small ones; HELLO says whether it takes large ones, and how many
-# requests it holds before it has answered the first.
+# wire is at most 4. All robots accept small ones; HELLO reports whether they accept large ones, and
+# how many requests they hold before the first answer.
 SMALL_FRAME, LARGE_FRAME = 63, 250
 LARGE_WINDOW = 4
 HEAD_BYTES = 3  # type, sequence number, epoch
 CRC_BYTES = 4
-STATUS_BYTES = 1  # before the fields of a reply
+STATUS_BYTES = 1  # bytes before the fields of a reply
 REPLY = 0x80  # flag of a type: sent to the computer
 SEALED = 0x40  # flag of a type: a 0 and a counter before the payload, and a MAC after it
 NAME_BYTES = 16
@@ -91,14 +93,14 @@ TRIM_BYTES, PACE_BYTES = 3, 8
 KEY_BYTES = 16
 CHALLENGE_BYTES = 8
 TAG_BYTES = 8
-PLACE_BYTES = 6  # of a reply to PING: where a program is (16 bits), and which (its checksum)
-NOISE_BYTES = 2  # of both discs
+PLACE_BYTES = 6  # bytes of a PING reply: the program's place (16 bits) and its checksum
+NOISE_BYTES = 2  # noise of both discs
 MOST_BREAKPOINTS = 4
-VARIABLE_BYTES, TASK_BYTES = 4, 7  # of one
-VARIABLES_BYTES = 13 * VARIABLE_BYTES  # in one frame
-TASKS_BYTES = 5 * TASK_BYTES  # of all, the main one is the last
-UNTOLD = 0x80  # flag of the sensor of READING: others before this one were not told
-SHOW_PLACE_BYTES = 3  # of a SHOW: its run, and where its instruction is (16 bits)
+VARIABLE_BYTES, TASK_BYTES = 4, 7  # bytes of one variable, and of one task
+VARIABLES_BYTES = 13 * VARIABLE_BYTES  # variables in one frame
+TASKS_BYTES = 5 * TASK_BYTES  # all tasks; the main one is last
+UNTOLD = 0x80  # flag in READING's sensor: earlier readings were not sent
+SHOW_PLACE_BYTES = 3  # bytes of a SHOW's place: its run, and its instruction (16 bits)
 COUNTER_BYTES = 4
 
 
@@ -113,14 +115,14 @@ SEALED_PAYLOAD_BYTES = payload_bytes(SMALL_FRAME, is_sealed=True)
 
 STOP_BYTES = 8  # zeros that a computer sends to stop a robot
 STOP_ZEROS = 4  # zeros in a row that stop it
-SILENCE_MS = 1000  # after this silence everything is text, until a 0x00
-ZERO_MS = 400  # after this silence a sender of frames sends a 0x00 first
-TEXT_MS = 1100  # text waits so long after a frame
-HELD_MS = 100  # after this silence a typed stop acts in what began as a frame
+SILENCE_MS = 1000  # silence after which all bytes are text until a 0x00
+ZERO_MS = 400  # silence after which a sender starts with a 0x00
+TEXT_MS = 1100  # time for which text waits after a frame
+HELD_MS = 100  # silence after which a typed stop acts inside a started frame
 DEAD_MAN_MS = 1000  # dead-man timer: without a valid frame, an attached program ends
-LISTEN_MS = 3000  # without a valid frame, a robot sends no more events
+LISTEN_MS = 3000  # time without a valid frame after which a robot sends no events
 AGAIN_MS = 50  # between two STOPPED events of a stopped robot
-AUTHORITY_MS = 2000  # without a valid frame, a key has to be shown again
+AUTHORITY_MS = 2000  # time without a valid frame after which a key must be shown again
 LONG_MS = 1000  # a press of the button of this length starts nothing
 CLAIM_MS = 2000  # a press of this length lets a client claim the robot, or lets text drive it
 FORGET_MS = 10_000  # a press of this length from power-on makes the robot forget its keys
@@ -139,8 +141,8 @@ MODES = (
     ),
 )
 
-# What a robot is able to do and who may drive it, in one number of the reply to HELLO. A robot whose
-# firmware is older has 0.
+# A robot's features and its allowed drivers, in one number of the reply to HELLO. Older firmware
+# sends 0.
 TEXT_LEVEL, REMOTE, PLACES, OWNERS, OWNED = 0x0003, 0x0004, 0x0008, 0x0010, 0x0020
 TEXT_ALLOWED = 0x0040
 YOURS, BY_TEACHER, SEALS, WIFI_RESTS = 0x0080, 0x0100, 0x0200, 0x0400
@@ -171,8 +173,8 @@ FEATURES = (
     ),
     (READINGS, "READINGS", "It can report what its programs read: TELL_READINGS."),
 )
-# What a remote control says: the keys that are held, a bit for each, and where its pad is, in percent
-# to the right and up. It counts for so long: an older word of a client that has gone moves nothing.
+# The state of a remote control: a bit for each held key, and the pad in percent to the right and
+# up. It expires after this time, so that an old state of a client that has gone moves nothing.
 REMOTE_KEYS = ("UP", "DOWN", "LEFT", "RIGHT", "A", "B")
 MOST_PAD = 100
 HOLD_MS = 500
@@ -328,7 +330,7 @@ MESSAGES = (
 FIRST_ACTING = 6
 RETIRED_NUMBERS = (10, 13)  # a request that is LF or CR on the wire could be the end of a line
 RADIO_MESSAGES = ("WIFI",)  # requests that only robots with WiFi know,
-REMOTE_MESSAGES = ("KEYS",)  # and only those with a remote control
+REMOTE_MESSAGES = ("KEYS",)  # messages that need a remote control
 # These are the last ones, so that the table of a robot without them ends before. A robot that tells
 # readings has breakpoints.
 BREAKPOINT_MESSAGES = ("BREAK", "RESUME", "READ_VARIABLES", "READ_TASKS")
@@ -426,7 +428,7 @@ RESETS = (
     ("BROWN_OUT", "The voltage was too low."),
     ("WATCHDOG",  "The watchdog: the robot's own program hung."),
 )
-# The levels of text by number, as `robots/text_levels.py` names them; 0 is none.
+# The levels of text by number, as named in `robots/text_levels.py`; 0 means none.
 TEXT_LEVELS = (
     ("NONE",  "The robot reads no text."),
     ("UNO",   "Level `uno`."),

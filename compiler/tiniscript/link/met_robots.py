@@ -16,7 +16,7 @@ from tiniscript.base import files
 
 FILE_BYTES = 1_000_000
 MOST_PLACES = 2000  # places, and robots; the oldest go first
-FILE_MODE = 0o600  # only this person reads it
+FILE_MODE = 0o600  # readable by this user only
 
 
 class MetRobots(NamedTuple):
@@ -27,7 +27,7 @@ class MetRobots(NamedTuple):
 
 
 def read_met_robots(path: Path) -> MetRobots:
-    """Return what is in the file."""
+    """Return the content of the file."""
     try:
         fields = json.loads(files.read_limited(path, FILE_BYTES))
         id_by_place = {str(place): int(robot, 16) for place, robot in fields["places"].items()}

@@ -23,5 +23,5 @@ def cause_name(number: int) -> str:
 
 
 def saved_name(number: int) -> str:
-    """Return how a program is kept; a robot that says something new has it in memory at least."""
+    """Return the state of a saved program; unknown states count as in memory."""
     return SAVED[number][0] if number < len(SAVED) else "MEMORY"

@@ -18,9 +18,8 @@ from tiniscript.link.payloads import (
     StoppedEvent,
 )
 
-# Outcomes that the session produces. UNKEPT: of a key; UNPROVEN: whoever answers does not seal, and
-# our key says that the robot does; OTHER_ROBOT: another one answers than the one of our key, whose
-# id is the detail.
+# Outcomes produced by the session. UNKEPT: of a key; UNPROVEN: the other end does not seal, though
+# our key's robot does; OTHER_ROBOT: another robot than that of our key, whose id is the detail.
 LOST, CANCELLED, UNKEPT, UNPROVEN, OTHER_ROBOT = -1, -2, -3, -4, -5
 DETAIL_MIDWAY = 1  # detail of CANCELLED: it was under way, and the robot may have done it before
 LOOK_S = 0.1  # between two checks for events: Windows handles Ctrl-C only then
@@ -29,7 +28,7 @@ LOOK_S = 0.1  # between two checks for events: Windows handles Ctrl-C only then
 class ShownEvent(NamedTuple):
     """A program has shown a value, with the SHOW at byte `at` of its code.
 
-    `program` is the checksum of its image; `at` is -1 where that is not known.
+    `program` is the checksum of its image; `at` is -1 if that is not known.
     """
 
     value: int
@@ -61,7 +60,7 @@ class LostEvent(NamedTuple):
 
 
 class EchoEvent(NamedTuple):
-    """The line returns what is sent."""
+    """The line returns the bytes sent."""
 
     name: Literal["ECHO"] = "ECHO"
 
@@ -141,14 +140,15 @@ class ConnectionLost(Exception):
 
 
 MOST_EVENTS = 500  # events
-DROPPABLE_EVENTS = ("SHOW", "TEXT", "ECHO", "READING")  # the others say what the robot does
+DROPPABLE_EVENTS = ("SHOW", "TEXT", "ECHO", "READING")  # the others report the robot's actions
 
 TimedEvent = tuple[int, Event]  # arrival time (ms), event
 
 
 class Backlog:
-    """When it is full, the oldest event of DROPPABLE_EVENTS is dropped, else the oldest of all.
-    MISSED comes first and says how many were dropped."""
+    """A queue of events. When it is full, the oldest of DROPPABLE_EVENTS is dropped, or else the
+    oldest event. MISSED comes first and counts the dropped ones.
+    """
 
     def __init__(self) -> None:
         self._events: deque[TimedEvent] = deque()
@@ -159,7 +159,7 @@ class Backlog:
 
     def add_events(self, timed_events: Iterable[TimedEvent]) -> None:
         for timed_event in timed_events:
-            if timed_event[1].name == "PLACE":  # the newest one says all
+            if timed_event[1].name == "PLACE":  # only the newest one matters
                 self._events = deque(one for one in self._events if one[1].name != "PLACE")
             self._events.append(timed_event)
             if len(self._events) > MOST_EVENTS:

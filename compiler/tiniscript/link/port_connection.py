@@ -23,7 +23,7 @@ from tiniscript.link.transports import Port
 
 T = TypeVar("T")
 
-READ_BYTES = 1024  # that are read before the session hears them
+READ_BYTES = 1024  # bytes read at a time
 
 
 def now_ms() -> int:
@@ -53,7 +53,7 @@ class PortConnection(LinkConnection):
         self._port = port
         self._now_ms: Callable[[], int] = getattr(port, "now_ms", now_ms)
         self._port_lock = lock
-        self._session_lock = RLock()  # of the session and of what is kept here
+        self._session_lock = RLock()  # guards the session and the fields below
         self._bell = Bell()
         self._events = Backlog()
         self._pending_requests: list[PendingRequest[Any]] = []
@@ -71,7 +71,7 @@ class PortConnection(LinkConnection):
 
     @property
     def end_reason(self) -> str | None:
-        """Return why the port is gone, or None while it is open."""
+        """Return the reason why the port is gone, or None while it is open."""
         return self._end_reason
 
     @property
@@ -199,7 +199,7 @@ class PortConnection(LinkConnection):
     def _read(self) -> bytes:
         """Wait for a byte and return it with those after it: a socket of pyserial tells of one."""
         data = bytes(self._port.read(1))
-        with suppress(OSError):  # the port is gone: the next read says so, after its last bytes
+        with suppress(OSError):  # the port is gone: the next read reports it, after its last bytes
             while 0 < len(data) < READ_BYTES and (more := self._port.in_waiting):
                 data += self._port.read(more)
         return data

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from tiniscript.link.transports.bluetooth_search import SeenDevice
     from tiniscript.link.transports.network import AnnouncedRobot
 
-OPEN_S = 20.0  # timeout of opening: a radio that is out of reach takes long
-# which ports a transport has; all others are of `serial`
+OPEN_S = 20.0  # timeout of opening, which is long for a radio out of reach
+# The ports of each transport; all others belong to `serial`.
 _TRANSPORTS = (
     (is_bluetooth_le, "bluetooth"),
     (is_at_broker, "broker"),
@@ -44,7 +44,8 @@ def list_ports() -> list[ListedPort]:
     ports = []
     for serial_port in serial.list_serial_ports():
         description = serial_port.description if serial_port.description != "n/a" else ""
-        ports.append(ListedPort(serial_port.device, printable(description)))  # a device says it
+        # A device reports this.
+        ports.append(ListedPort(serial_port.device, printable(description)))
     return sorted(ports)
 
 

@@ -27,11 +27,11 @@ LINE_ENDS = b"\r\n"
 
 
 class Mode(Enum):
-    TEXT = auto()  # in text: between lines or in one
-    LOST = auto()  # in a line of text that found no place
-    BEGIN = auto()  # after a 0x00: nothing has come yet
-    LINE = auto()  # after a 0x00: all bytes are printable, so a line of text or a frame
-    FRAME = auto()  # in a frame
+    TEXT = auto()  # text, between lines or inside one
+    LOST = auto()  # a text line that is too long to keep
+    BEGIN = auto()  # after a 0x00, before the next byte
+    LINE = auto()  # only printable bytes since a 0x00, so a line of text or a frame
+    FRAME = auto()  # inside a frame
 
 
 class Packet(NamedTuple):
@@ -51,8 +51,8 @@ class Receiver:
         self._mode = Mode.TEXT
         self._zeros = StopSequence()
         self._keys = KeySequence()
-        self._data = bytearray()  # of the open packet, as many as fit
-        self._length = 0  # of the open packet; 0 between two
+        self._data = bytearray()  # bytes of the open packet that fit
+        self._length = 0  # length of the open packet; 0 between packets
         self._is_dropping = False  # the open packet has found no place, or is too long for a frame
         self._is_cut = False  # a 0x00 has cut a line: the rest of it is lost
         self._frame_bytes = most_bytes
@@ -144,7 +144,7 @@ class Receiver:
             return
         if self.packet is None:
             self.packet = packet
-        elif is_text:  # it would come before its turn
+        elif is_text:  # it would overtake other text
             self.dropped += 1
         else:
             self._waiting_frames.append(packet)
@@ -183,7 +183,7 @@ class KeySequence:
     """Finds what a terminal sends for a cursor key: ESC [ A, ESC O A, ESC [ 1 ; 5 C."""
 
     def __init__(self) -> None:
-        self._is_escape = False  # only the ESC has come
+        self._is_escape = False  # an ESC alone is no sequence yet
         self._is_inside = False
 
     def begin(self) -> None:

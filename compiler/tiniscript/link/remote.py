@@ -1,4 +1,4 @@
-"""What the keys of a remote control say: the newest word of each who speaks, and when it is sent.
+"""The keys of a remote control: the newest state of each speaker, and when to send it.
 
 No word is sent twice, as a repeated one would press a key again that was let go: what waits is
 replaced by the newest, and what is held is said anew. Who falls silent holds nothing any more.
@@ -16,9 +16,9 @@ from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.payloads import EmptyReply
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 
-REPEAT_MS = 200  # what is held is said so often
+REPEAT_MS = 200  # interval at which held keys are repeated
 GAP_MS = 30  # between two words while one is unanswered: a frame and its answer at 9600 baud
-RESEND_MS = 100  # after which a word is said anew that was not answered
+RESEND_MS = 100  # time after which an unanswered message is sent again
 MOST_UNANSWERED = 3  # words that may be unanswered: on a slow line no more of them queue up
 _LONG_AGO_MS = -1_000_000
 
@@ -40,7 +40,7 @@ NOTHING_PRESSED = RemoteState()
 
 
 def remote_state_of(names: Iterable[str], x: int = 0, y: int = 0) -> RemoteState:
-    """Return what is held, by the names of the keys. Raises ValueError for others, or too much."""
+    """Return the state of these held keys. Raises ValueError for unknown or too many keys."""
     keys = 0
     for name in names:
         keys |= 1 << REMOTE_KEYS.index(name)
@@ -62,7 +62,7 @@ class RemoteControl:
         self._unanswered_count = 0
         self._waiting_request_by_speaker: dict[
             int, PendingRequest[EmptyReply]
-        ] = {}  # of each, not sent yet
+        ] = {}  # unsent requests of each speaker
         self._sent_requests: list[PendingRequest[EmptyReply]] = []
 
     def press(self, speaker: int, state: RemoteState) -> PendingRequest[EmptyReply]:
@@ -94,14 +94,14 @@ class RemoteControl:
     @property
     def combined_state(self) -> RemoteState:
         """All keys that somebody holds, and the pad of who has moved his last."""
-        combined = NOTHING_PRESSED
+        combined_state = NOTHING_PRESSED
         for state in self._state_by_speaker.values():
-            pad = (state.x, state.y) if state.x or state.y else (combined.x, combined.y)
-            combined = RemoteState(combined.keys | state.keys, *pad)
-        return combined
+            pad = (state.x, state.y) if state.x or state.y else (combined_state.x, combined_state.y)
+            combined_state = RemoteState(combined_state.keys | state.keys, *pad)
+        return combined_state
 
     def due_ms(self) -> int | None:
-        """Return when to look again, or None."""
+        """Return the time of the next check, or None."""
         times = [
             until_ms
             for speaker in self._state_by_speaker
@@ -124,7 +124,7 @@ class RemoteControl:
         return min(times, default=None)
 
     def expire_and_check_due(self, now_ms: int) -> bool:
-        """Whether to say something now. Who has said nothing for HOLD_MS holds nothing."""
+        """Return whether to send now. A speaker silent for HOLD_MS holds nothing."""
         for speaker in list(self._state_by_speaker):
             until_ms = self._until_ms_by_speaker[speaker]
             if until_ms is None:
@@ -175,5 +175,5 @@ class RemoteControl:
 
 
 def has_remote(robot: DeviceInfo) -> bool:
-    """Whether a robot's programs read KEY_UP and what else a remote control says."""
+    """Return whether a robot's programs can read KEY_UP and the rest of a remote control."""
     return bool(robot.values.features & REMOTE)

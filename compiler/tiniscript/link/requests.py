@@ -47,11 +47,12 @@ if TYPE_CHECKING:
     from tiniscript.link.seal import Seal
 
 OK = STATUSES["OK"]
-MODE_BYTES, OFFSET_BYTES = 1, 2  # of LIVE and PROGRAM before the code, of DATA before its bytes
-SHORT_BYTES = PAYLOAD_BYTES - MODE_BYTES  # of code, in one frame that any robot takes
-BUSY_TRIES = 200  # while the robot saves another program
-KEPT_TRIES = 12  # while it has not written its data to EEPROM,
-LOW_TRIES = 4  # and while its voltage is too low for that: it checks every half second
+# Bytes before the code in LIVE and PROGRAM, and before the data in DATA.
+MODE_BYTES, OFFSET_BYTES = 1, 2
+SHORT_BYTES = PAYLOAD_BYTES - MODE_BYTES  # bytes of code that fit in one frame of any robot
+BUSY_TRIES = 200  # tries while the robot saves another program
+KEPT_TRIES = 12  # tries while it has not written its data to EEPROM
+LOW_TRIES = 4  # tries while its voltage is too low for that; it checks every half second
 KEPT_PAUSE_MS = 200
 EMPTY_STATES = (SAVED_NOTHING, SAVED_OTHER_VERSION)  # the robot holds no program
 # The robot has the data, but would lose it at the next power-on.
@@ -59,7 +60,7 @@ ACCEPTING_STATUSES = (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"], STATUSES["NOT_
 
 
 class Pieces(NamedTuple):
-    """What is sent: `data` in pieces of `piece_bytes`, `window` of them at once."""
+    """A transfer: `data` in pieces of `piece_bytes`, `window` of them at once."""
 
     data: bytes
     piece_bytes: int
@@ -135,7 +136,7 @@ def reply_of(name: str, payload: bytes) -> Reply[SentReply] | None:
         values: Mapping[str, Any] = decode_payload(BY_NAME[name].reply, payload[1:])
     except Malformed:
         return None
-    if values.get("saved") in EMPTY_STATES and "length" in values:  # of one that is gone
+    if values.get("saved") in EMPTY_STATES and "length" in values:  # the program has been replaced
         values = {**values, "program": 0, "length": 0}
     return Reply(OK, 0, REPLIES[name](**values))
 
@@ -164,10 +165,11 @@ def send_single(request: Request, reply_type: type[T]) -> Exchange[T]:
 
 
 def _payload_bytes(robot: DeviceInfo) -> int:
-    """Return how long a payload may be: less where frames are sealed, or will be with a key."""
+    """Return the longest payload, which is shorter for sealed frames or before a key is used."""
     features = robot.values.features
     is_sealed = bool(features & SEALS and features & (OWNED | YOURS))
-    frame_bytes = min(max(robot.values.largest, SMALL_FRAME), LARGE_FRAME)  # that both ends take
+    # The largest frame that both ends accept.
+    frame_bytes = min(max(robot.values.largest, SMALL_FRAME), LARGE_FRAME)
     return payload_bytes(frame_bytes, is_sealed)
 
 
@@ -295,7 +297,7 @@ def retry_while_busy(request: Request, reply_type: type[T]) -> Exchange[T]:
 
 
 def save_and_confirm(request: Request, reply_type: type[T]) -> Exchange[T]:
-    """Have the robot save data, and repeat the request until it confirms or the tries are over.
+    """Save data on the robot, repeating the request until it confirms or the tries are over.
 
     If it has not saved, the outcome gives the reason: a program that drives, a low voltage.
     """

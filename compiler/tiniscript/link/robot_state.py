@@ -58,7 +58,7 @@ class UnresolvedShow(NamedTuple):
 
 
 def line_error_count(status: StatusReply) -> int:
-    """Return how many errors of its line a robot has counted since its reset."""
+    """Return the number of line errors that a robot has counted since its reset."""
     return status.damaged + status.dropped + status.framing + status.overrun
 
 
@@ -67,12 +67,12 @@ class RobotState:
         self.state = STATE_IDLE
         self.run: int | None = None  # the run that we have started
         self._ended_run: int | None = None  # the last run whose end we know
-        self._is_going = False  # our run has begun, and nothing says that it has ended
-        self._is_end_asked = False  # how it has ended is
+        self._is_going = False  # our run has begun, and its end is unknown
+        self._is_end_asked = False  # whether the reason of the end has been requested
         self.has_reset_ended_run = False  # a reset has ended it
         self._event_seq: int | None = None
-        self._last_place: PlaceEvent | None = None  # the last one that was told
-        self.halt_event: HaltedEvent | None = None  # where a program is halted
+        self._last_place: PlaceEvent | None = None  # the last one reported
+        self.halt_event: HaltedEvent | None = None  # the halt of the current program
         self._known_program: tuple[_Run, int] | None = None  # the newest run whose program is known
         self._asked_run: _Run | None = None  # the newest one that was asked about
 
@@ -103,8 +103,9 @@ class RobotState:
         return values.state <= STATE_RUNNING or self.run not in (None, values.run)
 
     def take_reply(self, values: SentReply, epoch: int) -> bool:
-        """Take a reply of an epoch; return whether it reports the end of our run, of which no
-        event has."""
+        """Process a reply of an epoch; return whether it reports the end of our run before an event
+        does.
+        """
         self._learn_program(values, epoch)
         if isinstance(values, (ReceiptReply, ResumeReply)):
             self.halt_event = None
@@ -120,8 +121,8 @@ class RobotState:
         self._is_going, self._is_end_asked = False, True
         return True
 
-    # Which program's SHOW a value is of. Replies and events come in their order: no value of an
-    # earlier run comes after a reply that names a later one.
+    # Finds the program of a SHOW. Replies and events arrive in order, so no value of an earlier run
+    # follows a reply that names a later one.
 
     def _learn_program(self, values: SentReply, epoch: int) -> None:
         if isinstance(values, ReceiptReply):
@@ -129,12 +130,14 @@ class RobotState:
         elif isinstance(values, PingReply) and len(values.place) == PLACE_BYTES:
             self._known_program = _Run(epoch, values.run), _PLACE.unpack(values.place)[1]
         elif isinstance(values, (HelloReply, PingReply, StatusReply)):
-            # `program` of STATUS is the one that the robot holds, which need not be what runs
+            # `program` in STATUS is the stored program, which need not be the running one.
             if self._known_program is not None and self._known_program[0] != (epoch, values.run):
                 self._known_program = None
 
     def claim_query(self, show: UnresolvedShow) -> bool:
-        """Whether only the robot knows the program of a value, and was not asked. It is now."""
+        """Return whether only the robot knows a value's program and was not asked; marks it as
+        asked.
+        """
         run = show._run
         if (
             run is None
@@ -155,11 +158,11 @@ class RobotState:
         return ShownEvent(value, is_yes_no, run, self._known_program[1], at)
 
     def has_ended(self, run: int | None) -> bool:
-        """Return whether it is known how a run has ended: it was told then, and is told once."""
+        """Return whether the end of a run is known: it is reported then, and only once."""
         return run is not None and self._ended_run == run
 
     def end(self) -> None:
-        """Note that it is known how our run has ended, of which no event has told."""
+        """Note that the end of our run is known, without an event."""
         self._ended_run, self._is_end_asked = self.run, False
 
     def note_replaced(self) -> list[Event]:
@@ -185,7 +188,7 @@ class RobotState:
 
     def take_event(self, event: Event) -> None:
         if isinstance(event, (StoppedEvent, FaultEvent, DoneEvent)):
-            self._last_place = self.halt_event = None  # who is told about the end needs no more
+            self._last_place = self.halt_event = None  # after the end, neither is needed
         if isinstance(event, HaltedEvent):
             self.halt_event = event
         if isinstance(event, (StoppedEvent, FaultEvent)):

@@ -1,4 +1,4 @@
-"""How long an answer may take on this line: learnt from the answers that came, as TCP does it.
+"""The time that answers take on this line, learnt from earlier answers as in TCP.
 
 The smoothed round trip, its variation, and the timer that doubles until an answer belongs to one
 sending for certain are those of RFC 6298, https://www.rfc-editor.org/rfc/rfc6298. Times are
@@ -8,19 +8,19 @@ milliseconds. Knows no frame and no clock.
 from __future__ import annotations
 
 ROUND_MS = 120  # round trip through two radios and a robot, without the bytes
-MOST_LEARNT_MS = 3000  # a timer that was learnt is no longer: somebody may have been suspended
-MOST_DOUBLED_MS = 1000  # doubling alone makes none longer
-MOST_RETRY_MS = 400  # the longest timer where the robot has to hear us now and then
+MOST_LEARNT_MS = 3000  # a learnt timer may be wrong after a suspension
+MOST_DOUBLED_MS = 1000  # doubling never exceeds this limit
+MOST_RETRY_MS = 400  # the longest timer for a robot that has to hear us regularly
 _MEAN, _VARIATION, _VARIATIONS = 1 / 8, 1 / 4, 4  # alpha, beta and K of the RFC
 
 
 class RoundTrips:
     def __init__(self, baud: int) -> None:
         self._baud = baud
-        self.least_ms: int | None = None  # of all round trips: the rest of a longer one is a queue
+        self.least_ms: int | None = None  # the shortest round trip; any more is time in a queue
         self._mean_ms: float | None = None
         self._variation_ms = 0.0
-        self._byte_ms: float | None = None  # a byte takes no longer, as far as answers tell
+        self._byte_ms: float | None = None  # the longest time for a byte, as far as answers show
         self._is_certain = False  # an answer belonged to one sending for certain
         self._doublings = 0
 
@@ -44,18 +44,18 @@ class RoundTrips:
 
     def back_off(self) -> None:
         """No answer has come in time. What was learnt of a request that was sent more than once may
-        be too much: where nothing comes, one is waited for half as long, so that it is tried often.
+        be too much: if nothing comes, one is waited for half as long, so that it is tried often.
         """
         self._doublings += 1
         if self._byte_ms is not None and not self._is_certain:
             self._byte_ms /= 2
 
     def bytes_in(self, time_ms: int) -> int:
-        """Return how many bytes this line carries in a time at least, as far as answers tell."""
+        """Return the bytes that this line carries at least in a time, as far as answers show."""
         return int(time_ms / max(10_000 / self._baud, self._byte_ms or 0))
 
     def wait_ms(self, byte_count: int, retries_soon: bool = False) -> int:
-        """Return how long to wait for an answer that has, with its request, `byte_count` bytes.
+        """Return the time to wait for an answer of `byte_count` bytes, including its request.
 
         `retries_soon`: a robot that is silent is asked again soon, however long answers take.
         """

@@ -20,9 +20,9 @@ def siphash(key: bytes, message: bytes) -> bytes:
     halves = [int.from_bytes(key[offset : offset + 8], "little") for offset in (0, 8)]
     state = [word ^ halves[k % 2] for k, word in enumerate(_INITIAL_STATE)]
     length = len(message)
-    padded = message + bytes(7 - length % 8) + bytes([length & 0xFF])
-    for offset in range(0, len(padded), 8):
-        word = int.from_bytes(padded[offset : offset + 8], "little")
+    padded_bytes = message + bytes(7 - length % 8) + bytes([length & 0xFF])
+    for offset in range(0, len(padded_bytes), 8):
+        word = int.from_bytes(padded_bytes[offset : offset + 8], "little")
         state[3] ^= word
         state = _sip_rounds(state, 2)
         state[0] ^= word
@@ -77,7 +77,7 @@ class Seal:
 
     @property
     def is_spent(self) -> bool:
-        """Whether no further frame may be sealed: a counter is never used twice."""
+        """Return whether no more frames can be sealed, because a counter is never used twice."""
         return self.sent_counter >= LAST_COUNTER
 
     def seal_frame(self, frame: Frame) -> Frame:
@@ -95,7 +95,7 @@ class Seal:
         return sealed_frame._replace(payload=payload + self._mac(sealed_frame))
 
     def open_frame(self, frame: Frame) -> Frame | None:
-        """Return what a sealed frame of the robot says, or None if it is not its next one."""
+        """Return the content of a robot's sealed frame, or None if it is not the next one."""
         if (
             not (frame.is_sealed and frame.is_reply)
             or len(frame.payload) < _PREFIX_BYTES + TAG_BYTES

@@ -12,10 +12,10 @@ from tiniscript.link.requests import OK, Request
 from tiniscript.link.seal import Seal
 from tiniscript.link.transmission import Transmission
 
-UNSEALED_MESSAGES = ("HELLO", "AUTHENTICATE")  # a seal is made of what they say
+UNSEALED_MESSAGES = ("HELLO", "AUTHENTICATE")  # the seal is made from their contents
 REFUSED_TRIES = 3  # sendings of a tag before a refusal counts, which anybody may have written
 KEYLESS_MESSAGES = (*UNSEALED_MESSAGES, "PING", "STATUS", "STOP", "CLAIM", "IDENTIFY")
-SEALED_ONLY_MESSAGES = ("WIFI",)  # has a password, which only a seal covers
+SEALED_ONLY_MESSAGES = ("WIFI",)  # these contain a password, so they must be sealed
 
 
 class Sealing:
@@ -27,7 +27,7 @@ class Sealing:
         self._seq: int | None = None
 
     def seal_for(self, request: Request) -> Seal | None:
-        """Return what a request is sealed with. HELLO and AUTHENTICATE end a seal."""
+        """Return the seal for a request. HELLO and AUTHENTICATE end a seal."""
         if request.name not in UNSEALED_MESSAGES:
             return self.seal
         self.seal = request.seal
@@ -39,7 +39,7 @@ class Sealing:
         return self._seq
 
     def open_frame(self, frame: Frame, transmission: Transmission, now_ms: int) -> Frame | None:
-        """Return what a frame says, or None if it need not be the robot's.
+        """Return the content of a frame, or None if it may not be the robot's.
 
         A robot that has not heard our seal for some time has dropped it, and says so without one.
         Nor can it seal that a tag is wrong: so the tag is sent again first, for a sealed reply.
@@ -55,5 +55,5 @@ class Sealing:
             has_waited = status != OK and transmission.tries >= REFUSED_TRIES
             is_believed = status == NOT_OWNER if transmission.seal else has_waited
         else:
-            is_believed = True  # a second answer to what was not sealed: nothing follows from it
+            is_believed = True  # a second, unsealed answer has no effect
         return frame if is_believed else None

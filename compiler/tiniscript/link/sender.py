@@ -11,8 +11,8 @@ from tiniscript.link.messages import ZERO_MS
 
 class Sender:
     def __init__(self) -> None:
-        self._sent_ms: int | None = None  # when something was sent last
-        self._are_zeros = False  # it was a stop sequence
+        self._sent_ms: int | None = None  # time of the last transmission
+        self._are_zeros = False  # whether it was a stop sequence
 
     def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         """Return the bytes to send now for frames that each end with a 0x00.

@@ -94,9 +94,9 @@ from tiniscript.link.transmission import TRIES, StopSender, Transmission, Window
 
 HEARTBEAT_MS = 200  # between two frames while a program runs
 IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise
-SILENT_MS = DEAD_MAN_MS + 200  # after a lost link nothing but a stop is sent, and a little longer
+SILENT_MS = DEAD_MAN_MS + 200  # time after a lost link in which only stops are sent
 DEAF_MS = 3000  # a heartbeat without an answer for this time means that the link is lost
-PLACE_QUESTION = b"\1"  # of a PING: where is your program?
+PLACE_QUESTION = b"\1"  # question of a PING for the program's place
 MOST_KEY_SHOWINGS = 5  # times that a key is shown again for one request
 _STALE_STATUS = STATUSES["STALE"]
 _WAITING_STATUSES = (
@@ -116,7 +116,7 @@ _RUN_ENDING_REQUESTS = (
     "live",
     "start",
     "undo",
-)  # a robot ends what runs when it hears of them
+)  # a robot ends its run when it gets one of these
 T = TypeVar("T")
 
 
@@ -136,16 +136,16 @@ class PendingExchange(PendingRequest[T]):
         self.limit_ms, self.starts, self.ends_runs = limit_ms, starts, ends_runs
         self.exchange = exchange
         self.deadline_ms = 0
-        self.epoch: int | None = None  # in which it was asked for, by somebody
+        self.epoch: int | None = None  # epoch of the request
         self.is_own = is_own  # made by the session itself
         self.ends_orphan = ends_orphan  # the run of a client that has gone
         self.presses_keys = presses_keys  # keys of a remote control
-        self.is_void = False  # it was asked for before a stop: nothing more of it is done
-        self.answered_ms = 0  # when the robot has answered last
+        self.is_void = False  # requested before a stop, so it is not continued
+        self.answered_ms = 0  # time of the robot's last answer
         self.waiting_status = 0  # the robot's last one, if of _WAITING_STATUSES, or 0
-        self.may_be_done = False  # the robot has not said whether it is
-        self.is_midway = False  # a frame of it is under way that does what is asked, or has come
-        self.key_showings = 0  # how many times a key was shown again for it
+        self.may_be_done = False  # the robot has not reported whether it is
+        self.is_midway = False  # a frame of the exchange is under way or has arrived
+        self.key_showings = 0  # number of times a key was shown again for it
         self.interrupted: InterruptedExchange | None = None
 
     @property
@@ -177,8 +177,8 @@ class Session(Requester):
         """
         self.tells_places = False  # PLACE events are wanted
         self.tells_starts = False  # STARTED events are wanted
-        self.is_attached = True  # events are wanted, so the heartbeat goes on while nothing runs
-        # False: nobody attends to the robot.
+        self.is_attached = True  # events are wanted, so the heartbeat continues while nothing runs
+        # Whether a client attends to the robot.
         self.sends_heartbeat: Callable[[], bool] = lambda: True
         self.damaged = 0  # count of damaged frames
         self._receiver = Receiver()
@@ -188,10 +188,11 @@ class Session(Requester):
         self._baud = baud
         self._stop = StopSender()
         self._is_lost = False  # the link is, and nothing was sent since
-        self._talked_ms = 0  # when something was sent, or while nothing runs, answered
-        self._unanswered_since_ms: int | None = None  # since when no heartbeat is answered
+        # Time of the last transmission, or of the last answer while nothing runs.
+        self._talked_ms = 0
+        self._unanswered_since_ms: int | None = None  # time of the first unanswered heartbeat
         self._remote = RemoteControl()
-        self._has_pressed = False  # last, so what waits has its turn
+        self._has_pressed = False  # last, so that waiting requests get their turn
         self._sealing = Sealing()
         self._state = RobotState()
         self._handshake = Handshake(nonce, kit, isa, self._state, keys, lambda: self._epoch, place)
@@ -201,9 +202,10 @@ class Session(Requester):
         self._round_trips = RoundTrips(baud)
         self._transmission = Transmission(self._round_trips)
         self._orphan_run: int | None = None  # the run of a client that has gone
-        self._program_query: PendingExchange[PingReply] | None = None  # of values that wait for it
-        self._told_stop_epoch: int | None = None  # that has begun with the stop that was told last
-        self._reading_count = 0  # of READING events
+        # Request for the program of values that wait.
+        self._program_query: PendingExchange[PingReply] | None = None
+        self._told_stop_epoch: int | None = None  # epoch begun by the last reported stop
+        self._reading_count = 0  # number of READING events
 
     @property
     def robot(self) -> DeviceInfo | None:
@@ -220,7 +222,7 @@ class Session(Requester):
 
     @property
     def is_open(self) -> bool:
-        """Whether the robot has answered HELLO, and has not been lost since."""
+        """Return whether the robot has answered HELLO, and has not been lost since."""
         return self._handshake.is_open
 
     @property
@@ -338,8 +340,9 @@ class Session(Requester):
         return min((time for time in times if time is not None), default=None)
 
     def events(self) -> list[Event]:
-        """Return the events since the last call. Values wait until the robot has said which program
-        runs, if it is asked; nothing else waits behind them."""
+        """Return the events since the last call. Values wait until the robot has named the running
+        program, if it is asked; no other events wait after them.
+        """
         count = len(self._events)
         if self._program_query is not None and self._program_query.outcome is None:
             count -= sum(
@@ -357,8 +360,8 @@ class Session(Requester):
     # -- what is sent -----------------------------------------------------------------------------
 
     def _may_press(self) -> bool:
-        """Whether keys may be pressed before what is sent next, or in place of a heartbeat. They do
-        not overtake a frame that is under way, which would be out of turn when it is sent again.
+        """Return whether keys may be sent before the next frame, or instead of a heartbeat. They
+        never overtake a frame under way, which would be out of order when repeated.
         """
         pending = self._pending
         if pending is None or self._is_heartbeat():
@@ -368,13 +371,13 @@ class Session(Requester):
         return not self._transmission.is_sent and not self._transmission.is_of("AUTHENTICATE")
 
     def _is_heartbeat(self) -> bool:
-        """Whether a heartbeat is under way, or keys, before which nothing else is."""
+        """Return whether a heartbeat, or keys with nothing after them, are under way."""
         pending = self._pending
         is_alone = pending is not None and pending.is_own and pending.interrupted is None
         return is_alone and any(map(self._transmission.is_of, _HEARTBEAT_MESSAGES))
 
     def _press_next(self, now_ms: int) -> None:
-        """Send what is held now, if that is due; a word that was not answered is not sent again."""
+        """Send the held keys, if due; an unanswered message is not repeated."""
         if self._transmission.is_of("KEYS") and self._transmission.is_late(now_ms):
             self._round_trips.back_off()
             self._remote.note_unanswered()
@@ -390,7 +393,7 @@ class Session(Requester):
         self._advance(None, now_ms)
 
     def _send_keys(self) -> Exchange[PingReply]:
-        """Send what is held: `poll` says what that is."""
+        """Send the held keys: `poll` determines them."""
         assert self.robot
         if not has_remote(self.robot):
             return Reply(STATUSES["NO_REMOTE"])
@@ -399,15 +402,15 @@ class Session(Requester):
     def _end_press(self) -> None:
         """Go on with what was under way before a key was pressed."""
         assert self._pending
-        interrupted, self._pending = self._pending.interrupted, None
+        interrupted_exchange, self._pending = self._pending.interrupted, None
         self._transmission.end()
-        if interrupted is not None:
-            self._go_on(interrupted)
+        if interrupted_exchange is not None:
+            self._go_on(interrupted_exchange)
 
     def _deafness_time_ms(self, now_ms: int) -> int:
-        """Return when the link is lost, if no heartbeat is answered before."""
+        """Return the time at which the link is lost without an answer to a heartbeat."""
         if now_ms - self._talked_ms > 2 * HEARTBEAT_MS:
-            self._unanswered_since_ms = None  # nothing was sent for a while
+            self._unanswered_since_ms = None  # nothing has been sent for a while
         return (
             now_ms if self._unanswered_since_ms is None else self._unanswered_since_ms
         ) + DEAF_MS
@@ -440,8 +443,8 @@ class Session(Requester):
         pending.answered_ms = now_ms
         try:
             request = next(pending.exchange) if reply is None else pending.exchange.send(reply)
-        except StopIteration as finished:
-            self._end_exchange(pending, finished.value, now_ms)
+        except StopIteration as finished_stop_iteration:
+            self._end_exchange(pending, finished_stop_iteration.value, now_ms)
             return
         message = BY_NAME[request.name]
         is_action = message.number >= FIRST_ACTING and request.name not in UNSEALED_MESSAGES
@@ -484,7 +487,7 @@ class Session(Requester):
         self._transmission = Transmission(self._round_trips, largest, self.is_running)
         self._transmission.begin(frame, now_ms + request.pause_ms, seal)
         if seal is None and request.name in SEALED_ONLY_MESSAGES:
-            self._authenticate_again(now_ms)  # before a byte of it is sent
+            self._authenticate_again(now_ms)  # authenticates before any of its bytes is sent
 
     def _next_number(self, is_sealed: bool) -> int:
         """Return the number of the next frame."""
@@ -502,11 +505,11 @@ class Session(Requester):
         assert pending
         self._sealing.seal = None
         if transmission.is_of("KEYS"):
-            self._end_press()  # it is not said again: before the next word a key is shown
+            self._end_press()  # the press is not repeated: a key comes before the next word
             return
         pending.key_showings += 1
         self._transmission = Transmission(self._round_trips)
-        if pending.key_showings > MOST_KEY_SHOWINGS:  # told to its exchange, that might do it again
+        if pending.key_showings > MOST_KEY_SHOWINGS:  # its exchange is told, and may repeat it
             pending.exchange.close()
             pending.outcome = Reply(NOT_OWNER)
             self._pending = None
@@ -516,8 +519,10 @@ class Session(Requester):
         self._pending.deadline_ms = pending.deadline_ms
         self._advance(None, now_ms)
 
-    def _resume(self, interrupted: InterruptedExchange, key_reply: Reply[Any], now_ms: int) -> None:
-        self._pending, transmission = interrupted
+    def _resume(
+        self, interrupted_exchange: InterruptedExchange, key_reply: Reply[Any], now_ms: int
+    ) -> None:
+        self._pending, transmission = interrupted_exchange
         seal = self._sealing.seal
         if self._pending.is_void:
             self._advance(Reply(_STALE_STATUS), now_ms)
@@ -535,14 +540,14 @@ class Session(Requester):
         if self._orphan_run is None:
             return
         if not self.is_running or self.run != self._orphan_run:
-            self._orphan_run = None  # it has ended
+            self._orphan_run = None  # the run has ended
             return
         pending, transmission = self._pending, self._transmission
         if pending is not None and (
             pending.interrupted is not None
-            or pending.ends_runs  # by itself
+            or pending.ends_runs  # such a request ends runs itself
             or transmission.is_sent
-            or transmission.is_of("AUTHENTICATE")  # its tag is one of this epoch
+            or transmission.is_of("AUTHENTICATE")  # its tag is only valid in this epoch
         ):
             return
         self._orphan_run = None
@@ -556,15 +561,15 @@ class Session(Requester):
         self._pending = stop_exchange
         self._advance(None, now_ms)
 
-    def _go_on(self, interrupted: InterruptedExchange) -> None:
+    def _go_on(self, interrupted_exchange: InterruptedExchange) -> None:
         """Go on with an exchange whose request has not been sent yet, not even in part."""
-        self._pending, self._transmission = interrupted
+        self._pending, self._transmission = interrupted_exchange
         seal = None if self._transmission.is_of("HELLO") else self._sealing.seal
         self._transmission.renew(self._epoch, self._next_number(seal is not None))
         self._transmission.begin_again(self._transmission.due_ms, seal)
 
     def _may_start(self) -> bool:
-        """Whether a frame is under way that may start a run."""
+        """Return whether a frame that may start a run is under way."""
         return self._transmission.is_sent and any(map(self._transmission.is_of, _STARTING_MESSAGES))
 
     def _send_stop(self, now_ms: int) -> bytes:
@@ -573,7 +578,7 @@ class Session(Requester):
         if self._stop.is_over(now_ms):
             self._stop.end()
             self._end_connection()
-            self._is_lost = False  # its zeros keep no run alive
+            self._is_lost = False  # zeros alone keep no run alive
             return b""
         self._talked_ms = now_ms
         return self._stop.bytes_to_send(now_ms, self._sender)
@@ -606,11 +611,11 @@ class Session(Requester):
             self.damaged += 1
             return
         if self._pending and reply.status not in (OK, *ACCEPTING_STATUSES):
-            self._pending.is_midway = False  # it was refused
+            self._pending.is_midway = False  # the robot refused it
         self._transmission.learn_round_trip(frame, now_ms)
         self._unanswered_since_ms = None
         if not self.is_running:
-            self._talked_ms = now_ms  # who asks again after an answer finds the line free
+            self._talked_ms = now_ms  # a request after an answer finds the line free
         if (
             reply.status == OK
             and not frame.is_sealed
@@ -626,7 +631,7 @@ class Session(Requester):
         else:
             self._doubt_epoch(frame)
         if reply.status == _STALE_STATUS:
-            self._handshake.is_open = False  # a new HELLO tells the robot's state
+            self._handshake.is_open = False  # a new HELLO reports the robot's state
         if message.name in UNSEALED_MESSAGES and reply.status != OK:
             self._sealing.seal = None
         if values is not None:
@@ -664,7 +669,7 @@ class Session(Requester):
         self._epoch = frame.epoch
 
     def _is_next_epoch(self, epoch: int) -> bool:
-        """Whether one stop or fault, and nothing else, has ended the epoch before this one."""
+        """Return whether exactly one stop or fault has ended the previous epoch."""
         doubted_epoch = self._handshake.doubted_epoch
         return doubted_epoch is not None and epoch == (doubted_epoch + 1) & 0xFF
 
@@ -672,7 +677,7 @@ class Session(Requester):
         return state == STATE_FAULTED and self._is_next_epoch(epoch)
 
     def _try_to_settle_epoch(self, values: SentReply) -> bool:
-        """Whether a reply tells all that must be known of the epoch before for now."""
+        """Return whether a reply contains everything needed about the previous epoch for now."""
         if isinstance(values, (PingReply, StatusReply)):
             has_gap = self._handshake.is_open and not self._is_next_epoch(self._epoch)
             if has_gap or self._state.may_be_reset(values):
@@ -681,7 +686,7 @@ class Session(Requester):
         elif self._transmission.is_of("STOP"):
             is_stop = not (self._pending and self._pending.ends_orphan)
         else:
-            return True  # what needs to know more says HELLO
+            return True  # anyone who needs more sends HELLO
         self._handshake.doubted_epoch = None
         if is_stop:
             self._void_requests()
@@ -691,17 +696,15 @@ class Session(Requester):
         """Find out from HELLO what has ended the epoch that is in doubt."""
         is_same = self.robot is not None and self.robot.values.nonce == robot.nonce
         if is_same and self._handshake.is_open:
-            self._doubt_epoch(
-                frame
-            )  # somebody has asked for HELLO, which is the first to notice it
+            self._doubt_epoch(frame)  # a client has sent HELLO, which notices it first
         self._epoch = frame.epoch
         if not is_same:
-            self._told_stop_epoch = None  # its epochs begin anew
+            self._told_stop_epoch = None  # epochs begin again
         if is_same and self._pending and self._pending.target.may_be_done:
             self._pending.target.is_void = True
         if self._handshake.is_in_doubt:
             is_fault = self._is_one_fault(robot.state, frame.epoch)
-            # HELLO is not sealed: where that counts, anybody may have said what it says
+            # HELLO is not sealed, so its contents may be forged where that matters.
             if robot.state == STATE_STOPPED or (
                 is_same and (not is_fault or self._handshake.is_unproven)
             ):
@@ -725,8 +728,8 @@ class Session(Requester):
             self._events.append(event)
 
     def _note_progress(self, reply: Reply[SentReply], now_ms: int) -> None:
-        """Give an exchange its time again where it goes on: it is not given up before it stands
-        still for so long. An answer to DATA that brings nothing new is no progress.
+        """Extend an exchange's time when it makes progress, so that only a stalled one is given up.
+        An answer to DATA without anything new is no progress.
         """
         pending = self._pending
         if pending is None or pending.target.is_limit_total or reply.status != OK:
@@ -743,7 +746,7 @@ class Session(Requester):
         assert isinstance(self._transmission, Window)
         if frame.epoch != self._transmission.epoch or reply.status not in (OK, _STALE_STATUS):
             return False
-        next_offset = None  # STALE in this epoch: a frame of a later number has come before
+        next_offset = None  # STALE in this epoch: a frame with a later number arrived earlier
         if reply.status == OK:
             assert isinstance(reply.values, NextReply) and self._pending
             next_offset = reply.values.next
@@ -751,7 +754,7 @@ class Session(Requester):
 
     def _queue_requery(self, has_ended: bool, is_other_epoch: bool) -> None:
         if is_other_epoch:
-            self._handshake.is_open = False  # if this is lost, what is asked next finds out
+            self._handshake.is_open = False  # if this frame is lost, the next request detects it
         exchange = self._query_again(has_ended, is_other_epoch, self._state.run)
         self._queue.appendleft(PendingExchange(exchange, DEAF_MS, is_own=True))
 
@@ -767,17 +770,18 @@ class Session(Requester):
         reply = yield from self._handshake.with_key(status)
         is_at_rest = reply.status == OK and reply.values.state != STATE_RUNNING
         if has_ended and is_at_rest and self._reading_count != reading_count:
-            # What a run has read comes before its end, but after each reply: others ask first.
+            # Readings of a run come before its end, but after each reply, because other requests
+            # come first.
             again = self._query_again(has_ended, False, run)
             self._queue.append(PendingExchange(again, DEAF_MS, is_own=True))
             return reply
-        is_told = self._state.has_ended(run)  # by an event that has come meanwhile
+        is_told = self._state.has_ended(run)  # an event may have arrived meanwhile
         if reply.status == OK and has_ended and self._state.run == run and not is_told:
             self._tell_end(reply.values)
         return reply
 
     def _tell_end(self, status: StatusReply) -> None:
-        """Tell how our run has ended: by another one, or as the robot's state says."""
+        """Report the end of our run: by another one, or by the robot's state."""
         self._state.end()
         if status.state == STATE_RUNNING:
             self._events.append(StartedEvent(status.run, status.program))
@@ -824,18 +828,19 @@ class Session(Requester):
                 return  # a repeated answer to the same stop
             self._told_stop_epoch = frame.epoch
         if isinstance(event, HaltedEvent) and event == self._state.halt_event:
-            return  # it still is
+            return  # the robot is still lost
         if isinstance(event, (StoppedEvent, FaultEvent)):
             self._take_end(event, frame)
-        # by a reply to STATUS
+        # Whether a reply to STATUS has already reported it.
         is_told = isinstance(event, (DoneEvent, FaultEvent)) and self._state.has_ended(event.run)
         self._state.take_event(event)
         if not is_told:
             self._events.append(event)
 
     def _take_show(self, show: UnresolvedShow) -> None:
-        """Tell a value. If nobody here has started its run the robot is asked which program it is,
-        unless that would have to wait."""
+        """Report a value. If nobody here has started its run, the robot is asked for the program,
+        unless that would have to wait.
+        """
         event = self._state.to_shown_event(show)
         self._events.append(show if event.at < 0 else event)
         is_free = not self._queue and (self._pending is None or self._pending.is_own)
@@ -851,7 +856,7 @@ class Session(Requester):
         return self.robot is not None and bool(self.robot.values.features & PLACES)
 
     def _confirms_stop(self, event: StoppedEvent, frame: Frame) -> bool:
-        """Whether the stop that is under way has stopped the robot, or has found it stopped.
+        """Return whether the stop under way has stopped the robot, or found it stopped.
 
         Another stop's STOPPED may have been under way, and the robot may have started again since:
         then the next one tells, as the stop is sent again.
@@ -870,7 +875,7 @@ class Session(Requester):
             self._handshake.doubted_epoch = None
             if not is_orphan_end:
                 self._void_requests()
-            if is_other_epoch and self._handshake.is_open:  # a reset may have come before this stop
+            if is_other_epoch and self._handshake.is_open:  # a reset may have preceded this stop
                 self._queue_requery(has_ended=False, is_other_epoch=True)
         elif self._is_one_fault(STATE_FAULTED, frame.epoch):
             self._handshake.doubted_epoch = None
@@ -879,7 +884,7 @@ class Session(Requester):
                 self._pending.interrupted.transmission.renew(self._epoch)
 
     def _ask_for_proof(self, event: StoppedEvent) -> None:
-        """Have the robot say under seal that it was stopped, if it was we who did that."""
+        """Ask the robot for a sealed confirmation of a stop that we sent."""
         if self._stop.is_sent:
             self._stop.end()
             self._queue.append(PendingExchange(self._prove_stop(event), DEAF_MS, is_own=True))
@@ -941,13 +946,13 @@ class Session(Requester):
         self._state.note_begun(receipt.run)
 
     def _give_up_request(self, now_ms: int) -> None:
-        """Give up: the robot does not answer, or is not ready."""
+        """Give up the request: the robot does not answer, or is not ready."""
         assert self._pending
         pending, self._pending = self._pending.target, None
         # a robot that answers, but waits for too long, is not lost
         is_there = pending.waiting_status and now_ms - pending.answered_ms <= DEAF_MS
         if pending.waiting_status and not self._transmission.is_sent:
-            with suppress(StopIteration):  # nothing of it is under way: it learns that
+            with suppress(StopIteration):  # no exchange is under way, so it just ends
                 pending.exchange.send(Reply(CANCELLED))
         self._transmission.end()
         self._unanswered_since_ms = None

@@ -1,4 +1,4 @@
-"""What is sent until it is answered: one frame, the pieces of a program, or a stop.
+"""Transmissions that wait for an answer: a frame, the pieces of a program, or a stop.
 
 Does not know what an answer means; `round_trips` knows how long one may take.
 """
@@ -26,8 +26,8 @@ from tiniscript.link.round_trips import RoundTrips
 from tiniscript.link.seal import Seal
 from tiniscript.link.sender import Sender
 
-TRIES = 30  # without progress
-LONG_TRIES = 1  # of a long frame, before it is sent more than once at a time
+TRIES = 30  # tries without progress
+LONG_TRIES = 1  # tries of a long frame before several are sent at a time
 
 
 class Transmission:
@@ -45,11 +45,11 @@ class Transmission:
         self._answer_bytes = min(max(answer_bytes, SMALL_FRAME), LARGE_FRAME)
         self.frame: Frame | None = None
         self.seal: Seal | None = None
-        self.epoch = 0  # that the frame bears
+        self.epoch = 0  # epoch in the frame
         self.tries = 0
         self.is_sent = False  # a byte of it
         self.due_ms = 0  # when the frame is sent or repeated
-        self._began_ms = 0  # when it was sent first
+        self._began_ms = 0  # when the frame was first sent
         self._wire_bytes = 0
 
     def begin(self, frame: Frame, due_ms: int, seal: Seal | None = None) -> None:
@@ -65,9 +65,7 @@ class Transmission:
         self.due_ms = due_ms
 
     def renew(self, epoch: int, seq: int | None = None) -> None:
-        """Give a frame of which no byte was sent the epoch in which it will be sent, and the
-        number after that of a frame which came before it.
-        """
+        """Set the epoch of an unsent frame, and its number after that of an earlier frame."""
         if self.frame is not None and not (self.is_sent or self.is_of("AUTHENTICATE")):
             self.frame = self.frame._replace(
                 epoch=epoch, seq=self.frame.seq if seq is None else seq
@@ -75,7 +73,7 @@ class Transmission:
             self.epoch = epoch
 
     def set_payload(self, payload: bytes) -> None:
-        """Send this, of which no byte was sent."""
+        """Set the payload, of which no byte has been sent."""
         assert self.frame is not None and not self.is_sent
         self.frame = self.frame._replace(payload=payload)
 
@@ -108,7 +106,7 @@ class Transmission:
     def learn_round_trip(self, reply: Frame, now_ms: int) -> None:
         """Learn from an answer how long one takes."""
         if self.tries == 0:
-            return  # nothing of it was sent: it answers something else
+            return  # nothing of the frame was sent, so this answers another one
         byte_count = self._wire_bytes + HEAD_BYTES + len(reply.payload) + CRC_BYTES
         self._round_trips.add_round_trip(now_ms - self._began_ms, byte_count, self.tries == 1)
 
@@ -116,7 +114,7 @@ class Transmission:
         """Return the bytes to send now."""
         assert self.frame is not None
         wire = encode_frame(self.frame if self.seal is None else self.seal.seal_frame(self.frame))
-        is_hello = self.is_of("HELLO")  # which looks for a robot that is not there yet
+        is_hello = self.is_of("HELLO")  # HELLO may look for a robot that is not there yet
         if self.tries > 0:
             self._round_trips.back_off()
         else:
@@ -134,9 +132,9 @@ class Transmission:
         return sender.prepare_frames(wire, now_ms, self.tries > 1 or is_hello)
 
     def _copy_count(self, wire_bytes: int) -> int:
-        """Return how many more of this frame are sent with it. Of a line that loses a byte now and
-        then hardly one long frame comes whole, so it gets as many as it carries in half the wait;
-        the robot does one of them, and answers each.
+        """Return the number of extra copies of a frame. On a line that loses bytes, few long frames
+        arrive whole, so it sends as many as fit into half the wait; the robot executes one and
+        answers each.
         """
         if wire_bytes <= SMALL_FRAME + WIRE_BYTES or self.tries <= LONG_TRIES:
             return 0
@@ -146,13 +144,13 @@ class Transmission:
         return max(0, self._round_trips.bytes_in(wait_ms // 2) // wire_bytes - 1)
 
 
-WIRE_BYTES = 4  # of a frame on the wire: what COBS adds to a long one, and its zeros
-MOST_QUEUED_MS = 200  # a stop waits behind so much of the port's time at most
-SLOW_MS = 1000  # and behind so much of a line that is slower than its port, about
-REPLY_BYTES = 32  # of DATA on the wire, and more
-FRAME_BYTES = 24  # of DATA on the wire beside its piece, and more
-LEAST_BYTES = 8  # of a piece, where a line loses so much that no longer one arrives
-MORE_BYTES = 8  # of the next piece, after one that has arrived
+WIRE_BYTES = 4  # extra bytes of a frame on the wire: COBS and the zeros
+MOST_QUEUED_MS = 200  # longest wait of a stop, in terms of the port's time
+SLOW_MS = 1000  # extra time for a slow line after its port
+REPLY_BYTES = 32  # bytes of a DATA reply on the wire, at most
+FRAME_BYTES = 24  # bytes of DATA on the wire beside its piece, at most
+LEAST_BYTES = 8  # shortest piece, for lines that lose longer ones
+MORE_BYTES = 8  # bytes by which the next piece grows after a success
 MOST_REMEMBERED_PIECES = 64  # pieces that were sent last: their answers may be late
 _DATA = BY_NAME["DATA"]
 
@@ -161,12 +159,12 @@ class SentPiece(NamedTuple):
     seq: int
     end: int  # offset of the byte after it
     sent_ms: int
-    wire_bytes: int  # with those of its answer
+    wire_bytes: int  # including the bytes of its answer
 
 
 class Window(Transmission):
-    """The pieces of a program. An answer that comes late tells as much as one in time: where the
-    line is slower than was known, what is sent twice is one piece, not all that is under way.
+    """The pieces of a program. A late answer counts like one in time: if the line is slower than
+    expected, only one piece is sent twice, not everything under way.
     """
 
     def __init__(
@@ -189,12 +187,13 @@ class Window(Transmission):
         self._window = self._allowed_count = max(1, min(pieces.window, LARGE_WINDOW, fitting_count))
         self.epoch = epoch
         self._next_number = next_number
-        self._room_bytes = round_trips.bytes_in(SLOW_MS)  # for what is under way, with its answers
-        self._next_offset = 0  # what the robot wants next
+        # Room for data under way, including its answers.
+        self._room_bytes = round_trips.bytes_in(SLOW_MS)
+        self._next_offset = 0  # the offset that the robot expects next
         self._sent_offset = 0  # offset of the byte after the last one that was sent
         self._sent_pieces: deque[SentPiece] = deque()
         self._lost_pieces: deque[SentPiece] = deque(maxlen=MOST_REMEMBERED_PIECES)  # taken for lost
-        self._lost_ms = 0  # when what is under way is taken for lost
+        self._lost_ms = 0  # when data under way counts as lost
         self._is_repeated = False
         self._is_over = False
 
@@ -286,7 +285,7 @@ class Window(Transmission):
             )
 
     def _next_bytes(self) -> int:
-        """Return how many bytes the next piece has, or 0 while none may be sent."""
+        """Return the length of the next piece, or 0 while none may be sent."""
         length = min(self._piece_bytes, len(self._data) - self._sent_offset)
         room = (
             self._room_bytes
@@ -309,7 +308,7 @@ class Window(Transmission):
         )
 
     def _count_bytes_under_way(self) -> int:
-        """Return how many bytes are under way, with their answers."""
+        """Return the bytes under way, including their answers."""
         return sum(piece.wire_bytes for piece in self._sent_pieces)
 
     def _set_due_time(self, now_ms: int) -> None:
@@ -336,7 +335,9 @@ class StopSender:
 
     @property
     def is_sent(self) -> bool:
-        """Whether a stop is active and was sent: an earlier event does not confirm it."""
+        """Return whether a stop was sent and is active, so that earlier events do not confirm
+        it.
+        """
         return self.due_ms is not None and self.due_ms > self._began_ms
 
     def is_due(self, now_ms: int) -> bool:

@@ -16,7 +16,7 @@ MOST_PACE = 655.35  # cm or degrees in a second, at 80 %
 
 
 class Pace(NamedTuple):
-    """How fast a robot goes and turns at 40 and 80 %: cm, or degrees, in a second.
+    """The speed of a robot at 40 and 80 %: centimetres or degrees per second.
 
     0 and 0: not measured, and the kit's numbers hold.
     """
@@ -28,7 +28,9 @@ class Pace(NamedTuple):
 
     @property
     def rises(self) -> bool:
-        """Whether the robot is faster at 80 % than at 40, or not measured: it takes no other."""
+        """Return whether the robot is faster at 80 % than at 40, or unmeasured: others are
+        refused.
+        """
         speeds = (self[:2], self[2:])
         return all(at_40 < at_80 or (at_40, at_80) == (0, 0) for at_40, at_80 in speeds)
 
@@ -37,7 +39,7 @@ class Pace(NamedTuple):
 
 
 class Trim(NamedTuple):
-    """How the motors are wired, and the correction that makes the robot drive straight.
+    """The wiring of the motors, and the correction that makes the robot drive straight.
 
     `balance` is the percent by which the left wheel is too strong; if it is below 0, the right
     wheel is. `least` is the smallest power in percent that moves the wheels. Without a pace: the

@@ -11,7 +11,7 @@ import re
 _WORDS = re.compile(rb"(?:S|STOP)+|(?:S|STOP)*STOPNOW|ALTO|PARA|PARAR|PARE|DETENTE|HALT")
 _IMMEDIATE_STOP = re.compile(rb"SSS|STOPSTOP", re.IGNORECASE)
 _BLANKS = re.compile(rb"[ \t]")
-# what a terminal sends for a cursor key, as far as it has come
+# The start of a cursor key's sequence, as far as received.
 _KEY = re.compile(rb"\x1b(?:[\[O][ -?]*[@-~]?)?")
 _COMMENT = re.compile(rb"/[ \t]*/")
 _DELETE_KEYS = b"\b\x7f"
@@ -31,7 +31,7 @@ def is_typed_stop(line: bytes) -> bool:
 
 
 def stops_at_once(line: bytes) -> bool:
-    """Return whether what has come of a line stops what runs before the line ends."""
+    """Return whether the beginning of a line stops the running program before the line ends."""
     return _IMMEDIATE_STOP.search(_BLANKS.sub(b"", _strip_keys_and_comment(line))) is not None
 
 
@@ -42,5 +42,5 @@ def is_at_stop(data: bytes) -> bool:
 
 
 def _strip_keys_and_comment(line: bytes) -> bytes:
-    """Return what is looked at: no keys, and no comment."""
+    """Return the relevant part of a line, without keys and comment."""
     return _COMMENT.split(_KEY.sub(b"", line), 1)[0]

@@ -41,16 +41,16 @@ class Network(NamedTuple):
 
 
 class Tls(NamedTuple):
-    """What makes a robot speak TLS: a certificate that it trusts, in DER, and today's date."""
+    """The TLS settings of a robot: a trusted certificate in DER, and today's date."""
 
     trust: bytes
-    date: int  # as 20261121
+    date: int  # the date in the form 20261121
 
 
 class BrokerSettings(NamedTuple):
-    """Where a robot finds its broker: four bytes and a port; its class, and how it signs in.
+    """The broker of a robot: an IPv4 address and a port, its class, and the credentials.
 
-    It looks up `name`, if there is one, and takes the four bytes where nobody knows it.
+    It looks up `name`, if there is one, and takes the four bytes if nobody knows it.
     """
 
     address: bytes
@@ -96,13 +96,13 @@ def forget_network() -> Exchange[WifiReply]:
 
 
 def join(network: Network) -> Exchange[WifiReply]:
-    """Give the robot a network, in the parts that find room in a frame, and have it kept."""
+    """Send the robot a network in parts that fit in a frame, and save it."""
     steps = [_request("NETWORK", network.name), *_parts("PASSWORD", network.password)]
     return _run_steps(steps, "HOST" if network.is_access_point else "JOIN")
 
 
 def use_broker(broker: BrokerSettings | None) -> Exchange[WifiReply]:
-    """Give the robot a broker, or none, and have it kept."""
+    """Send the robot a broker, or none, and save it."""
     steps = [_request("BROKER")]
     if broker is not None:
         endpoint = broker.address + broker.port.to_bytes(2, "little") + broker.group.encode()
@@ -124,7 +124,7 @@ def _request(step: str, text: bytes = b"") -> Request:
 
 
 def _parts(step: str, text: bytes) -> list[Request]:
-    """Return what brings a text in the parts that find room in a frame."""
+    """Return the requests that send a text in parts that fit in a frame."""
     offsets = range(0, len(text), WIFI_TEXT_BYTES)
     return [_request(step, text[offset : offset + WIFI_TEXT_BYTES]) for offset in offsets]
 

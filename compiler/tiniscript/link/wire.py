@@ -9,9 +9,9 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any
 
-MOST_BYTES = 1024  # of one answer: whoever never stops is not listened to for ever
-QUIET_MS = 60  # after so long a silence an answer is over
-RESET_MS = 100  # how long the lines that restart a board are off
+MOST_BYTES = 1024  # most bytes of one answer, in case the sender never stops
+QUIET_MS = 60  # silence that ends an answer
+RESET_MS = 100  # time for which the lines hold a board in reset
 
 
 class Wire:
@@ -23,7 +23,7 @@ class Wire:
     def send(self, data: bytes) -> None:
         try:
             self._port.write(data)
-        except TypeError as error:  # from pyserial, if the port is closed
+        except TypeError as error:  # pyserial raises this if the port is closed
             raise OSError(str(error)) from None
 
     def receive(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
@@ -47,20 +47,20 @@ class Wire:
                 self._port.timeout = 0
                 data += self._port.read(waiting_bytes)
             return data
-        except TypeError as error:  # as above
+        except TypeError as error:  # pyserial raises this if the port is closed
             raise OSError(str(error)) from None
 
     def set_baud(self, baud: int) -> None:
         try:
             self._port.baudrate = baud
-        except (ValueError, NotImplementedError) as error:  # a port that has no such speed
+        except (ValueError, NotImplementedError) as error:  # the port does not support this speed
             raise OSError(str(error)) from None
         self._drop_input()
 
     def reset_board(self) -> None:
         """Restart a board on a USB cable, as opening its port does."""
         for is_on in (False, True):
-            with suppress(OSError, NotImplementedError, TypeError):  # a port without such lines
+            with suppress(OSError, NotImplementedError, TypeError):  # the port has no such lines
                 self._port.dtr = self._port.rts = is_on
             if not is_on:
                 self.receive(RESET_MS, RESET_MS)

@@ -14,7 +14,7 @@ _CALL_START = re.compile(r"([A-Za-z]+)[ \t]*\(([^()\r\n;]*)\Z")
 _CALL_END = re.compile(r"[^()\r\n;]*\)")
 _COMPARED_WORD = re.compile(r"([A-Za-z_]\w*)[ \t]*(?:<>|[<>]=?|=)[ \t]*\Z")
 _SAMPLES = {"n": "3", "seconds": "2", "power": "50"}
-_SAMPLE_CM, _SAMPLE_NUMBER = "10", "50"  # examples of what a sensor sees, and of a variable
+_SAMPLE_CM, _SAMPLE_NUMBER = "10", "50"  # examples of a sensor's value, and of a variable
 
 
 def is_amount(*words: str) -> bool:
@@ -22,7 +22,7 @@ def is_amount(*words: str) -> bool:
 
 
 def amount_values(text: str, span: Span, own_names: Container[str] = ()) -> dict[str, str]:
-    """Return how the call around a value is written with numbers, nothing where there is none.
+    """Return the call around a value with numbers as values; none if there is no call.
 
     All its values in words get one, but for the program's `own_names` names. `DISTANCE < poco` and
     `X = mucho` are shown alone.
@@ -43,7 +43,7 @@ def amount_values(text: str, span: Span, own_names: Container[str] = ()) -> dict
     value_index = call_start[2].count(",")
     values = f"{call_start[2]}{amount}{call_end[0][:-1]}".split(",")
     amount = values[value_index].strip()
-    is_comparison = any(sign in amount for sign in "<>=")  # a part of it is no number
+    is_comparison = any(sign in amount for sign in "<>=")  # a part of it is not a number
     if is_comparison or not any(is_amount(*value.split()) for value in values):
         return {}
     for k, (value, argument) in enumerate(zip(values, word.arguments, strict=False)):

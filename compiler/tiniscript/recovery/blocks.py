@@ -31,45 +31,47 @@ class Line(NamedTuple):
 
     @property
     def asks_at_end(self) -> bool:
-        """Whether it begins a block whose condition comes at its end."""
+        """Return whether the block has its condition at its end."""
         return any(step.code is codes.ASKED_AFTER for step in self.reading.steps)
 
 
 class TokenEdit(NamedTuple):
-    """From token `start` on, `old_count` tokens become `new_tokens`."""
+    """An edit that replaces `old_count` tokens from `start` on by `new_tokens`."""
 
     start: int
     old_count: int
     new_tokens: list[Lexeme]
 
 
-_UNREADABLE_ITEMS = [Item("do", "", 0, 0)]  # what a line that cannot be read is taken for
+_UNREADABLE_ITEMS = [Item("do", "", 0, 0)]  # the reading of a line that cannot be read
 
 
 class _OpenBlock:
     def __init__(self, item: Item, k: int, line: Line) -> None:
         is_header = item.kind == "open"
-        self.word = item.word if is_header else ""  # nothing for braces that belong to no header
+        self.word = item.word if is_header else ""  # empty for braces without a header
         self.end = BLOCK_ENDS.get(self.word, "")
         self.line = k
         self.start = item.start
         self.indent = line.indent
-        self.body_indent: int | None = None  # its lines' indentation, 0 where that is not deeper
+        # Indentation of its lines, or 0 if not deeper than the header's.
+        self.body_indent: int | None = None
         self.has_brace = not self.word
         self.has_known_start = (
             is_header and line.reading.is_new_line
-        )  # a row says that its body begins
+        )  # a row marks the beginning of its body
         self.asks_at_end = is_header and line.asks_at_end
         self.may_ask_before = is_header and _may_ask_before(item, line.reading)
         self.is_translated = line.reading.tokens[item.start].source is None
         self.name = line.reading.tokens[item.start + 1].text if self.word == "DEF" else ""
         header_texts = [token.text for token in line.reading.tokens[item.start + 1 : item.end]]
         self.is_endless = header_texts in (["(", "FOREVER", ")"], ["(", "TRUE", ")"])
-        self.last_reached_line: int | None = None  # its last line that is ever done
+        self.last_reached_line: int | None = None  # the last line that can be reached
 
 
 def _may_ask_before(item: Item, reading: Reading) -> bool:
-    """Whether a question stands after an instruction that it may be of: `F(2, 80) IF(KEY_A);S`.
+    """Return whether a question follows an instruction that it may belong to: `F(2, 80)
+    IF(KEY_A);S`.
 
     No separator is before it, and one is after it.
     """
@@ -84,7 +86,7 @@ def _may_ask_before(item: Item, reading: Reading) -> bool:
 
 
 class Matching:
-    """What each line needs so that all blocks end: edits, ends after its text, and on new lines.
+    """The changes that end all blocks: edits, ends after a line's text, and on new lines.
 
     `run` takes item after item of all lines; `next_item` is the next one, of no kind at the end.
     `is_sure`: no end is a guess.
@@ -105,7 +107,7 @@ class Matching:
         self.is_sure = True
 
     def run(self) -> bool:
-        """Find what is missing for all blocks to end; return whether they fit."""
+        """Find the changes that end all blocks; return whether they fit."""
         last_line = -1
         for index, (k, item) in enumerate(self.items[:-1]):
             self.item_index, self.k, self.line, self.item = index, k, self.lines[k], item
@@ -120,7 +122,7 @@ class Matching:
         while self.open_blocks:
             block = self.open_blocks.pop()
             if not block.word or self.item.kind in ("open", "{"):
-                return False  # nothing is in it
+                return False  # the block is empty
             if block.has_brace and block.line == last_line:
                 self.ends_on_line.setdefault(last_line, []).append(block.end)
                 continue
@@ -180,7 +182,7 @@ class Matching:
         return True
 
     def is_made_up(self) -> bool:
-        """Whether a header is a word after an instruction, and nothing more: `F(1, 80) LOP`."""
+        """Return whether a header is only a word after an instruction: `F(1, 80) LOP`."""
         tokens, (_, _, start, end) = self.line.reading.tokens, self.item
         tokens_around = [*tokens[max(0, start - 1) : start], *tokens[start + 1 : end]]
         has_separator = [token.text for token in tokens_around[:2]] == [";", "("]
@@ -191,7 +193,7 @@ class Matching:
         )
 
     def is_when(self) -> bool:
-        """Whether an IF is meant as a WHEN: at the top level, with lines and an end of its own.
+        """Return whether an IF means a WHEN: at the top level, with lines and an end of its own.
 
         A key is asked for so anyway: who asks once, as the program begins, never sees it pressed.
         """
@@ -359,7 +361,7 @@ class Matching:
             self.ends_on_line.setdefault(self.k, []).append(block.end)
 
     def has_break_in(self, block: _OpenBlock) -> bool:
-        """Whether a block may end before this: at a `;` of the text, or at another block."""
+        """Return whether a block may end before this: at a `;` of the text, or at another block."""
         current_start = self.item.start
         items = [
             item
@@ -379,7 +381,7 @@ class Matching:
         )
 
     def arms_and_ends(self) -> Iterator[tuple[int, Item]]:
-        """Give the arms and ends after a place, but those of blocks that begin after it."""
+        """Yield the arms and ends after a place, except those of blocks that begin later."""
         depth = 0
         for line, item in self.items[self.item_index + 1 :]:
             is_end = item.kind in ("end", "}")

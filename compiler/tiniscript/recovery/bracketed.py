@@ -1,4 +1,4 @@
-"""What stands in brackets that a word has not: a question is asked before, and a value is named.
+"""Values in brackets that a word does not have: questions move in front, values get names.
 
 `STOP(DISTANCE < 10)` is `IF(DISTANCE < 10);STOP;ENDIF`, and `END_LOOP(4)` is END_LOOP without 4.
 """
@@ -27,11 +27,11 @@ _QUESTION_FORMS = {
     **{word: f"IF({{what}});{word};ENDIF" for word in ("S", "STOP", "BREAK")},
     "TASK": "WHEN({what})",
 }
-_ADVICE_GAPS = ("fix", "head", "named", "lost")  # gaps that say what becomes of it
+_ADVICE_GAPS = ("fix", "head", "named", "lost")  # gaps with the new form of the content
 
 
 def explain_brackets(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> Diagnostic:
-    """Return a mistake of needless brackets with what becomes of what is in them.
+    """Return a mistake of needless brackets, with the new form of their content.
 
     `is_offered`: where it is a question, that is asked; else it is named as lost.
     """
@@ -87,7 +87,7 @@ def explain_else_question(diagnostic: Diagnostic, text: str) -> Diagnostic:
 
 
 def _innermost_question(text: str) -> str:
-    """Return what the innermost IF that is open asks last."""
+    """Return the last question of the innermost open IF."""
     questions: list[str] = []
     for line in text.split("\n"):
         body = split_note(line)[0]
@@ -96,7 +96,7 @@ def _innermost_question(text: str) -> str:
             if word == "IF":
                 questions.append(match[2] or "")
             elif questions and word == "ELSEIF":
-                questions[-1] = ""  # it is asked only where another answer is no
+                questions[-1] = ""  # an ELSE comes only after the other answers
             elif questions and word.startswith("END"):
                 questions.pop()
     return questions[-1] if questions else ""

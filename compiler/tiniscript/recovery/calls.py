@@ -68,14 +68,14 @@ class _Call(NamedTuple):
 
 
 def misplaced_values(source: Source) -> list[Diagnostic]:
-    """Return what is said about calls whose values are in another form."""
+    """Return the diagnostics for calls with values in another form."""
     diagnostics = []
     line_start = 0
     def_names = {match[1].upper() for match in _DEF.finditer(source.text)}
     for line in source.text.split("\n"):
         for call in _calls(split_note(line)[0], line_start):
             if call.word.text in def_names:
-                continue  # its values may be those of the DEF
+                continue  # its values may be the DEF's parameters
             call_diagnostics = (
                 _point_diagnostic(call),
                 _unit_diagnostic(call),
@@ -88,7 +88,7 @@ def misplaced_values(source: Source) -> list[Diagnostic]:
 
 
 def run_on_calls(source: Source, names: Names) -> list[Diagnostic]:
-    """Return what is said about calls with nothing between them, one of which has an unknown word.
+    """Return the diagnostics for calls without a separator, one with an unknown word.
 
     Where all are known, a search reads the line.
     """
@@ -98,8 +98,13 @@ def run_on_calls(source: Source, names: Names) -> list[Diagnostic]:
         for piece in _INSTRUCTION.finditer(split_note(line)[0]):
             calls = _only_calls(piece[0])
             words = [plain(call["call"].partition("(")[0].strip()) for call in calls]
-            words_meant = [word if names.is_name(word) else names.meant(word) for word in words]
-            likely_words = {*words, *(names.meant(word, NEAR) for word in words)}  # `Antil(LINE_R)`
+            words_meant = [
+                word if names.is_name(word) else names.find_meaning(word) for word in words
+            ]
+            likely_words = {
+                *words,
+                *(names.find_meaning(word, NEAR) for word in words),
+            }  # `Antil(LINE_R)`
             are_calls = {*words_meant} <= {*CALL_WORDS, *words, ""} and not likely_words & {
                 *ASKING_WORDS,
                 "UNTIL",
@@ -128,7 +133,7 @@ def run_on_calls(source: Source, names: Names) -> list[Diagnostic]:
 
 
 def _only_calls(piece: str) -> list[re.Match[str]]:
-    """Return the calls of a text of calls alone, nothing where it has something else."""
+    """Return the calls of a text of calls alone, nothing if it has something else."""
     calls: list[re.Match[str]] = []
     offset = 0
     while call := _CALL_AFTER_BLANKS.match(piece, offset):
@@ -188,7 +193,7 @@ def _unit_diagnostic(call: _Call) -> Diagnostic | None:
 
 
 def _thousands_diagnostic(call: _Call) -> Diagnostic | None:
-    """`BEEP(1, 1,000)`: a comma parts thousands, where nothing that has decimals goes."""
+    """`BEEP(1, 1,000)`: a comma parts thousands, if nothing that has decimals goes."""
     arguments, number_match = call.word.arguments, _THOUSANDS.search(call.text)
     if number_match is None or len(call.values) <= len(arguments):
         return None
@@ -240,7 +245,7 @@ def _are_powers(values: Sequence[str]) -> bool:
 
 
 def own_example(text: str) -> str:
-    """Return how an instruction with CM or DEG in another place is written with its own values."""
+    """Return an instruction whose CM or DEG is misplaced, written with its own values."""
     if stored_match := _STORED_WITH_UNIT.fullmatch(text):
         name, number, unit = stored_match[1], stored_match[2], stored_match[3].upper()
         word = next(word for word, unit_of_word in UNIT_OF.items() if unit_of_word == unit)
@@ -279,7 +284,7 @@ def likely_word(word: str, text: str) -> str:
 
 
 def usage_of_number(word: str, number_text: str) -> str:
-    """Return how a word is written with the one number that is there, "" where that may be other.
+    """Return the call of a word with its only number, or "" if the number may be another value.
 
     So much of a turn is degrees; of a way it may be a power.
     """

@@ -1,4 +1,4 @@
-"""What is not told, since it follows from something else that is told.
+"""Diagnostics that are omitted because they follow from others.
 
 `_CONSEQUENCES` says it of codes, `_RULES` of what two diagnostics have in common. Knows no row.
 """
@@ -13,16 +13,17 @@ from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.recovery.writing import instruction_at
 
 _END_CODES = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
-# What follows from a code, wherever it is told.
+# Problems that follow from a code, at any place.
 _CONSEQUENCES: dict[Code, tuple[Code, ...]] = {
     codes.CASES: (codes.BRACES, codes.BREAK_OUTSIDE),
     codes.BRACES: _END_CODES, codes.DOTS: _END_CODES,
     codes.NEVER_ENDS: (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP),
 }  # fmt: skip
-_WORD_CODES = (codes.UNKNOWN_WORD, codes.TURN_WITHOUT_DIRECTION)  # whose units say nothing more
+# Codes of words whose units add nothing.
+_WORD_CODES = (codes.UNKNOWN_WORD, codes.TURN_WITHOUT_DIRECTION)
 _NAME_CODES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _UNTAUGHT_CODES = (codes.UNKNOWN_WORD, codes.UNTAUGHT)
-_MOST_UNITS = 30  # of which it is looked at: each goes through its row
+_MOST_UNITS = 30  # most units that are examined, because each goes through its row
 
 
 def without_consequences(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
@@ -40,7 +41,7 @@ def without_consequences(diagnostics: Sequence[Diagnostic], source: Source) -> l
 
 
 def _ends_of_a_misspelt_loop(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Diagnostic]:
-    """Ends of blocks, where one END_LOOP is left for what is nearly LOOP."""
+    """Ends of blocks, of which one END_LOOP belongs to a word similar to LOOP."""
     missing_headers = [
         diagnostic.values["right"]
         for diagnostic in diagnostics
@@ -64,7 +65,7 @@ def _ends_of_an_unread_if(diagnostics: Sequence[Diagnostic], _: Source) -> Itera
 def _uses_of_a_reserved_word(
     diagnostics: Sequence[Diagnostic], source: Source
 ) -> Iterator[Diagnostic]:
-    """What another name for a word of the language mends, too, as in the calls of its DEF."""
+    """Problems that another name for a reserved word also fixes, as in the calls of its DEF."""
     explainers: dict[str, Diagnostic] = {}  # the first of each word
     for diagnostic in diagnostics:
         if diagnostic.code is codes.RESERVED:
@@ -90,7 +91,7 @@ def _uses_of_a_reserved_word(
 
 
 def _uses_of_a_list(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Diagnostic]:
-    """That a name has no number which holds a list: it needs several names."""
+    """Uses of a name without a value that holds a list, which needs several names."""
     names_of_code = {
         diagnostic.values.get("found", "").upper()
         for diagnostic in diagnostics
@@ -120,7 +121,7 @@ def _units_of_an_unknown_word(
 def _ends_of_a_question_after(
     diagnostics: Sequence[Diagnostic], source: Source
 ) -> Iterator[Diagnostic]:
-    """That a move without end needs an UNTIL: `F(FOREVER, 60) WHILE(DISTANCE > 9)`."""
+    """The missing UNTIL of an endless move: `F(FOREVER, 60) WHILE(DISTANCE > 9)`."""
     question_offsets = [
         diagnostic.span.start
         for diagnostic in diagnostics
@@ -136,7 +137,7 @@ def _ends_of_a_question_after(
 
 
 def _calls_of_a_task(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Diagnostic]:
-    """What a TASK with a name was to be started by, which is told at the TASK."""
+    """Calls that were meant to start a named TASK, which is reported at the TASK."""
     started_names = {it.values.get("started") for it in diagnostics} - {None, ""}
     for diagnostic in diagnostics if started_names else ():
         names = (diagnostic.values.get(key, "").upper() for key in ("name", "found"))

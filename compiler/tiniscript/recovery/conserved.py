@@ -1,4 +1,4 @@
-"""Conservation: what a text says that a repair of it leaves out, and what a robot does more by it.
+"""Conservation: the content that a repair omits, and the actions that it adds.
 
 Counts numbers with their signs and units, names, commands, comparisons and branches, as far as
 words and signs say them. Knows no row: what was written is compared with what is written then.
@@ -58,8 +58,8 @@ _COMPARISON_SENSES = {
 }  # fmt: skip
 _UNITS = ("s", "cm", "°", "%", "Hz")
 _WAY_UNITS = tuple(way.unit for way in EXTENTS.values())
-_STORED_UNIT = "="  # of what a variable keeps that nothing reads: a move would take seconds
-_COUNTED_UNITS = (*_UNITS, "turns")  # with a number before them
+_STORED_UNIT = "="  # unit of a stored number that nothing reads; a move would use seconds
+_COUNTED_UNITS = (*_UNITS, "turns")  # units with a number before them
 _ARMS = ("ELSE", "ELSEIF")
 _HEADER_WORDS = frozenset((*BLOCK_ENDS, *_ARMS))
 _DRIVING_WORDS = frozenset((*MOVES, "M", "W", "BEEP", "S"))
@@ -67,13 +67,13 @@ _COUNTED_WORDS = frozenset((
     *_DRIVING_WORDS, *_HEADER_WORDS, *FUNCTIONS, "SHOW", "UNTIL", "BREAK", "AND", "OR", "NOT",
     "TRUE", "FALSE", "TIME", "FOREVER",
 ))  # fmt: skip
-# What says the same where a word is gone: `repeat until` is WHILE, `void loop` is FOREVER.
+# Phrases without their own word: `repeat until` is WHILE, `void loop` is FOREVER.
 _COUNTED_AS = {
     "LOOP": ("WHILE", "BREAK", "FOREVER"), "WHILE": ("BREAK", "UNTIL"), "UNTIL": ("WHILE", "BREAK"),
     "FOREVER": ("TRUE", "LOOP", "WHILE"), "TRUE": ("FOREVER",), "S": ("BREAK", "UNTIL"),
     "IF": ("WHEN",), "WHEN": ("IF", "UNTIL"), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
 }  # fmt: skip
-_QUESTION_TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
+_QUESTION_TURNERS = ("NOT", "UNTIL", "WHILE")  # removing one of these may invert a question
 _NEGATING_KINDS = ("no", "without", "unless", "different")
 # Text that only surrounds a program: its setup, HTML tags, an anonymous function, line labels.
 _FRAME_PATTERN = re.compile(
@@ -90,7 +90,7 @@ _ESCAPED_SIGNS = {
 }
 _FRACTIONS = {"1/2": ".5", "1/4": ".25", "3/4": ".75"}
 _GLUED_NUMBER = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
-# Digits, and letters that look like some; and what may stand between two parts of one number.
+# Digits, and letters that look like them; and separators between the parts of a number.
 _DIGITS = re.compile(r"[0-9oOlI]*[0-9][0-9oOlI]*|\b[oO](?=\.)")
 _GROUP_SEPARATORS = re.compile(r"[.,:;'´`·_ ]*")
 _DIGITS_OF_LETTERS = str.maketrans("oOlI", "0011")
@@ -98,7 +98,7 @@ _NUMBER_WITH_UNIT = re.compile(r"[\d.]+\s*([^\W\d]+|[%°])")
 _SEPARATORS = ";\n"
 _MOST_NUMBER_PARTS = 3  # parts of a number
 _GROUP_DIGITS = 3  # digits of the last part of `1,000`
-# What is written, as far as a change may cut it out; and which messages name what they do.
+# The removable parts of a text, and the codes whose messages name their effect.
 _COUNTED_TOKEN = re.compile(r"\d[\d.]*|[^\W\d]\w*|[<>≤≥≠]=?|[=!]=")
 _NAMING_CODES = (
     codes.EXTRA_WORD,
@@ -117,7 +117,7 @@ _NEAR_QUESTION = re.compile(rf"DISTANCE [<>]=? {NEAR_CM}(?![\d.])")
 
 
 class Amount(NamedTuple):
-    """A number with its sign and its unit, "" for none that is known; how it is written, where."""
+    """A number with its sign and its unit, "" if unknown; its text and place."""
 
     value: float
     unit: str
@@ -125,7 +125,7 @@ class Amount(NamedTuple):
     line: int
 
 
-MOST_LOOKS = 40  # at what is lost, of one text; and how many characters are looked at in them
+MOST_LOOKS = 40  # most losses examined in one text, and most characters examined in each
 MOST_CHARACTERS_LOOKED_AT = 100_000
 MOST_LAYERS = 8
 
@@ -138,31 +138,31 @@ class Difference(NamedTuple):
 
 
 NO_DIFFERENCE = Difference([], [])
-UNKNOWN_DIFFERENCE = Difference([""], [])  # nobody has looked, or not at this alone
+UNKNOWN_DIFFERENCE = Difference([""], [])  # a difference that has not been examined, or not alone
 
 
 def difference(text: str, repaired_text: str, kit: Kit) -> Difference:
-    """Return what a text says that a repaired one doesn't, and what only that does."""
-    statement, repaired = (
+    """Return the difference between a text and its repair, in both directions."""
+    statement, repaired_statement = (
         _statement_of_wrong(text, _words_of(repaired_text), kit),
         _statement_of_right(repaired_text, kit),
     )
     losses = [
-        *_lost_amounts(statement, repaired),
-        *_lost_words(statement, repaired),
-        *_lost_questions(statement, repaired),
+        *_lost_amounts(statement, repaired_statement),
+        *_lost_words(statement, repaired_statement),
+        *_lost_questions(statement, repaired_statement),
     ]
-    losses += statement.count_sum_signs() - repaired.count_sum_signs()
+    losses += statement.count_sum_signs() - repaired_statement.count_sum_signs()
     additions = [
         word
         for word in _DRIVING_WORDS
-        if repaired.sure_word_counts[word] > statement.possible_word_counts[word]
+        if repaired_statement.sure_word_counts[word] > statement.possible_word_counts[word]
     ]
     additions = additions if len(additions) > statement.unknown_word_count else []
     additions += [
         name
-        for name in repaired.names.defs
-        if repaired.count_calls(name) > statement.count_calls(name)
+        for name in repaired_statement.names.defs
+        if repaired_statement.count_calls(name) > statement.count_calls(name)
     ]
     return Difference([*dict.fromkeys(losses)], additions)
 
@@ -170,7 +170,7 @@ def difference(text: str, repaired_text: str, kit: Kit) -> Difference:
 def withhold_lossy_repairs(
     diagnostics: Sequence[Diagnostic], text: str, kit: Kit
 ) -> list[Diagnostic]:
-    """Return diagnostics of which no repair is sure that loses something, or does more.
+    """Return diagnostics whose certain repairs neither lose nor add anything.
 
     It is shown together with what is `lost`, and so is what was not sure before.
     """
@@ -190,9 +190,9 @@ def withhold_lossy_repairs(
     ]
     losses = zip(shown_diagnostics, _losses(shown_diagnostics, text, kit), strict=True)
     unmentioned_of_diagnostic = {
-        id(diagnostic): unmentioned
+        id(diagnostic): unmentioned_losses
         for diagnostic, loss in losses
-        if (unmentioned := _unmentioned_losses(diagnostic, loss.losses, text))
+        if (unmentioned_losses := _unmentioned_losses(diagnostic, loss.losses, text))
     }
     losses_of_diagnostic = unmentioned_of_diagnostic | {
         key: loss.losses for key, loss in loss_of_diagnostic.items()
@@ -208,7 +208,7 @@ def withhold_lossy_repairs(
 def _losses_of_sure_repairs(
     sure_diagnostics: Sequence[Diagnostic], text: str, kit: Kit
 ) -> dict[int, Difference]:
-    """Return what is lost by which sure repairs: by one alone, or by all of them together."""
+    """Return the losses of certain repairs: of each alone, or of all together."""
     edits = [it.repair.edits for it in sure_diagnostics if it.repair]
     joint_edits = [edit for k in _layers(dict(enumerate(edits)))[0] for edit in edits[k]]
     if not joint_edits or not any(difference(text, apply_edits(text, joint_edits), kit)):
@@ -219,17 +219,17 @@ def _losses_of_sure_repairs(
     }
     is_only_joint = not any(
         any(difference) for difference in loss_of_diagnostic.values()
-    )  # none alone: then all together do it
+    )  # no single one does: then all together do
     return {key: loss for key, loss in loss_of_diagnostic.items() if is_only_joint or any(loss)}
 
 
 def which_keep_all(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[bool]:
-    """Return for each diagnostic whether its changes alone lose nothing that was written."""
+    """Return for each diagnostic whether its edits alone keep everything that was written."""
     return [not loss.losses for loss in _losses(diagnostics, text, kit)]
 
 
 def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Difference]:
-    """Return what the changes of each of these lose alone.
+    """Return the losses of each diagnostic's edits alone.
 
     Where they are many, they are looked at together: halves of them while there are looks left. Of
     what many lose together each loses what stands in its own instructions.
@@ -279,13 +279,13 @@ def _layers(edits: Mapping[int, Sequence[Edit]]) -> list[list[int]]:
 
 
 def _overlaps(edit: Edit, spans: Sequence[Span]) -> bool:
-    """Whether a change is at a place that others have; these are in order, and do not touch."""
+    """Return whether an edit overlaps these ordered, disjoint spans."""
     index = bisect_right(spans, edit.span.end, key=lambda span: span.start)
     return index > 0 and spans[index - 1].end >= edit.span.start
 
 
 def _split_difference(joint: Difference, parts: Sequence[str]) -> list[Difference]:
-    """Return what each of several changes loses, which are in these parts: what stands there."""
+    """Return the losses of several edits in these parts: the text that they contain."""
     if len(parts) == 1:
         return [joint]
     own_losses = [[loss for loss in joint.losses if loss in part] for part in parts]
@@ -309,7 +309,7 @@ def _surrounding_text(edits: Sequence[Edit], text: str) -> str:
 
 
 def _unmentioned_losses(diagnostic: Diagnostic, losses: Sequence[str], text: str) -> list[str]:
-    """Return what a shown change leaves out and does not say: a unit, or what it only cuts out.
+    """Return the unmentioned losses of a shown edit: a unit, or removed text.
 
     A minus is none of these: a move goes the other way then.
     """
@@ -330,7 +330,7 @@ def _unmentioned_losses(diagnostic: Diagnostic, losses: Sequence[str], text: str
 
 
 def name_samples(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
-    """Return diagnostics that say of each number of what they offer that nobody wrote: an example.
+    """Return diagnostics that mark each number not written by the user as an example.
 
     That is a distance that a pupil called near, `DISTANCE < 10` for "near a wall", and the time,
     the power or the pitch that a call lacks. Where the text has that number, or where the message
@@ -344,7 +344,7 @@ def name_samples(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list
         if samples and len(_NUMBER.findall(fix)) <= _count_numbers(diagnostic, text):
             samples = [
                 sample for sample in samples if sample[1] == _NEAR_SAMPLE
-            ]  # one each, in words or nearly so
+            ]  # each names one amount, in words or nearly
         if samples and written_numbers is None:
             written_numbers = {amount.value for amount in _statement_of_right(text, kit).amounts}
         samples_text = ", ".join(
@@ -357,7 +357,7 @@ def name_samples(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list
 
 
 def _count_numbers(diagnostic: Diagnostic, text: str) -> int:
-    """Return how many numbers stand in the place of a mistake, in digits, words or nearly so."""
+    """Return the number of numbers at a mistake, in digits, words or nearly so."""
     span = diagnostic.place or diagnostic.span
     if ";" not in diagnostic.values.get("fix", ""):
         span = instruction_at(diagnostic.span, Source(text))
@@ -368,7 +368,7 @@ def _count_numbers(diagnostic: Diagnostic, text: str) -> int:
 
 
 def _possible_samples(fix: str) -> list[tuple[float, str]]:
-    """Return the numbers of what is offered that may be examples, and each with its unit."""
+    """Return the numbers of an offer that may be examples, each with its unit."""
     samples = [_NEAR_SAMPLE] if _NEAR_QUESTION.search(fix) else []
     for match in _CALL.finditer(fix):
         arguments = WORDS[match[1]].arguments if match[1] in _DRIVING_WORDS else ()
@@ -387,11 +387,10 @@ def _with_losses(diagnostic: Diagnostic, losses: Sequence[str]) -> Diagnostic:
 
 
 class _Statement:
-    """What a text says, in words of any language; `other_words` are all words of the repaired
-    one."""
+    """The content of a text in words of any language; `other_words` are those of the repair."""
 
     def __init__(self, text: str, other_words: frozenset[str], kit: Kit, is_right: bool) -> None:
-        self.is_right = is_right  # as far as it is repaired
+        self.is_right = is_right  # right after its repair
         self.other_words = other_words
         parts = [split_note(line.translate(PLAIN_SIGNS)) for line in text.split("\n")]
         self.note_words = Counter(self._all_lines([note for _, note in parts]))
@@ -401,21 +400,23 @@ class _Statement:
         self.tokens = [token for line in lines for token in (*self._join_words(line), _END)]
         self.line_of_token = [0, *accumulate(token is _END for token in self.tokens)]
         self._concepts_of_text: dict[str, set[str]] = {}
-        self._name_ends = {row[-1] for row in self.names.spaced_names}  # of `mi velocidad`
-        # what has no unit counts something of its own: 50 % of light is no 50
+        # Last words of names with spaces, such as `mi velocidad`.
+        self._name_ends = {row[-1] for row in self.names.spaced_names}
+        # A number without a unit counts something else: 50 % of light is not 50.
         self.units = {reading.name: reading.unit or reading.name for reading in kit.readings} | {
             "TIME": "s"
         }
         self.units |= self._units_of_names()
-        self.sure_word_counts: Counter[str] = Counter()  # that it surely says
-        self.possible_word_counts: Counter[str] = Counter()  # that it may say
+        # Words that the statement certainly contains.
+        self.sure_word_counts: Counter[str] = Counter()
+        self.possible_word_counts: Counter[str] = Counter()  # words that the statement may contain
         self.source_of_word: dict[str, str] = {}
         self.amounts: list[Amount] = []
         self.loose_units: list[
             tuple[str, str]
         ] = []  # units after no number, and how they are written
-        self.foreign_word_counts: Counter[str] = Counter()  # of those, in words of another language
-        self.unknown_word_count = 0  # words of other languages, or of none
+        self.foreign_word_counts: Counter[str] = Counter()  # the subset that is in another language
+        self.unknown_word_count = 0  # words of other languages, or of no language
         self._read()
 
     @staticmethod
@@ -512,7 +513,7 @@ class _Statement:
         self.sure_word_counts["ELSE"] += self._count_arms_in_brackets()
 
     def _is_lone_one(self, k: int) -> bool:
-        """Whether a 1 alone is asked for yes: `while (1)`."""
+        """Return whether a single 1 means TRUE: `while (1)`."""
         header, bracket = self.tokens[max(0, k - 2)], self.tokens[k - 1]
         is_alone = (bracket.text, self.tokens[k].text, self._next_token(k).text) == ("(", "1", ")")
         return is_alone and bool(self._possible_words(header) & ASKING_WORDS)
@@ -567,7 +568,7 @@ class _Statement:
         return self.tokens[k + 1] if k + 1 < len(self.tokens) else _END
 
     def _is_label(self, k: int) -> bool:
-        """Whether a word after an end says which one ends."""
+        """Return whether a word after an end names the block that ends."""
         position_before = k - 2 if k > 1 and self.tokens[k - 1].text in ("-", "_", ".") else k - 1
         previous = self.tokens[position_before] if k else _END
         is_end = previous.text in WORD_OF_END or bool(lexicon_meaning(previous.text, "end"))
@@ -613,7 +614,7 @@ class _Statement:
         return k + 1
 
     def _is_minus(self, k: int) -> bool:
-        """Whether the sign before a number belongs to it, and is none of a sum."""
+        """Return whether a minus belongs to a number, not to a subtraction."""
         sign, previous = self.tokens[k - 1] if k else _END, self.tokens[k - 2] if k > 1 else _END
         if sign.text != "-":
             return False
@@ -637,7 +638,7 @@ class _Statement:
         return meaning[0] if meaning[0] in _COUNTED_UNITS else "", float(meaning[1])
 
     def _is_loose_unit(self, k: int) -> bool:
-        """Whether a word says a unit and nothing else, of no number."""
+        """Return whether a word is only a unit, without a number."""
         token, previous, following = (
             self.tokens[k],
             self.tokens[k - 1] if k else _END,
@@ -687,7 +688,7 @@ class _Statement:
         return unit_of_token
 
     def _argument_units(self, k: int) -> list[str]:
-        """Return the units of what is in the brackets that begin at a token."""
+        """Return the units in the brackets that begin at a token."""
         word = self.tokens[k - 1] if k else _END
         if word.kind is not WORD:
             return []
@@ -713,7 +714,7 @@ class _Statement:
     # -- branches --------------------------------------------------------------------------------
 
     def count_calls(self, name: str) -> int:
-        """Return how many times a DEF is called: after DEF, or an end, its name is no call."""
+        """Return the number of calls of a DEF; its name after DEF or an end is no call."""
         count = 0
         for k, (previous, token) in enumerate(pairwise([_END, *self.tokens])):
             count += token.text == name and not (
@@ -739,7 +740,7 @@ class _Statement:
         return negations
 
     def count_sum_signs(self) -> Counter[str]:
-        """Count the signs between two values, of which one at least is no plain number."""
+        """Count the signs between two values, at least one of which is not a plain number."""
         sign_counts: Counter[str] = Counter()
         tokens_after = (*self.tokens[3:], _END)
         for left, sign, right, token_after in zip(
@@ -753,7 +754,7 @@ class _Statement:
         return sign_counts
 
     def _has_value(self, token: Lexeme) -> bool:
-        """Whether a token is a number, or a name that has a value."""
+        """Return whether a token is a number, or a name with a value."""
         return (
             token.kind is NUMBER
             or token.text == "TIME"
@@ -761,7 +762,7 @@ class _Statement:
         )
 
     def count_empty_branches(self) -> int:
-        """Return how many branches have nothing in them."""
+        """Return the number of empty branches."""
         tokens_left = [
             token for token in self.tokens if token is not _END and token.text not in (";", "{")
         ]
@@ -784,7 +785,7 @@ class _Statement:
         return count
 
     def _count_arms_in_brackets(self) -> int:
-        """Return how many IFs have two branches in their brackets: `IF(question, F, B)`."""
+        """Return the number of IFs with two branches in their brackets: `IF(question, F, B)`."""
         count = 0
         for k, token in enumerate(self.tokens[:-1]):
             end = brackets_end(self.tokens, k + 1) if self._next_token(k).text == "(" else 0
@@ -815,9 +816,9 @@ def _words_of(text: str) -> frozenset[str]:
     return frozenset(name.upper() for name in _NAME.findall(text))
 
 
-def _lost_amounts(statement: _Statement, repaired: _Statement) -> Iterator[str]:
-    """Give the numbers that are gone, or have another sign or unit."""
-    new_stock, old_stock = _Stock(repaired.amounts), _Stock(statement.amounts)
+def _lost_amounts(statement: _Statement, repaired_statement: _Statement) -> Iterator[str]:
+    """Yield the numbers that are lost, or have another sign or unit."""
+    new_stock, old_stock = _Stock(repaired_statement.amounts), _Stock(statement.amounts)
     read_parts: list[float] = []  # the parts of the run that was read last, which is one number
     for value, parts in _digit_runs(statement.body_text):
         is_one_number = parts is not read_parts and new_stock.has([value]) and old_stock.has(parts)
@@ -826,12 +827,13 @@ def _lost_amounts(statement: _Statement, repaired: _Statement) -> Iterator[str]:
             new_stock.remove([value])
             old_stock.remove(parts)
     lost_amounts, new_amounts = old_stock.remaining(), new_stock.remaining()
-    for is_same_line in (True, False):  # first what stays in its line: another line's 50 is no 50 %
-        lost_amounts, new_amounts = _unmatched(lost_amounts, new_amounts, is_same_line)
+    # First the matches in the same line, because another line's 50 is no 50 %.
+    for is_same_line in (True, False):
+        lost_amounts, new_amounts = _remove_matches(lost_amounts, new_amounts, is_same_line)
     yield from (amount.source_text for amount in lost_amounts)
-    units = {unit for amount in repaired.amounts for unit in amount.unit.split("/")}
-    units |= {repaired.units.get(token.text, "") for token in repaired.tokens}
-    repaired_units = Counter(repaired.loose_units)
+    units = {unit for amount in repaired_statement.amounts for unit in amount.unit.split("/")}
+    units |= {repaired_statement.units.get(token.text, "") for token in repaired_statement.tokens}
+    repaired_units = Counter(repaired_statement.loose_units)
     yield from (
         loose_unit[1]
         for loose_unit in statement.loose_units
@@ -849,7 +851,7 @@ class _Stock:
             self.indexes_of_value.setdefault(abs(amount.value), deque()).append(k)
 
     def has(self, values: Sequence[float]) -> bool:
-        """Whether there is one for each of these, of which there is one at least."""
+        """Return whether each of these values has its own occurrence, and there is at least one."""
         are_enough = (
             len(self.indexes_of_value.get(value, ())) >= count
             for value, count in Counter(values).items()
@@ -867,7 +869,7 @@ class _Stock:
         ]
 
 
-def _unmatched(
+def _remove_matches(
     old_amounts: Sequence[Amount], new_amounts: Sequence[Amount], is_same_line: bool
 ) -> tuple[list[Amount], list[Amount]]:
     """Return the amounts of two texts without those that both have; `is_same_line`: in one line."""
@@ -916,7 +918,7 @@ def _are_same(old_amount: Amount, new_amount: Amount) -> bool:
 
 
 def _digit_runs(text: str) -> Iterator[tuple[float, list[float]]]:
-    """Give what digits may mean as one number, and as several: `2,5`, `8 0`, `8O`, `1:30`."""
+    """Yield the values of digits as one number, and as several: `2,5`, `8 0`, `8O`, `1:30`."""
     pieces = [*_DIGITS.finditer(text)]
     for start in range(len(pieces)):
         for end in range(start, min(start + _MOST_NUMBER_PARTS, len(pieces))):
@@ -936,23 +938,24 @@ def _digit_runs(text: str) -> Iterator[tuple[float, list[float]]]:
 
 
 def _possible_numbers(digits: Sequence[str], is_decimal: bool, is_time: bool) -> Iterator[float]:
-    """Give what parts of a number may be, the likeliest first: `2,5` is rather no 25."""
+    """Yield possible values of a number's parts, the likeliest first: `2,5` is hardly 25."""
     points = [f"{''.join(digits[:k])}.{''.join(digits[k:])}" for k in range(1, len(digits))]
-    joined = "".join(digits)
-    yield from map(float, (*points, joined) if is_decimal else (joined, *points))
+    joined_text = "".join(digits)
+    yield from map(float, (*points, joined_text) if is_decimal else (joined_text, *points))
     if is_time and len(digits) > 1:
         yield 60 * float(digits[0]) + float(digits[1])
 
 
-def _lost_words(statement: _Statement, repaired: _Statement) -> Iterator[str]:
-    """Give the words that are gone, and are not in a note."""
-    noted_words = repaired.note_words - statement.note_words
-    is_turned = _count_senses(statement) != _count_senses(repaired)
+def _lost_words(statement: _Statement, repaired_statement: _Statement) -> Iterator[str]:
+    """Yield the words that are lost, and are not in a note."""
+    noted_words = repaired_statement.note_words - statement.note_words
+    is_turned = _count_senses(statement) != _count_senses(repaired_statement)
     for word, count in statement.sure_word_counts.items():
-        missing_count = count - repaired.sure_word_counts[word]
+        missing_count = count - repaired_statement.sure_word_counts[word]
         replaced_count = max(
             (
-                repaired.sure_word_counts[replacement] - statement.sure_word_counts[replacement]
+                repaired_statement.sure_word_counts[replacement]
+                - statement.sure_word_counts[replacement]
                 for replacement in _COUNTED_AS.get(word, ())
             ),
             default=0,
@@ -964,15 +967,15 @@ def _lost_words(statement: _Statement, repaired: _Statement) -> Iterator[str]:
             yield statement.source_of_word.get(word, word)
 
 
-def _lost_questions(statement: _Statement, repaired: _Statement) -> Iterator[str]:
-    """Give the comparisons that are gone, or turned round, and branches that nothing is in."""
-    lost_senses = _count_senses(statement) - (repaired.note_words - statement.note_words)
-    new_senses = _count_senses(repaired)
+def _lost_questions(statement: _Statement, repaired_statement: _Statement) -> Iterator[str]:
+    """Yield the lost or inverted comparisons, and branches that became empty."""
+    lost_senses = _count_senses(statement) - (repaired_statement.note_words - statement.note_words)
+    new_senses = _count_senses(repaired_statement)
     turner_counts = (
         {word: counted.sure_word_counts[word] for word in _QUESTION_TURNERS}
-        for counted in (statement, repaired)
+        for counted in (statement, repaired_statement)
     )
-    negations = (statement.negations, repaired.negations)
+    negations = (statement.negations, repaired_statement.negations)
     may_turn = (
         bool(negations[0] or negations[1]) or len({str(turner) for turner in turner_counts}) > 1
     )
@@ -980,9 +983,9 @@ def _lost_questions(statement: _Statement, repaired: _Statement) -> Iterator[str
         yield from (lost_senses - new_senses) or lost_senses
     elif lost_senses == new_senses and len(negations[0]) > len(
         negations[1]
-    ):  # nothing is turned round instead
+    ):  # nothing else is inverted instead
         yield negations[0][0]
-    if repaired.count_empty_branches() > statement.count_empty_branches():
+    if repaired_statement.count_empty_branches() > statement.count_empty_branches():
         yield "ELSE"
 
 

@@ -41,7 +41,7 @@ class _Counter(NamedTuple):
 
 
 def counter_diagnostics(source: Source) -> list[Diagnostic]:
-    """Return what is said about headers with a used counter, and about the ends that name it."""
+    """Return the diagnostics for headers with a used counter, and for ends that name it."""
     diagnostics: list[Diagnostic] = []
     rows = [lexemes(split_note(line)[0]) for line in source.text.split("\n")]
     headers_by_row = [[*_headers(row)] for row in rows]
@@ -120,7 +120,7 @@ def _headers(row: Sequence[Lexeme]) -> Iterator[_Counter]:
 
 
 def _header(tokens: Sequence[Lexeme], start_index: int) -> _Counter | None:
-    """Return what a header counts that begins at a token."""
+    """Return the counter of the header that begins at a token."""
     if (
         not lexicon_meaning(tokens[start_index].text, "count")
         and lexicon_concept(tokens[start_index].text) != "LOOP"
@@ -179,7 +179,7 @@ def _add(number: int | None, increment: int) -> int | None:
 
 
 class _TokenReader:
-    """What follows in a row of tokens, from `k` on."""
+    """A reader of the tokens from `k` on."""
 
     def __init__(self, tokens: Sequence[Lexeme], k: int) -> None:
         self.tokens = tokens

@@ -11,14 +11,15 @@ from tiniscript.recovery.consequences import without_consequences
 from tiniscript.syntax.lexer import QUOTES
 
 MOST_EXAMPLE_CALLS = 6  # calls that an example has
-# What is said once for the same values, these or all of them: with the lines of the others, and
+# Messages given once for the same values, some or all of them: with the lines of the others, and
 # their repairs, or without.
 _GAPS_WITH_LINES: dict[Code, tuple[str, ...] | None] = {
     codes.EMPTY_BRACKETS: ("word",),
     **dict.fromkeys((codes.BAD_NAME, codes.NAME_WITH_SPACE), ("found", "right")),
     **dict.fromkeys((codes.RESERVED, codes.SAME_AGAIN)),
 }
-_UNKNOWN_WORD_CODES = (codes.UNKNOWN_WORD, codes.UNTAUGHT)  # one word: of each its first place
+# Codes about one word; only its first place is reported.
+_UNKNOWN_WORD_CODES = (codes.UNKNOWN_WORD, codes.UNTAUGHT)
 _MERGED_CODES = _GAPS_WITH_LINES | {
     **dict.fromkeys((codes.BRACES, codes.CASES), ()),
     **dict.fromkeys(
@@ -69,7 +70,7 @@ def dedupe(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic
 
 
 def _removes_quotes(diagnostic: Diagnostic, source: Source) -> bool:
-    """Whether a repair takes quotation marks out, and does nothing else."""
+    """Return whether a repair only removes quotation marks."""
     edits = diagnostic.repair.edits if diagnostic.repair else ()
     return bool(edits) and all(
         not edit.text.strip() and {*source[edit.span].strip()} <= {*QUOTES} for edit in edits

@@ -1,4 +1,4 @@
-"""Where a block of one line may end that lacks its end: after one of its instructions."""
+"""Possible ends of a one-line block without an end: after one of its instructions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tiniscript.recovery.meanings import WORD_OF_END, Lexeme, texts
 from tiniscript.recovery.slips import instructions
 from tiniscript.recovery.writing import format_line
 
-_MOST_CANDIDATES = 4  # places, of which the last is always one
+_MOST_CANDIDATES = 4  # the last of these places is always valid
 _ARMS = ("ELSE", "ELSEIF")
 _ENDLESS_CONDITIONS = (("(", "FOREVER", ")"), ("(", "TRUE", ")"))
 
@@ -27,10 +27,10 @@ def possible_last_instructions(tokens: Sequence[Lexeme]) -> list[str]:
         depth += word in BLOCK_ENDS
         if word in WORD_OF_END:
             if not depth:
-                break  # of a block around it
+                break  # the end belongs to an outer block
             depth -= 1
         if word in _ARMS and not depth:
-            candidates = []  # it ends in its last branch
+            candidates = []  # the block ends in its last branch
         elif instruction and not depth:
             candidates.append(format_line(instruction))
     is_endless = texts(header[1:]) in _ENDLESS_CONDITIONS
@@ -38,7 +38,7 @@ def possible_last_instructions(tokens: Sequence[Lexeme]) -> list[str]:
 
 
 def candidates_text(candidates: Sequence[str]) -> str:
-    """Return places for a message, nothing for one alone: that is no guess."""
+    """Return places for a message, or "" for a single one, which is certain."""
     if len(candidates) < 2:
         return ""
     shown_lines = (
@@ -50,7 +50,7 @@ def candidates_text(candidates: Sequence[str]) -> str:
 
 
 def added_end_index(old_tokens: Sequence[Lexeme], new_tokens: Sequence[Lexeme]) -> int | None:
-    """Return where the first end is that only the repaired tokens have, None for none."""
+    """Return the index of the first end that only the repaired tokens have, or None."""
     texts_left = list(texts(old_tokens))
     for k, word in enumerate(texts(new_tokens)):
         if word in texts_left:
@@ -61,7 +61,7 @@ def added_end_index(old_tokens: Sequence[Lexeme], new_tokens: Sequence[Lexeme]) 
 
 
 def header_index(tokens: Sequence[Lexeme], end: int) -> int:
-    """Return where the block begins that ends at a token."""
+    """Return the start of the block that ends at a token."""
     depth = 0
     for k in range(end, -1, -1):
         depth += (tokens[k].text in WORD_OF_END) - (tokens[k].text in BLOCK_ENDS)

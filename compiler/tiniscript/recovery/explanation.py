@@ -120,7 +120,7 @@ class UnendedBlock:
 
 @dataclass
 class Explanation:
-    """What is said about a line: its code, and what it is `details`.
+    """The explanation of a line: its code, and `details`.
 
     Where more of its block changes, that becomes `block_text`, and ends with `end_word`.
 
@@ -148,7 +148,7 @@ class Explanation:
 
     @property
     def fix(self) -> str:
-        """What the instruction becomes; nothing where only an end is missing."""
+        """Return the repaired instruction; "" if only an end is missing."""
         details = self.details
         return (
             (details.fix or slips.fix_of(details.slip)) if isinstance(details, SlipDetails) else ""
@@ -160,7 +160,7 @@ class Explanation:
 
 
 def explain_candidate(program: str, candidate: Candidate) -> list[Explanation]:
-    """Return what is wrong with each line that a candidate changes, in the order of the text."""
+    """Return the explanations of each line that a candidate changes, in the order of the text."""
     explainer = _Explainer(program, candidate)
     for k, change in enumerate(candidate.changes):
         explainer.explain_change(k, change)
@@ -171,7 +171,7 @@ def explain_candidate(program: str, candidate: Candidate) -> list[Explanation]:
 
 @dataclass
 class _ExplainedBlock:
-    """A block that is open: what is said about its beginning, which is in change `first_change`.
+    """An open block: the message about its beginning, which is in change `first_change`.
 
     `first_words` is the first word of each line of its last arm.
     """
@@ -210,7 +210,7 @@ class _Explainer:
         explanation.is_sure = self.is_sure(explanation)
 
     def is_sure(self, explanation: Explanation) -> bool:
-        """Whether nothing that an explanation changes is a guess."""
+        """Return whether nothing that an explanation changes is a guess."""
         offsets = (offset for edit in explanation.edits for offset in edit.span)
         lines = {self.program.count("\n", 0, offset) for offset in offsets}
         touched_changes = [
@@ -240,7 +240,7 @@ class _Explainer:
         return Span(start, end)
 
     def joined_changes(self, first_change: int, last_line: tuple[int, int]) -> str:
-        """Return what changes become, as one line, nothing where that is long."""
+        """Return the result of changes as one line, or "" if it is long."""
         *earlier_lines, last_text = (
             change.text for change in self.changes[first_change : last_line[0] + 1]
         )
@@ -266,9 +266,7 @@ class _Explainer:
             )
             edit = trimmed_edit(span.start, old_text, own_text)
             if ends and edit.span.start == span.end:
-                edit = Edit(
-                    span, own_text
-                )  # the ends that are missing after it come after all of it
+                edit = Edit(span, own_text)  # missing ends come after all of it
             instruction = InstructionChange(
                 span, edit, self.changes[k].steps, old_tokens, new_tokens
             )
@@ -346,7 +344,7 @@ class _Explainer:
                 span = Span(line_start + start, line_start + end)
                 edit = trimmed_edit(span.start, text, new_text)
                 if edit.span.start == span.end:
-                    edit = Edit(span, new_text)  # an end that is missing comes after all of it
+                    edit = Edit(span, new_text)  # a missing end comes after all of it
                 changes.append(
                     InstructionChange(
                         span, edit, steps_by_instruction.get(n, []), instruction, new_instruction
@@ -387,7 +385,7 @@ class _Explainer:
         last_line: tuple[int, int],
         new_tokens: Sequence[Lexeme],
     ) -> Explanation | None:
-        """Make an edit part of what is said about its block's beginning, None where too long."""
+        """Add an edit to the message about its block's beginning, or return None if too long."""
         explanation = block.explanation if block else None
         if block is None or explanation is None or explanation.code not in _CODES_SHOWN_WHOLE:
             return None
@@ -460,7 +458,7 @@ class _Explainer:
         return SlipDetails(slip)
 
     def describe_unended(self, k: int, change: InstructionChange) -> UnendedBlock:
-        """Return what is said of a block that lacks its end on the line where it begins."""
+        """Return the description of a block without an end, on the line where it begins."""
         new_texts, end_index = (
             texts(change.new_tokens),
             added_end_index(change.old_tokens, change.new_tokens),
@@ -470,7 +468,7 @@ class _Explainer:
             if end_index is None
             else new_texts[end_index]
         )
-        unended = UnendedBlock(WORD_OF_END.get(end, ""), end)
+        unended_block = UnendedBlock(WORD_OF_END.get(end, ""), end)
         block_instructions = [
             instruction
             for instruction in instructions(change.new_tokens[:end_index])
@@ -479,16 +477,19 @@ class _Explainer:
         change_above = next(
             (change for change in self.changes[k - 1 :: -1] if change.text.strip()), None
         )
-        if end_index is not None and unended.word in new_texts[:end_index]:
-            unended.behind = format_line(block_instructions[-1]) if block_instructions else ""
-            unended.places = candidates_text(
+        if end_index is not None and unended_block.word in new_texts[:end_index]:
+            unended_block.behind = format_line(block_instructions[-1]) if block_instructions else ""
+            unended_block.places = candidates_text(
                 possible_last_instructions(
                     change.new_tokens[header_index(change.new_tokens, end_index) : end_index]
                 )
             )
-        elif k and change_above:  # its indentation says where it ends
-            unended.line, unended.last = str(change_above.last_line + 1), _first_line(change_above)
-        return unended
+        elif k and change_above:  # its indentation shows where it ends
+            unended_block.line, unended_block.last = (
+                str(change_above.last_line + 1),
+                _first_line(change_above),
+            )
+        return unended_block
 
     def add_missing_end(
         self, last_line: tuple[int, int], change: search.LineChange, end: str, text: str
@@ -542,7 +543,7 @@ class _Explainer:
         return None
 
     def may_end_earlier(self, block: _ExplainedBlock, last_change: int) -> bool:
-        """Whether nothing says that the last instruction of a block is in it.
+        """Return whether the last instruction of a block may be outside of it.
 
         A sign or a stop after others may as well come when a LOOP or a DEF is over.
         """
@@ -565,7 +566,7 @@ def _first_line(change: search.LineChange) -> str:
 
 
 def _words_of_numbers(change: InstructionChange) -> list[str]:
-    """Return the words that a change writes in digits, nothing where it changes more."""
+    """Return the words that a change writes in digits, nothing if it changes more."""
     if len(change.old_tokens) != len(change.new_tokens):
         return []
     pairs = zip(change.old_tokens, change.new_tokens, strict=True)

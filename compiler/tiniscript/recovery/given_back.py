@@ -16,7 +16,8 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.syntax.free_names import names_in, numbered_names
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Token, scan
 
-_INSTRUCTION_ENDS = (";", NEWLINE, "|", "end")  # what an instruction ends at, or begins after
+# Tokens at which an instruction ends, or after which one begins.
+_INSTRUCTION_ENDS = (";", NEWLINE, "|", "end")
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _RESULT_NAME = "RESULT"
 _MOST_CHARACTERS = 4_000  # characters of a text that is looked at
@@ -26,7 +27,7 @@ _YES_NO_WORDS = ("AND", "OR", "NOT")
 
 
 def find_returned_values(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
-    """Return what is said about DEFs that give a value back, and edits to read the rest with."""
+    """Return the diagnostics for DEFs that return a value, and edits for further reading."""
     text = source.text
     if "DEF" not in text.upper() or len(text) > _MOST_CHARACTERS:
         return [], []
@@ -77,7 +78,7 @@ def _value_calls(tokens: Sequence[Token], names: set[str]) -> Iterator[tuple[str
 
 
 def _call_span(tokens: Sequence[Token], k: int) -> Span:
-    """Return where a call is, with its brackets, or what there is of them on its line."""
+    """Return the span of a call, with the brackets that its line contains."""
     depth, last_token = 0, tokens[k]
     for token in _until_end(tokens, k + 1):
         depth += (token.kind == "(") - (token.kind == ")")

@@ -33,7 +33,7 @@ _TURNS = _SIDEWAYS_MOVES[:2]
 
 
 class SpokenInstruction(NamedTuple):
-    """An instruction as it is written; `samples` are the values that no word says: `2 s`.
+    """An instruction as written; `samples` are the values that no word says: `2 s`.
 
     `is_side_free`: which way it turns is not said.
     """
@@ -50,7 +50,7 @@ def instructions_text(spoken_instructions: Sequence[SpokenInstruction]) -> str:
 
 
 def samples_text(spoken_instructions: Sequence[SpokenInstruction]) -> str:
-    """Return what no word says: `2 s, 80 %`."""
+    """Return default values that no word specifies: `2 s, 80 %`."""
     return ", ".join(
         sorted({sample for instruction in spoken_instructions for sample in instruction.samples})
     )
@@ -68,7 +68,7 @@ def spoken_instructions(words: Sequence[Lexeme], names: Names) -> list[SpokenIns
         or lexicon_meaning(next_word.text, "the")
         or not lexicon_meaning(next_word.text, "idle")
     ]  # `o robô` is no OR
-    words_meant = ["", *(names.meant(word.text) for word in words[1:])]
+    words_meant = ["", *(names.find_meaning(word.text) for word in words[1:])]
     question_index = next(
         (k for k, concept in enumerate(words_meant) if concept in ("IF", "WHEN")), 0
     )
@@ -92,7 +92,7 @@ def spoken_instructions(words: Sequence[Lexeme], names: Names) -> list[SpokenIns
             instruction.is_repeated
             for instruction in part_instructions[bool(not found_instructions) :]
         ):
-            return []  # nobody knows how much of it is done so often
+            return []  # nobody knows which part is repeated
         found_instructions += part_instructions
     return found_instructions
 
@@ -138,7 +138,7 @@ def _instructions_with_condition(
 def _stopped_when(
     instructions_before: list[SpokenInstruction], words: Sequence[Lexeme], names: Names
 ) -> list[SpokenInstruction]:
-    """Return instructions of which a condition ends the last one: `anda y para cuando …`."""
+    """Return instructions whose last one ends by a condition: `anda y para cuando …`."""
     condition, condition_samples = _parse_condition(words[1:], names)
     if (
         not instructions_before
@@ -157,7 +157,7 @@ def _stopped_when(
 
 
 def _joined_instructions(words: list[Lexeme], names: Names) -> list[SpokenInstruction]:
-    """Return the instructions between two words that join, of which each begins with its own."""
+    """Return the instructions between two joining words, each beginning with its own."""
     if instruction := _spoken_instruction(words, names):
         return [instruction]
     for k in range(2, len(words) - 1):
@@ -181,15 +181,15 @@ def _joined_instructions(words: list[Lexeme], names: Names) -> list[SpokenInstru
 
 
 def _begins_instruction(token: Lexeme, names: Names) -> bool:
-    """Whether a word begins an instruction."""
+    """Return whether a word begins an instruction."""
     is_turn = bool(lexicon_meaning(token.text, "turn"))
-    return is_turn or names.meant(token.text) in (*CALL_WORDS, "S", "STOP")
+    return is_turn or names.find_meaning(token.text) in (*CALL_WORDS, "S", "STOP")
 
 
 def _spoken_instruction(words: list[Lexeme], names: Names) -> SpokenInstruction | None:
     if bounded_move := _move_until(words, names):
         return bounded_move
-    concept = names.meant(words[0].text)
+    concept = names.find_meaning(words[0].text)
     texts_after = [token.text for token in words[1:]]
     if concept in ("S", "STOP") and texts_after:
         if all(lexicon_meaning(text, "the", "engine", "filler") for text in texts_after):
@@ -223,7 +223,7 @@ def _move_until(words: Sequence[Lexeme], names: Names) -> SpokenInstruction | No
         (
             until_index
             for until_index, token in enumerate(words)
-            if names.meant(token.text) == "UNTIL"
+            if names.find_meaning(token.text) == "UNTIL"
         ),
         0,
     )
@@ -254,7 +254,7 @@ def _parse_condition(
     values = (condition_values(words, names) if may_be_distance else None) or {}
     condition = values.get("asked") or values.get("question", "")
     has_other_question = any(
-        names.meant(it.text) in _SIDEWAYS_MOVES or it.text in COMPARISONS for it in words
+        names.find_meaning(it.text) in _SIDEWAYS_MOVES or it.text in COMPARISONS for it in words
     )
     if has_other_question or not condition.startswith("DISTANCE"):
         return "", ()
@@ -262,11 +262,11 @@ def _parse_condition(
 
 
 def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
-    """Return the block that one sentence says: its header, what is done, and its end.
+    """Return the block that one sentence describes: its header, its body, and its end.
 
     `goes_on`: it goes on further down.
     """
-    word = names.meant(tokens[0].text)
+    word = names.find_meaning(tokens[0].text)
     if word not in ("IF", "WHEN", "WHILE", "LOOP") or len(tokens) > MOST_WORDS:
         return ""
     is_when = bool(lexicon_meaning(tokens[0].text, "whenever"))
@@ -275,7 +275,7 @@ def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
         tokens = tokens[:-1]
     texts = [token.text for token in tokens]
     else_index = next(
-        (k for k, text in enumerate(texts) if names.meant(text) == "ELSE"), len(texts)
+        (k for k, text in enumerate(texts) if names.find_meaning(text) == "ELSE"), len(texts)
     )
     else_instructions = spoken_instructions(tokens[else_index + 1 :], names)
     comma_index = next((k for k in range(2, else_index) if texts[k] == "," and word != "LOOP"), 0)
@@ -285,14 +285,14 @@ def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
             word, header = "WHEN", f"WHEN{header[2:]}"
         body_instructions = spoken_instructions(tokens[k:else_index], names) if header else []
         if header and not body_instructions and _begins_instruction(tokens[k], names):
-            return ""  # another instruction than the words after it say
+            return ""  # the instruction differs from the one that the words describe
         if not body_instructions or any(
             instruction.is_side_free for instruction in (*body_instructions, *else_instructions)
         ):
             continue
-        is_side_word = names.meant(texts[k]) in _TURNS and texts[k + 1 : k + 2] != ["("]
+        is_side_word = names.find_meaning(texts[k]) in _TURNS and texts[k + 1 : k + 2] != ["("]
         if word != "LOOP" and tokens[k].source and is_side_word:
-            return ""  # where the wall is, or where to go
+            return ""  # the number may be the wall's place, or the target
         word_index = next(
             (j for j in range(k, else_index) if not lexicon_meaning(texts[j], "filler")), k
         )
@@ -313,7 +313,7 @@ def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
 
 
 def _block_header(word: str, words: Sequence[Lexeme], names: Names) -> str:
-    """Return the header that words say: how often, or what is asked."""
+    """Return the header that words describe: the number of repetitions, or the question."""
     if word == "LOOP":
         number = next((token.text for token in words if token.kind is NUMBER), "")
         return f"LOOP({number})" if number and lexicon_meaning(words[-1].text, "times") else ""
@@ -341,8 +341,8 @@ def condition_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
 
 
 def _is_question_word(word: str, names: Names) -> bool:
-    """Whether a word makes a question of those beside it: a yes or no that never changes does not,
-    and may be said for more: `si no avanza`.
+    """Return whether a word makes its neighbours a question. A constant yes or no does not, and may
+    be more: `si no avanza`.
     """
     is_known = word in ("TRUE", "FALSE")
     return word in COMPARISONS or (names.is_yes_no(word) and not is_known)

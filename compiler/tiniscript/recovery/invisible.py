@@ -1,4 +1,4 @@
-"""Signs that nobody sees, and no keyboard has: what takes one out names it, as `U+2028`."""
+"""Invisible characters that no keyboard has: their removal names them, as in `U+2028`."""
 
 from __future__ import annotations
 

@@ -23,7 +23,8 @@ from tiniscript.recovery.meanings import ASKING_WORDS, WORD_OF_END, Names, lexem
 from tiniscript.recovery.writing import split_note
 
 KEYS = tuple(device.name for device in REMOTE if device.is_yes_no)
-_SIDE_OF_MOVE = {"F": "UP", "B": "DOWN", "L": "LEFT", "R": "RIGHT"}  # what arrows say alone
+# Directions meant by an arrow alone.
+_SIDE_OF_MOVE = {"F": "UP", "B": "DOWN", "L": "LEFT", "R": "RIGHT"}
 _STICK_CONDITIONS = {
     "LEFT": "PAD_X < 0",
     "RIGHT": "PAD_X > 0",
@@ -32,7 +33,7 @@ _STICK_CONDITIONS = {
 }
 _INSTRUCTION_AND_BAR = re.compile(r"([^;{}|]*)(\|?)")
 _PIECE_PATTERN = re.compile(r"\d[\d.]*|[^\W\d_]+|<>|!=|==|\S")
-_WORD_HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-ZÀ-Ý])")  # of `upKey`
+_WORD_HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-ZÀ-Ý])")  # boundary of words in `upKey`
 _EQUAL_SIGNS = ("=", "==", "_", "-", ".", '"', "'", "<>", "!=", "(")
 _INSTRUCTION_OF_KEY = re.compile(r"(?i)\s*(?:=>?|:|->)\s*((?:[FBLRSMW]|BEEP|STOP)\b[^;{}\n]*)")
 _ASSIGNMENT = re.compile(r"(?m)(?:^|[;|{}])\s*(\w+)\s*=(?!=|>|\s*(?:[FBLRSMW]|BEEP|STOP)\b)")
@@ -40,7 +41,7 @@ _LINK_KINDS = ("the", "of", "to", "is", "filler", "small", "pressed")
 _TEXTS_LEFT_OF_KEY, _TEXTS_RIGHT_OF_KEY = (
     ("(", "AND", "OR", "NOT"),
     (")", "AND", "OR"),
-)  # what is asked alone
+)  # keys that are asked for alone
 
 
 class _Piece(NamedTuple):
@@ -65,7 +66,7 @@ class _Key(NamedTuple):
 
 
 def key_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return what is said about the keys that a text has in other words."""
+    """Return the diagnostics for keys that are written in other words."""
     if not kit.has_remote or not re.search(_key_pattern(), plain(source.text)):
         return []
     bodies = [split_note(line)[0] for line in source.text.split("\n")]
@@ -85,7 +86,7 @@ def key_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
             words = [token.text for token in lexemes(match[1])]
             depth += sum(
                 (concept in BLOCK_ENDS) - (concept in WORD_OF_END)
-                for concept in map(names.meant, words)
+                for concept in map(names.find_meaning, words)
             )
         line_start += len(line) + 1
     return diagnostics
@@ -124,7 +125,7 @@ class _Instruction:
                 )
 
     def diagnostics(self, is_in_block: bool) -> Iterator[Diagnostic]:
-        """Give what is said about an instruction, which is inside a block or not."""
+        """Yield the diagnostics for an instruction, depending on whether it is inside a block."""
         if instruction := self._assigned_key():
             yield self._instruction_diagnostic(*instruction, "IF" if is_in_block else "WHEN")
             return
@@ -141,7 +142,7 @@ class _Instruction:
             key_before = key or (key_before if self._word_at(k) in ("AND", "OR") else None)
 
     def _concept_of(self, piece: _Piece) -> str:
-        return self.names.meant(piece.word) if piece.word.isalpha() else ""
+        return self.names.find_meaning(piece.word) if piece.word.isalpha() else ""
 
     def _span(self, key: _Key) -> Span:
         first_piece, last_piece = self.pieces[key.start], self.pieces[key.end - 1]
@@ -196,7 +197,8 @@ class _Instruction:
             and self._word_at(k + 1) == "."
             and not _is_key(self._word_at(k))
         ):
-            key = self._find_key(k + 2)  # of a thing: `input.buttonIsPressed(Button.A)`
+            # The key follows an object: `input.buttonIsPressed(Button.A)`.
+            key = self._find_key(k + 2)
             return key and key._replace(start=k)
         side_position = self._skip_while(
             k, lambda it: it.isalpha() and _is_key_word(it, *_LINK_KINDS)
@@ -267,11 +269,11 @@ class _Instruction:
         start = k if self._mentions_pressed(k, side_position) else side_position
         previous_piece = self.pieces[k - 1] if k else _Piece("", Span(0, 0))
         if previous_piece.word == "(" or self._concept_of(previous_piece) in ASKING_WORDS:
-            start = k  # with its article
+            start = k  # includes its article
         return _Key(start, end, f"{'NOT ' if is_negated else ''}KEY_{side}" if side else "")
 
     def _find_stick(self, k: int) -> _Key | None:
-        """Return what the stick is asked: the number that says its side."""
+        """Return the direction of the stick by the number it is compared with."""
         start = self._skip_while(k, lambda it: _is_key_word(it, "the"))
         side = _side_of(self._word_at(start))
         stick_index = (
@@ -345,7 +347,7 @@ class _Instruction:
         return _Key(k, end, f"{negation}{arrow}", is_sure=is_upright)
 
     def _as_yes_no(self, k: int) -> tuple[bool, int]:
-        """Return whether a `= FALSE` or `= 0` stands at a place, and where what says so ends."""
+        """Return whether a `= FALSE` or `= 0` is at a place, and its end."""
         if self._word_at(k) in ("=", "==") and self._word_at(k + 1) in ("0", "1", "TRUE", "FALSE"):
             return self._word_at(k + 1) in ("0", "FALSE"), k + 2
         return False, k
@@ -392,7 +394,7 @@ def _side_of(word: str) -> str:
 
 @cache
 def _key_pattern() -> str:
-    """Return the pattern of what is in a text that speaks of keys."""
+    """Return the pattern of texts about keys."""
     return (
         rf"{words_of('key', 'up', 'down', 'left', 'right', 'pressed', 'BUTTON')}|{_stick_pattern()}"
     )
@@ -408,7 +410,7 @@ def _key_words() -> tuple[str, ...]:
 
 
 def _split_key(word: str, start: int) -> Iterator[_Piece]:
-    """Give a word, in two where a key and its side are glued: `KEYUP`."""
+    """Yield a word, split in two if a key and its side are joined: `KEYUP`."""
     for key, remove in product(_key_words(), (str.removeprefix, str.removesuffix)):
         side = remove(word, key)
         is_letter = (

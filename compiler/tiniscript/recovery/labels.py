@@ -1,7 +1,7 @@
 """Labels before instructions, which count them: `1)`, `a.`, `Step 2 -`, `Questão 3:`.
 
 A label stands where an instruction begins, in any language: a number or a letter with a sign, or
-any word that is no instruction with one of these. Numbers alone are labels where they count all
+any word that is not an instruction with one of these. Numbers alone are labels where they count all
 lines.
 """
 
@@ -31,7 +31,7 @@ _NAMED_WORD = re.compile(r"\bDEF\s+(\w+)\b|\b(\w+)\s*[=(]")
 
 @lru_cache(100)
 def label_spans(text: str) -> tuple[Span, ...]:
-    """Return where the labels of a text are, each with the spaces after it."""
+    """Return the spans of the labels in a text, each with the spaces after it."""
     numbers = [*_COUNTED_LINE.finditer(text)]
     line_numbers = [int(number[1]) for number in numbers]
     is_counting = len(line_numbers) > 1 and line_numbers[0] in _FIRST_NUMBERS
@@ -43,7 +43,7 @@ def label_spans(text: str) -> tuple[Span, ...]:
 
 
 def label_diagnostics(source: Source) -> list[Diagnostic]:
-    """Return what is said about the labels of a text: each is taken out."""
+    """Return the diagnostics for the labels of a text, each of which is removed."""
     return [
         Diagnostic(codes.LINE_NUMBER, Span(span.start, span.start + len(label_text)),
                    {"found": label_text}, None, Repair((Edit(span, ""),), True))
@@ -56,7 +56,7 @@ def _spans_in_lines(text: str) -> Iterator[Span]:
     line_start, is_value_open = 0, False
     for line in text.split("\n"):
         body = split_note(line)[0]
-        depth = counted_to = 0  # of brackets, up to where they are counted
+        depth = counted_to = 0  # bracket depth, and the place up to which it is counted
         for match in _INSTRUCTION_START.finditer(body):
             depth += body.count("(", counted_to, match.start()) - body.count(
                 ")", counted_to, match.start()
@@ -65,7 +65,7 @@ def _spans_in_lines(text: str) -> Iterator[Span]:
             label_match = _LABEL.match(body, match.end())
             if label_match and not is_value_open and depth <= 0 and _is_label(label_match, text):
                 yield Span(line_start + label_match.start(), line_start + label_match.end())
-        is_value_open = body.rstrip()[-1:] in ("(", ",")  # it goes on in the next line
+        is_value_open = body.rstrip()[-1:] in ("(", ",")  # the value continues in the next line
         line_start += len(line) + 1
 
 
@@ -84,7 +84,7 @@ def _is_label(label_match: re.Match[str], text: str) -> bool:
 
 
 def _is_instruction(word: str, sign: str, text: str) -> bool:
-    """Whether an instruction begins with a word and the sign after it."""
+    """Return whether an instruction begins with a word and the sign after it."""
     known_words = {word, lexicon_concept(word), meant_by(word)} & WORDS.keys()
     return bool(sign or known_words or lexicon_meaning(word, "set", "declare")) or _is_name(
         word, text
@@ -92,19 +92,19 @@ def _is_instruction(word: str, sign: str, text: str) -> bool:
 
 
 def _is_step(word: str) -> bool:
-    """Whether a word counts what is done: `paso`, `step`, `line`."""
+    """Return whether a word counts steps: `paso`, `step`, `line`."""
     entries = {(item.kind, item.value) for item in lexicon().get(word, ())}
     return ("unit", "steps") in entries or ("stem", "LINE") in entries
 
 
 def _is_free(word: str, text: str) -> bool:
-    """Whether a word is none of the language, and no name of the text."""
+    """Return whether a word is neither a word of the language nor a name of the text."""
     is_instruction = (meant_by(word) or "S") not in ("S", "STOP")  # PARTE is no PARE with a number
     return not (word in WORDS or lexicon().get(word) or is_instruction or _is_name(word, text))
 
 
 def _is_name(word: str, text: str) -> bool:
-    """Whether a text sets a word, teaches it or calls it."""
+    """Return whether a text assigns, defines or calls a word."""
     return plain(word) in _names(text)
 
 

@@ -1,4 +1,4 @@
-"""What is left over in an instruction: words that say nothing, and a second `SI|`.
+"""Superfluous parts of an instruction: words without meaning, and a second `SI|`.
 
 Each is told to be taken out as what it is: an instruction without values is done with its word.
 """
@@ -34,12 +34,13 @@ _EMPTY_WORDS = frozenset((
 
 
 def leftover_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return what is said about all that is left over in a text."""
+    """Return the diagnostics for the superfluous parts of a text."""
     bodies = [split_note(line)[0] for line in source.text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
     lines = source.text.split("\n")
     starts = [0, *accumulate(len(line) + 1 for line in lines)]
-    tasks = frozenset(_NAMED_TASK.findall(plain(source.text)))  # which have no name
+    # Names of tasks, which have none in this language.
+    tasks = frozenset(_NAMED_TASK.findall(plain(source.text)))
     diagnostics: list[Diagnostic] = []
     for body, start in zip(bodies, starts, strict=False):
         diagnostics += _filler_diagnostics(body, start, names, tasks)
@@ -47,7 +48,7 @@ def leftover_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
 
 
 def setup_and_end_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return what is said about an `SI|` after an instruction, and a word for the end of all."""
+    """Return the diagnostics for an `SI|` after an instruction, and for a final end word."""
     bodies = [split_note(line)[0] for line in source.text.split("\n")]
     starts = [0, *accumulate(len(line) + 1 for line in source.text.split("\n"))]
     setup_diagnostics = [
@@ -64,7 +65,7 @@ def setup_and_end_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
 def _end_word_diagnostics(
     bodies: Sequence[str], starts: Sequence[int], names: Names
 ) -> Iterator[Diagnostic]:
-    """Give the word for an end below a program in which no block begins: `Fim.`"""
+    """Yield the end word below a program in which no block begins: `Fim.`"""
     last_index = max((k for k, body in enumerate(bodies) if body.strip()), default=0)
     tokens = [token for token in lexemes(bodies[last_index]) if token.text not in (".", ";")]
     instructions_above = [
@@ -85,14 +86,14 @@ def _end_word_diagnostics(
 
 
 def _is_call(call: re.Match[str], names: Names) -> bool:
-    """Whether an instruction begins no block: it is one of the language, or nearly so."""
+    """Return whether an instruction of the language, or nearly so, begins no block."""
     word = call[1].upper()
-    meant = names.meant(word) or likely_word(word, call[0].strip())
-    return names.is_name(word) or (meant in WORDS and meant not in _HEADER_WORDS)
+    meant_text = names.find_meaning(word) or likely_word(word, call[0].strip())
+    return names.is_name(word) or (meant_text in WORDS and meant_text not in _HEADER_WORDS)
 
 
 def _setup_diagnostics(body: str, start: int) -> Iterator[Diagnostic]:
-    """Give each `SI|` after an instruction of its line: what follows it comes next."""
+    """Yield each `SI|` after an instruction of its line, with the text after it."""
     for match in _SETUP_ANYWHERE.finditer(body):
         follows_instruction = match["before"] == ")" or bool(
             _SETUP_AT_START.search(body[: match.start("setup")])
@@ -126,9 +127,9 @@ def _filler_diagnostics(
 
 
 def _is_filler(token: Lexeme, names: Names) -> bool:
-    """Whether a token is a word that is no instruction, no name and no part of a sentence."""
+    """Return whether a token is neither an instruction, a name nor a part of a sentence."""
     word = token.text
-    if token.kind is not WORD or word in WORDS or names.is_name(word) or names.meant(word):
+    if token.kind is not WORD or word in WORDS or names.is_name(word) or names.find_meaning(word):
         return False
     kinds = {item.kind for item in lexicon().get(word, ())}
     return lexicon_concept(word) is None and kinds <= _EMPTY_WORDS

@@ -36,11 +36,11 @@ from tiniscript.syntax.lexer import DEGREES, NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline
 
-MOST_STATES = 80  # of one line that are looked at
+MOST_STATES = 80  # most states of a line that are explored
 MOST_SLIP_STATES = 40
 MOST_QUICK_STATES = 8
-RIVAL_MARGIN = 1.05  # what a rival may cost more than the cheapest reading
-SURE_MARGIN = 0.15  # what it has to cost more, for the cheapest to be sure
+RIVAL_MARGIN = 1.05  # factor within which a rival's cost is close to the cheapest reading
+SURE_MARGIN = 0.15  # difference in cost that makes the cheapest reading certain
 SLIP_MARGIN = 0.3
 MOST_RIVALS = 4
 MOST_TOKENS = 300  # tokens of a line
@@ -48,7 +48,7 @@ ANY_END = "?"  # the word of an end that names no block: END, FIN
 BRACES = ("{", "}")
 MOST_TOKENS_WITH_SLIPS = 80
 _MOST_FIRST_STEPS = 30
-_CALCULATION_SIGNS = SIGNS | {"°"}  # without it another number would be meant
+_CALCULATION_SIGNS = SIGNS | {"°"}  # without the degree sign, another number would be meant
 _NEEDLESS_BRACKETS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
 _MOST_PLAIN_DIGITS = 4
 _WORDS_AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
@@ -68,7 +68,7 @@ class Step(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """What a line may mean. `items` is None while it is not right yet.
+    """A possible meaning of a line. `items` is None until it is right.
 
     `is_sure`: no step was a guess, and `search` takes that back where a rival costs about the same.
     """
@@ -146,7 +146,7 @@ def _parse_items(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[
 
 
 def _joining_word_index(tokens: Sequence[tuple[str, str]]) -> int:
-    """Return where a word joins the names of a DEF, 0 for nowhere: `DEF SIDE(X and Y)`."""
+    """Return the index of a word that joins the names of a DEF, or 0: `DEF SIDE(X and Y)`."""
     is_in_brackets = is_def = False
     for k, (kind, text) in enumerate(tokens[1:-1], 1):
         is_def = (is_def or tokens[k - 1][1] == "DEF") and text != ";"
@@ -249,7 +249,7 @@ class _Search:
 
     @staticmethod
     def says_twice(reading: Reading, items: Sequence[Item], first_reading: Reading) -> bool:
-        """Whether one instruction of the line became the same one twice, which nobody wrote."""
+        """Return whether two parts of the line became the same instruction, which nobody wrote."""
         instruction_texts = [texts(reading.tokens[item.start : item.end]) for item in items]
         for instruction, next_instruction, item in zip(
             instruction_texts, instruction_texts[1:], items, strict=False
@@ -284,7 +284,7 @@ class _Search:
         return reading
 
     def rewrite(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
-        """Give what a reading becomes where it fails: by rows, calls in words, meanings."""
+        """Yield the rewrites of a reading if it fails: by rows, calls in words, meanings."""
         rewriters = (self._apply_patterns, self._fill_slots, self._translate_word)
         return map(
             self.apply_first_rewrites,
@@ -293,13 +293,13 @@ class _Search:
 
     def _apply_patterns(self, reading: Reading, failure: Failure | None) -> Iterator[Reading]:
         """Make the rows that touch a place; for none those that come before all others."""
-        encoded = rewrites.Encoded(reading.tokens, self.names)
-        for row in rewrites.rows_to_try(encoded, is_first=failure is None):
-            for match in encoded.matches(row.pattern):
-                start, end = encoded.span(match)
+        encoded_words = rewrites.Encoded(reading.tokens, self.names)
+        for row in rewrites.rows_to_try(encoded_words, is_first=failure is None):
+            for match in encoded_words.matches(row.pattern):
+                start, end = encoded_words.span(match)
                 if failure and not _is_near(failure, start, end):
                     continue
-                tokens = encoded.apply_row(row, match)
+                tokens = encoded_words.apply_row(row, match)
                 if tokens is not None:
                     is_new_line = ";" in row.replacement
                     yield reading.with_change(
@@ -341,7 +341,7 @@ class _Search:
                     and padded_texts[k] == "("
                     and padded_texts[k - 1] in CALL_WORDS
                 ):
-                    continue  # for the first value of a call: `F(tiempo, 80)`
+                    continue  # the unit is for the first value of a call: `F(tiempo, 80)`
                 is_sure = cost < 2 and concept != "TIME"
                 new_tokens = [
                     *tokens[:k],
@@ -353,7 +353,9 @@ class _Search:
                 break
 
     def undo_slips(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
-        """One sign wrong, missing, too much or after its neighbour, where the line fails."""
+        """Yield corrections of one wrong, missing, superfluous or exchanged sign where the line
+        fails.
+        """
         tokens, (start, failure_index) = reading.tokens, failure
         for k in reversed(range(max(0, start - 1), min(len(tokens) + 1, failure_index + 2))):
             tokens_before, tokens_after = tokens[:k], tokens[k + 1 :]
@@ -388,7 +390,7 @@ class _Search:
 
 
 def _is_grouping_bracket(tokens: Sequence[Lexeme], k: int) -> bool:
-    """Whether a bracket groups a part of a sum: without it the sum is another one."""
+    """Return whether a bracket groups a part of a sum, whose value depends on it."""
     previous_text = tokens[k - 1].text if k else ""
     texts_after = [token.text for token in tokens[k + 1 :]]
     return (
@@ -399,7 +401,7 @@ def _is_grouping_bracket(tokens: Sequence[Lexeme], k: int) -> bool:
 
 
 def _code_of_call(words: Sequence[Lexeme]) -> Code:
-    """Return with which code it is told that these words are no call as it is written."""
+    """Return the code for words that are not a call as written."""
     signs = texts(words)
     if signs[0] not in WORDS:
         return codes.OTHER_LANGUAGE
@@ -421,7 +423,7 @@ def _is_near(failure: Failure, start: int, end: int) -> bool:
 
 
 def _has_unlikely_time(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
-    """Whether the number after a translated word is rarely meant for seconds: `move(50, 50)`."""
+    """Return whether a number after a translated word rarely means seconds: `move(50, 50)`."""
     numbers = [token for token in tokens[k + 1 : k + 3] if token.kind is NUMBER]
     least_time = LONG_TIME_S if concept in (*MOVES, "BEEP") else LEAST_MILLISECONDS
     is_timed = concept in (*MOVES, "BEEP", "W")
@@ -429,7 +431,7 @@ def _has_unlikely_time(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
 
 
 def _call_ranges(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
-    """Give the pieces of a line in which a call may be told: between separators and headers."""
+    """Yield the parts of a line that may contain a call: between separators and headers."""
     start = 0
     for k, token in enumerate([*tokens, make_token(";")]):
         is_edge = token.text in _EDGE_WORDS

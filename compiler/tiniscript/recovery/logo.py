@@ -37,7 +37,7 @@ class _Token(NamedTuple):
 
 
 def logo_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return what is said about each line of Logo."""
+    """Return the diagnostics for each line of Logo."""
     names = Names([lexemes(line) for line in source.text.split("\n")], kit)
     diagnostics = _definition_diagnostics(source)
     line_start = 0
@@ -59,7 +59,7 @@ def logo_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
 
 
 def _definition_diagnostics(source: Source) -> list[Diagnostic]:
-    """Return what is said about words that are taught: each is a DEF."""
+    """Return the diagnostics for Logo procedures, each of which becomes a DEF."""
     diagnostics: list[Diagnostic] = []
     head: Diagnostic | None = None
     is_empty = True
@@ -91,7 +91,7 @@ def _definition_diagnostic(source: Source, span: Span, found_text: str, fix: str
 
 
 def _pieces(body: str, start: int) -> list[list[_Token]]:
-    """Return the instructions of a line, each nothing where it has other signs."""
+    """Return the instructions of a line, each nothing if it has other signs."""
     pieces: list[list[_Token]] = [[]]
     depth = end = 0
     is_readable = True
@@ -143,7 +143,7 @@ class _Reader:
         self.move_count = 0
 
     def instructions(self, k: int, depth: int) -> tuple[list[str], int]:
-        """Return the instructions from a token on and where they end; nothing where one is none."""
+        """Return the instructions from a token on and where they end; nothing if one is none."""
         instructions: list[str] = []
         while k < len(self.tokens) and self.tokens[k].text != "]":
             token, number_tokens = self.tokens[k], self.tokens[k + 1 : k + 2]
@@ -176,7 +176,11 @@ class _Reader:
         if word in WORDS:
             return word
         meanings = lexicon_meaning(word, "turtle")
-        return meanings[0] if meanings and not self.names.is_name(word) else self.names.meant(word)
+        return (
+            meanings[0]
+            if meanings and not self.names.is_name(word)
+            else self.names.find_meaning(word)
+        )
 
     def _move_text(self, word: str, number_text: str) -> str:
         unit = UNIT_OF.get(word, "")

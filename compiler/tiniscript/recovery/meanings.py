@@ -23,10 +23,10 @@ from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.outline import KnownNames
 
 WORD_OF_END = ENDS
-KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
+KNOWN, MISSPELT, NEAR = 1, 2, 3  # costs of a meaning: exact, misspelt, one slip away
 BLOCK_STARTS = frozenset(BLOCK_ENDS) - {"DEF"}
 SEPARATORS = frozenset(";|{}")
-UNNAMED_END = "FIN"  # of a block that its word does not name: what a row makes of each such end
+UNNAMED_END = "FIN"  # stands for the end of a block whose word does not name it; a row replaces it
 CALL_WORDS = frozenset(word.text for word in WORDS.values() if word.is_call)
 INSTRUCTION_WORDS = CALL_WORDS | {"S", "STOP", "BREAK"}
 ASKING_WORDS = frozenset(("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL"))
@@ -37,7 +37,7 @@ _TOKEN = re.compile(
 )
 _SIGNS = SIGNS | frozenset("(),;|")
 _MOST_NAME_WORDS = 4  # words of a name
-# Classes by what the lexicon says of a word that is none of the language.
+# Classes by the lexicon's meaning of a word outside of the language.
 _CLASSES = {
     LexiconEntry("unit", "cm", "1000"): "@in_cm", LexiconEntry("unit", "cm", "100000"): "@in_m",
     LexiconEntry("unit", "s", "1000"): "@in_secs", LexiconEntry("unit", "°", "1000"): "@in_deg",
@@ -45,14 +45,14 @@ _CLASSES = {
     LexiconEntry("value", "s"): "@of_time", LexiconEntry("value", "Hz"): "@of_pitch",
     LexiconEntry("number", "1"): "@one", LexiconEntry("number", "100"): "@hundred",
 }  # fmt: skip
-NEAR_CM = "10"  # an example of what is near
-LONG_TIME_S = 20  # so much without a unit may be a power, degrees or centimetres
+NEAR_CM = "10"  # an example of a near distance
+LONG_TIME_S = 20  # from here on, a number without a unit may be a power, degrees or centimetres
 MOST_POWER = 100
 _EIGHTH_TURN, FULL_TURN = (
     45,
     360,
-)  # degrees: eighths of a turn, and what is no power, are rather an angle
-# Classes of numbers by what they may be.
+)  # degrees: eighths of a turn, and values that are no power, are probably an angle
+# Classes of numbers by their possible meanings.
 _CHECK_OF_UNIT: dict[str, Callable[[float], bool]] = {
     "@whole": float.is_integer, "@time": lambda number: number < LONG_TIME_S,
     "@power": lambda number: LONG_TIME_S <= number <= MOST_POWER,
@@ -60,14 +60,14 @@ _CHECK_OF_UNIT: dict[str, Callable[[float], bool]] = {
         MOST_POWER < number <= FULL_TURN or (number >= _EIGHTH_TURN and number % _EIGHTH_TURN == 0)
     ),
 }  # fmt: skip
-_YEAR_WORDS = ("ANO", "ANOS")  # nobody writes AÑO so
+_YEAR_WORDS = ("ANO", "ANOS")  # spellings that nobody uses for AÑO
 REMEMBERED_LINES = 500  # lines: each is asked for often while one program is read
 
 
 class Lexeme(NamedTuple):
     """A word in capitals without accents, a number or a sign.
 
-    `source` is how it was written, None where a repair made it; `space` stands before it, None
+    `source` is how it was written, None if a repair made it; `space` stands before it, None
     where the repair's own layout counts.
     """
 
@@ -101,7 +101,7 @@ def _lexemes(line: str) -> tuple[Lexeme, ...]:
         elif text in _SIGNS or text in DASHES:
             kind = text = "-" if text in DASHES else text
         elif lexicon_concept(text[0]):
-            kind, text = WORD, text[0]  # an arrow says a command
+            kind, text = WORD, text[0]  # an arrow is a command
         tokens_found.append(Lexeme(kind, text, match[0], line[end_offset : match.start()]))
         end_offset = match.end()
     return tuple(tokens_found)
@@ -128,7 +128,7 @@ def setup_of(tokens: Sequence[Lexeme]) -> Sequence[Lexeme]:
 
 
 def brackets_end(tokens: Sequence[Lexeme], start: int) -> int:
-    """Return where the brackets end that begin at a token, 0 where they do not."""
+    """Return the end of the brackets that begin at a token, or 0 if they do not end."""
     depth = 0
     for k in range(start, len(tokens)):
         depth += (tokens[k].text == "(") - (tokens[k].text == ")")
@@ -162,7 +162,7 @@ def _speller() -> Speller:
 
 @lru_cache(4000)
 def meanings(word: str) -> tuple[Meaning, ...]:
-    """Return which words of the language a word may mean, the likeliest first."""
+    """Return the possible meanings of a word, the likeliest first."""
     if word == "SI":
         return (Meaning("IF", KNOWN),)
     if concept := lexicon_concept(word):
@@ -224,7 +224,7 @@ def meant_by(word: str) -> str | None:
 
 
 def _in_two_words(word: str) -> str | None:
-    """Return what `moverAdelante` means: two words that say one command."""
+    """Return the meaning of two joined words that form one command: `moverAdelante`."""
     for k in range(2, min(len(word), 24) - 1):
         halves = word[:k].rstrip("_"), word[k:].lstrip("_")
         long_halves = [half for half in halves if len(half) > 2]  # `there` is no THE RE
@@ -255,7 +255,7 @@ class _LineNames(NamedTuple):
     defs: set[str]
     in_brackets: set[str]
     spaced_names: set[tuple[str, ...]]
-    parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets after its own
+    parameters: dict[str, tuple[str, ...]]  # parameters of each DEF, by its name
     names_with_values: set[tuple[str, ...]]  # the name of a DEF, or one and those of its values
     block_starts: dict[str, str]  # instructions that begin blocks, since their ends are there: PARA
     lone_words: set[str]  # words that are an instruction alone
@@ -264,7 +264,7 @@ class _LineNames(NamedTuple):
     open_headers: int  # headers that lack an end
     units_given: set[
         tuple[str, str]
-    ]  # units of what is no time, and the numbers that calls give: % 50
+    ]  # units other than of time, and the numbers they become in calls: % 50
 
 
 @lru_cache(REMEMBERED_LINES)
@@ -463,11 +463,11 @@ class Names:
         self.known_names = KnownNames(
             frozenset(values), instructions, frozenset(names_and_value_counts)
         )
-        # What nobody knows, and is compared, is no reason not to read what is around it.
+        # An unknown compared word does not prevent the reading of the text around it.
         compared_names = {
             name for line in names_of_lines for name in line.compared_words if name not in WORDS
         }
-        word_of_name = {name: self.meant(name, NEAR) for name in compared_names - values}
+        word_of_name = {name: self.find_meaning(name, NEAR) for name in compared_names - values}
         self.unknown_names = {
             name for name, concept in word_of_name.items() if not concept or concept in CALL_WORDS
         }
@@ -495,13 +495,13 @@ class Names:
         return word in self.known_names.values or word in self.defs or word in self.actuators
 
     def is_yes_no(self, word: str) -> bool:
-        """Whether a word is a yes or a no by itself, which nothing is compared with."""
+        """Return whether a word is a yes-no value by itself, without a comparison."""
         return word in ("TRUE", "FALSE") or (
             word in self.sensors and word not in self.number_readings
         )
 
     def meanings(self, word: str) -> tuple[Meaning, ...]:
-        """Return what a word that is no name of the program may mean."""
+        """Return the possible meanings of a word that is not a name of the program."""
         if self.is_name(word):
             return ()
         if word in self.block_of_word:
@@ -537,7 +537,7 @@ class Names:
         sensors = [name for name in self.sensors if name.endswith(f"_{side}")]
         return sensors[0] if len(sensors) == 1 and side in ("L", "R") else ""
 
-    def meant(self, word: str, highest_cost: int = MISSPELT) -> str:
+    def find_meaning(self, word: str, highest_cost: int = MISSPELT) -> str:
         """Return the word of the language that a word means, "" for none or a less likely one."""
         if word in WORDS and word != "SI":
             return word
@@ -549,11 +549,11 @@ class Names:
         )
 
     def is_device_or_end(self, concept: str) -> bool:
-        """Whether a concept is a device of the kit, or the end of any block."""
+        """Return whether a concept is a device of the kit, or the end of a block."""
         return concept in self.sensors or concept in self.actuators or concept == UNNAMED_END
 
     def takes_values(self, word: str) -> bool:
-        """Whether a word is an instruction with values in brackets."""
+        """Return whether a word is an instruction with values in brackets."""
         return word in CALL_WORDS or word in self.actuators or bool(self.parameters.get(word))
 
     def label(self, token: Lexeme) -> str:
@@ -631,7 +631,7 @@ class Names:
 
 
 def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
-    """Return what a line says of words that begin blocks, and how many headers lack an end."""
+    """Return the counts of block words in a line, and of headers without an end."""
     block_of_word: dict[str, str] = {}
     counted_starts: list[str] = []
     open_headers = 0

@@ -1,4 +1,4 @@
-"""What people are told about a text, from what is meant by it: typed values and edits."""
+"""Diagnostics based on the meaning of a text: with values and edits."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.writing import format_line, in_one_line
 
 _ENDLESS_LOOP = "LOOP(FOREVER)"
-# Codes whose sentence names what is right.
+# Codes whose message names the correct form.
 _CODES_WITH_RIGHT = (
     codes.OTHER_LANGUAGE,
     codes.OTHER_SIGN,
@@ -37,7 +37,7 @@ _VALUE_WITH_UNIT = re.compile(r"(\w+)[ \t]+(\w+)(?=[ \t]*[,)])")
 def meant_diagnostics(
     source: Source, diagnostics: Sequence[Diagnostic], recovery: Recovery, is_sure: bool
 ) -> list[Diagnostic]:
-    """Return what is wrong with a text where it is known what is meant by it.
+    """Return the mistakes in a text whose meaning is known.
 
     `is_sure`: by all of it surely; else by the lines that are read.
     """
@@ -64,7 +64,8 @@ def meant_diagnostics(
         (explanation, _diagnostic(explanation, candidate, diagnostics))
         for explanation in explanations
     ]
-    loses_nothing = is_sure or not candidate.is_whole  # what is read of a part gives up nothing
+    # A reading of a part of the text leaves nothing out.
+    loses_nothing = is_sure or not candidate.is_whole
     if loses_nothing and difference(text, candidate.text, recovery.kit).losses:
         kept_flags = (
             []
@@ -113,15 +114,17 @@ def _with_carried_unit(diagnostic: Diagnostic, text: str) -> Diagnostic:
     edits = (Edit(Span(*use.span("unit")), f" {unit_word}") for use in uses)
     start, end = uses[0].span()
     unit_offset = uses[0].start("unit")
-    carried = format_line(lexemes(f"{text[start:unit_offset]} {unit_word}{text[unit_offset:end]}"))
+    carried_text = format_line(
+        lexemes(f"{text[start:unit_offset]} {unit_word}{text[unit_offset:end]}")
+    )
     repair = diagnostic.repair._replace(edits=(*diagnostic.repair.edits, *edits))
-    return diagnostic._replace(values={**diagnostic.values, "carried": carried}, repair=repair)
+    return diagnostic._replace(values={**diagnostic.values, "carried": carried_text}, repair=repair)
 
 
 def _with_rival(
     diagnostic: Diagnostic, explanation: Explanation, other_explanations: Sequence[Explanation]
 ) -> Diagnostic:
-    """Return what is told with its `rival`, which costs about the same, where there is one."""
+    """Return the diagnostics with a `rival` of about the same cost, if there is one."""
     other_fixes = (
         other_explanation.fix
         for other_explanation in other_explanations
@@ -139,7 +142,7 @@ def _with_rival(
 
 
 def _bracket_contents(fix: str, rival_fix: str) -> tuple[str, str]:
-    """Return what the brackets hold in which two texts differ first."""
+    """Return the contents of the brackets in which two texts first differ."""
     common_start = slips.common_lengths(fix, rival_fix)[0]
     start, depth = common_start, 0
     while start > 0 and depth < 1:
@@ -157,11 +160,11 @@ def _diagnostic(
     """Return an explanation as a diagnostic; as the checker has it where that counts the values."""
     is_repetition_sure = (
         explanation.code is not codes.ASKED_AFTER or "BREAK" in candidate.text.upper()
-    )  # how often
+    )  # number of repetitions
     is_sure = candidate.is_applied or (candidate.is_whole and explanation.is_sure)
     repair = Repair(tuple(explanation.edits), is_repetition_sure and is_sure)
     if not candidate.has_sure_blocks and "FOREVER" not in explanation.fix:
-        explanation.block_text = ""  # where it ends is a guess
+        explanation.block_text = ""  # the end of the block is a guess
     code, values = _code_and_values(explanation)
     checker_code = codes.ARGUMENT_COUNT if code is codes.OTHER_CALL else code
     checker_diagnostics = (
@@ -171,13 +174,13 @@ def _diagnostic(
         if explanation.place.start <= diagnostic.span.start < explanation.place.end:
             values = {**diagnostic.values, "fix": explanation.fix}
             return Diagnostic(diagnostic.code, diagnostic.span, values, explanation.place, repair)
-    if code in _CHECKER_CODES[:2]:  # its values are not counted
+    if code in _CHECKER_CODES[:2]:  # the number of its values is wrong
         code, values = codes.OTHER_CALL, explanation.values_as(codes.OTHER_CALL)
     return Diagnostic(code, explanation.span, values, explanation.place, repair)
 
 
 def _code_and_values(explanation: Explanation) -> tuple[Code, dict[str, str]]:
-    """Return the code of the sentence that has a word for what is told, and its values."""
+    """Return the code of the message with a word for the subject, and its values."""
     code, slip = explanation.code, explanation.slip
     if slip and code in _CODES_WITH_RIGHT and not slips.right_of(slip):
         has_bracket = "(" in slips.text_before(slip) + slips.found_in(slip)
@@ -213,7 +216,7 @@ def _moved_lines_diagnostic(
         is_one_line = move.first_line == move.last_line and not move.moves_only_end
         values |= {"row": values.pop("last")} if is_one_line else {"first": str(move.first_line)}
         if move.moves_only_end and move.last_line > len(text.splitlines()):
-            values |= {"open": move.name}  # its end is in no line
+            values |= {"open": move.name}  # no line contains its end
     repair = Repair((trimmed_edit(0, text, moved_text),), candidate.is_applied and not lost_units)
     return diagnostic._replace(values=values, repair=repair)
 
@@ -222,7 +225,7 @@ def _moved_lines_diagnostic(
 
 
 def _unit_word(unit: str) -> str:
-    """Return the word for a unit after the first value of a move, "" where none is."""
+    """Return the word for a unit after the first value of a move, "" if none is."""
     meaning = lexicon_meaning(plain(unit), "unit")
     return next(
         (word for word, way_unit in EXTENTS.items() if meaning and way_unit.unit == meaning[0]), ""
@@ -238,7 +241,7 @@ def _move_pattern(name: str, unit_word: str) -> re.Pattern[str]:
 def _uses_in_bodies(
     written_text: str, meant_text: str
 ) -> Iterator[tuple[Span, re.Match[str], str]]:
-    """Give where a name has a unit in the brackets of a DEF, and the moves that take it, each."""
+    """Yield the places where a parameter of a DEF has a unit, and the moves that use it."""
     for def_match in _DEF_HEADER.finditer(written_text):
         body_match = re.search(rf"(?is)\bDEF\s+{def_match[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant_text)
         for match in _VALUE_WITH_UNIT.finditer(

@@ -25,8 +25,8 @@ _SWITCH_CALL = re.compile(
     r"(?:\([ \t]*(?:(?P<number>\d+(?:\.\d+)?|\.\d+)[ \t]*(?:%[ \t]*)?)?\))?"
 )
 _DEF = re.compile(r"(?i)\bDEF\s+(\w+)")
-_LEAST_WAIT_MS = 100  # of a wait: less are seconds
-_LIKELY_POWERS = range(10, 101)  # of a motor that is switched on: less is rather a time
+_LEAST_WAIT_MS = 100  # shortest wait in ms; a smaller number means seconds
+_LIKELY_POWERS = range(10, 101)  # powers of a running motor; a smaller number means a time
 _PIECE = re.compile(r"[^;{}|\n]+")
 _WORD_PART = re.compile(r"[^\W\d_]+?(?=[A-Z](?:[a-z]|$)|[_.\d]|$)|[^\W\d_]+")
 _SEPARATORS = " \t\r\n;"
@@ -35,7 +35,7 @@ _STOP_WORDS = ("S", "STOP")
 
 
 class _Motor(NamedTuple):
-    """One motor that is set: `side` is left or right."""
+    """A motor setting: `side` is left or right."""
 
     side: str
     power: str
@@ -53,7 +53,7 @@ class _Switch(NamedTuple):
 
 
 def switch_diagnostics(source: Source) -> list[Diagnostic]:
-    """Return what is said about motors switched on and, after a wait, off or the other way.
+    """Return the diagnostics for motors switched on and, after a wait, off or reversed.
 
     Each with its wait is one move, and the stop after the last one needs no word.
     """
@@ -104,7 +104,7 @@ def _are_together(text: str, first: _Switch, second: _Switch) -> bool:
 
 
 def _seconds_text(milliseconds_text: str) -> str:
-    """Return how long a wait lasts: 500 are milliseconds."""
+    """Return the length of a wait in seconds: 500 means milliseconds."""
     return (
         number_text(float(milliseconds_text) / 1000)
         if float(milliseconds_text) >= _LEAST_WAIT_MS
@@ -129,7 +129,7 @@ def _switches(text: str) -> Iterator[_Switch]:
 
 
 def motor_diagnostics(source: Source) -> list[tuple[Diagnostic, Edit]]:
-    """Return what is said about motors that are set one by one, and how the rest is read."""
+    """Return the diagnostics for motors set one by one, with the edits for further reading."""
     text, motor_instructions = source.text, [*_motors(source.text)]
     findings: list[tuple[Diagnostic, Edit]] = []
     spans_used: set[Span] = set()
@@ -173,7 +173,7 @@ def _motors(text: str) -> Iterator[_Motor]:
 
 
 def _side_of(name: str) -> str:
-    """Return the side of the motor that a name says, "" where it says no motor or no side."""
+    """Return the side of the motor in a name, or "" if it has no motor or no side."""
     parts = [plain(part) for part in _WORD_PART.findall(name)]
     sides = {side for side in map(_side, parts) if side}
     is_motor = any(

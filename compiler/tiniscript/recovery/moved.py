@@ -36,21 +36,21 @@ class MovedProgram(NamedTuple):
 
 
 class _Piece(NamedTuple):
-    """An instruction with what stands around it, and the line that it stands in."""
+    """An instruction with the text around it, and its line."""
 
     text: str
     line: int
     word: str
-    name: str  # what follows the word
+    name: str  # the text after the word
 
 
 def reorder_defs(text: str) -> Iterator[MovedProgram]:
-    """Give programs with DEFs and ends where they belong: DEFs at the beginning, or later."""
+    """Yield programs with DEFs and ends moved to valid places: to the beginning, or later."""
     setup_match = _SETUP.match(text)
     start = setup_match.end() if setup_match else 0
     for is_at_start in (True, False):
-        if moved := _reorder(text[start:], is_at_start):
-            yield moved._replace(text=text[:start] + moved.text)
+        if moved_program := _reorder(text[start:], is_at_start):
+            yield moved_program._replace(text=text[:start] + moved_program.text)
 
 
 def _reorder(text: str, is_at_start: bool) -> MovedProgram | None:
@@ -102,7 +102,7 @@ def _join_pieces(pieces: list[_Piece]) -> str:
 
 
 def _outermost_start(pieces: list[_Piece], k: int, start: int = 0) -> int:
-    """Return where the block around a piece begins that none from `start` on is around."""
+    """Return the start of the outermost block around a piece that begins before `start`."""
     depth, outermost = 0, k
     for index in range(start, k):
         if pieces[index].word in BLOCK_ENDS:
@@ -115,7 +115,7 @@ def _outermost_start(pieces: list[_Piece], k: int, start: int = 0) -> int:
 
 
 def _def_ranges(pieces: list[_Piece]) -> Iterator[tuple[int, int]]:
-    """Give the places of each DEF and of its end."""
+    """Yield the start and end of each DEF."""
     for k, piece in enumerate(pieces):
         if piece.word == "DEF" and piece.name:
             ends = (j for j in range(k, len(pieces)) if pieces[j].word == BLOCK_ENDS["DEF"])
@@ -131,7 +131,7 @@ _Move = tuple[int, int, int]
 
 
 def _swapped_ends(pieces: list[_Piece]) -> _Move | None:
-    """The ends of two blocks, of which the outer one ends first."""
+    """Return the ends of two blocks if the outer one ends first."""
     open_words: list[str] = []
     for k, piece in enumerate(pieces):
         if piece.word in BLOCK_ENDS:
@@ -149,7 +149,7 @@ def _late_end(pieces: list[_Piece]) -> _Move | None:
         name = pieces[k].name
         call = next(_call_indexes(pieces, name, k + 1, end), None)
         if call is None or [*_call_indexes(pieces, name, end, len(pieces))]:
-            continue  # it may be meant to begin again
+            continue  # this may be meant as a new beginning
         target = _outermost_start(pieces, call, k + 1)
         if target > k + 1:
             return end, end, target

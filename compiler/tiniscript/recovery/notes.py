@@ -21,13 +21,13 @@ _NOTE_SIGN = re.compile(
     r"(?i)(?:^|(?<=[\s;{}|]))(?P<sign>#+|--+>?|<!--+|/\*+|REM\b)[ \t]*(?=[^\W\d]|[¡¿\"'])"
 )
 _NOTE_END = re.compile(r"[ \t]*(?:\*+/|--+>)\s*$")
-_OPEN_VALUE = re.compile(r"[=<>*+\-,(][ \t]*$")  # a value has begun, and goes on
+_OPEN_VALUE = re.compile(r"[=<>*+\-,(][ \t]*$")  # a value has begun, and continues
 _DEFINE = re.compile(r"(?i)define\b")
 _CALL = re.compile(r"([^\W\d]\w*)\s*\(")
 
 
 def note_diagnostics(source: Source) -> list[Diagnostic]:
-    """Return what is said about the notes of a text that begin with another sign."""
+    """Return the diagnostics for notes that begin with another sign."""
     return [
         Diagnostic(codes.OTHER_NOTE, span, {"found": source[span], "right": corrected_line}, span,
                    Repair(edits, True))
@@ -41,7 +41,7 @@ def note_edits(text: str) -> list[Edit]:
 
 
 def _notes(text: str) -> Iterator[tuple[Span, str, tuple[Edit, ...]]]:
-    """Give the sign of each note, its line as it should be, and the edits that make it so."""
+    """Yield the sign of each note, its corrected line, and the edits."""
     line_start = 0
     for line in text.split("\n"):
         body = split_note(line)[0]
@@ -82,6 +82,6 @@ def _is_note(body: str, match: re.Match[str]) -> bool:
 
 
 def _is_instruction(word: str) -> bool:
-    """Whether a word before a bracket is one of the language, a block's only as it is written."""
+    """Return whether a word before a bracket is of the language; block words only if exact."""
     meant_word = WORDS.get(plain(word)) or WORDS.get(lexicon_concept(plain(word)) or "")
     return word in BLOCK_ENDS or (meant_word is not None and meant_word.is_call)

@@ -1,4 +1,4 @@
-"""Where a diagnostic points: at what its message names, if that stands in its line."""
+"""The place of a diagnostic: that of the text its message names, if it is in the line."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import names_found
 from tiniscript.recovery.meanings import plain
 
-# what they found is a calculated number
+# They found a calculated number.
 _COUNTING_CODES = (codes.ARGUMENT_COUNT, codes.CALL_VALUES, codes.OUT_OF_RANGE)
 _CODES_WITHOUT_PLACE = (
     codes.QUESTION_AFTER,
     codes.NOT_CALLABLE,
-)  # without a place they ask for no change
+)  # without a place, they request no change
 
 
 def point_at_found(diagnostic: Diagnostic, source: Source) -> Diagnostic:
@@ -25,7 +25,7 @@ def point_at_found(diagnostic: Diagnostic, source: Source) -> Diagnostic:
     found_text = diagnostic.values.get("found", "").strip()
     if not found_text or code in _COUNTING_CODES or not names_found(diagnostic):
         return diagnostic
-    if _normalized(source[span]) == _normalized(found_text):
+    if _normalize(source[span]) == _normalize(found_text):
         return diagnostic
     found_span = _nearest_span(found_text, span, source)
     if found_span is None:
@@ -35,18 +35,18 @@ def point_at_found(diagnostic: Diagnostic, source: Source) -> Diagnostic:
     return diagnostic._replace(span=found_span, place=place)
 
 
-def _normalized(text: str) -> str:
+def _normalize(text: str) -> str:
     return " ".join(plain(text).split())
 
 
 def _nearest_span(found_text: str, span: Span, source: Source) -> Span | None:
-    """Return where `found_text` stands in the lines of a place: in it, or else nearest to it."""
+    """Return the span of `found_text` in or nearest to a place."""
     text = source.text
     line_start = max(text.rfind("\n", 0, span.start), text.rfind("\r", 0, span.start)) + 1
     line_end = re.compile(r"[\r\n]|\Z").search(text, max(span.start, span.end))
     assert line_end is not None  # each text has an end
-    line_part = _unaccented(text[line_start : line_end.start()])
-    words = r"\s*".join(map(re.escape, _unaccented(found_text).split()))
+    line_part = _remove_accents(text[line_start : line_end.start()])
+    words = r"\s*".join(map(re.escape, _remove_accents(found_text).split()))
     head = (
         r"(?<!\w)" if found_text[0].isdigit() else r"(?<![^\W\d])" * found_text[0].isalpha()
     )  # V of 2V
@@ -59,13 +59,13 @@ def _nearest_span(found_text: str, span: Span, source: Source) -> Span | None:
 
 
 def _distance(span: Span, other_span: Span) -> tuple[int, int]:
-    """Return how far a place is from another, 0 where it is in it or around it."""
+    """Return the distance between two spans, or 0 if one contains the other."""
     gap = max(0, other_span.start - span.end, span.start - other_span.end)
     return gap, abs(span.start - other_span.start)
 
 
 @lru_cache(16)
-def _unaccented(text: str) -> str:
+def _remove_accents(text: str) -> str:
     """Return a text in capitals without accents, each character in its place."""
     return "".join(
         short if len(short := plain(character)) == 1 else character for character in text

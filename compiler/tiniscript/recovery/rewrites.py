@@ -43,7 +43,8 @@ _EDGE_PATTERNS = {
     "^^": r"\A",
     "$$": r"\Z",
 }
-_EDGE = re.compile(r"\\.|\[\^?\]?(?:\\.|[^]\\])*\]|[$^]")  # or what has none: `\$`, `[^;]`
+# A part of a pattern without a word edge: `\$`, `[^;]`.
+_EDGE = re.compile(r"\\.|\[\^?\]?(?:\\.|[^]\\])*\]|[$^]")
 _MOST_NESTED_BRACKETS = 3  # brackets in a body: `F(RANDOM(1, (X + 1)), 60)`
 _NUMBER_LABEL = re.compile(r"@(?:dec|cat|own|ms|mmss|xn|same)\b|(?<![\w@])\d")
 _BEFORE_VALUE = COMPARISONS | frozenset("(,+-*/%")
@@ -67,7 +68,7 @@ class TokenRow(NamedTuple):
 
 
 class SignRow(NamedTuple):
-    """A row of the table of signs: a pattern of characters, of which no token is made."""
+    """A row of the table of signs: a pattern of characters that form no token."""
 
     pattern: re.Pattern[str]
     replacement: str
@@ -77,7 +78,7 @@ class SignRow(NamedTuple):
 
 
 def cells(table: str) -> Iterator[list[str]]:
-    """Give the cells of each row, which indented lines go on with; of one with choices, of each."""
+    """Yield the cells of each row, including its indented lines; rows with choices yield each."""
     for row in _CONTINUATION.sub(" ", table.strip("\n")).split("\n"):
         if row.strip() and not row.startswith("# "):
             parts = [part.split("¦") for part in re.split("[⟨⟩]", row)]
@@ -108,7 +109,7 @@ def _index_of(is_first: bool) -> RowIndex:
 
 
 def rows_to_try(line: Encoded, is_first: bool) -> Iterator[TokenRow]:
-    """Give the rows that may match a line, in the order of the table."""
+    """Yield the rows that may match a line, in the order of the table."""
     return (token_rows()[k] for k in line.candidate_rows(_index_of(is_first)))
 
 
@@ -165,7 +166,7 @@ def _expand_parts(pattern: str, pieces: Mapping[str, str]) -> str:
 
 
 def _atom(atom: str) -> tuple[str, frozenset[str]]:
-    """Return the pattern of one token, and labels of which there is one, none where it may miss."""
+    """Return the pattern of one token, and its alternative labels; empty if it is optional."""
     if atom in _EDGE_PATTERNS:
         return _EDGE_PATTERNS[atom], frozenset()
     capture = _CAPTURE.match(atom) if len(atom) > 2 else None
@@ -181,7 +182,7 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
     ]
     if labels in (["@all"], ["@cond"]) and quantifier:  # the brackets in it are closed in it
         body = body = _closing_pattern(["@flat"])
-        if labels == ["@cond"]:  # or stand alone
+        if labels == ["@cond"]:  # the condition may stand alone
             group = rf"{_token_pattern(['s('])}{body}*?{_token_pattern(['s)'])}"
             body = rf"(?:{group}|(?!{group}){_token_pattern(labels)})"
         body = f"(?:{body}{quantifier}?)"
@@ -215,7 +216,7 @@ RowIndex = Mapping[str, Sequence[int]]
 
 
 def index_rows(patterns: Mapping[int, Pattern]) -> RowIndex:
-    """Return where the patterns of a table stand that only lines with a label match.
+    """Return the indexes of patterns by the labels that a matching line must have.
 
     It is the label that the fewest patterns need, "" for one that any line may match.
     """
@@ -258,7 +259,7 @@ class Encoded:
         return pattern.label_pattern.finditer(self.text)
 
     def candidate_rows(self, table: RowIndex) -> list[int]:
-        """Return where the patterns of a table stand that the line may match, in their order."""
+        """Return the indexes of patterns that the line may match, in order."""
         return sorted({k for label in self._labels & table.keys() for k in table[label]})
 
     def span(self, match: re.Match[str], name: str | int = 0) -> tuple[int, int]:
@@ -267,7 +268,7 @@ class Encoded:
         return (self.token_at_offset[start], self.token_at_offset[end]) if start >= 0 else (0, 0)
 
     def apply_row(self, row: TokenRow, match: re.Match[str]) -> list[Lexeme] | None:
-        """Return the line after a row, or None where it does not hold here."""
+        """Return the line after a row, or None if it does not hold here."""
         new_tokens: list[Lexeme] = []
         for part in row.replacement:
             replacement = self._replacement(part, match)
@@ -301,22 +302,22 @@ class Encoded:
         return self.tokens[:start] + new_tokens + self.tokens[end:]
 
     def _replacement(self, part: str, match: re.Match[str]) -> list[Lexeme] | None:
-        def captured(name: str) -> list[Lexeme]:
+        def tokens_of(name: str) -> list[Lexeme]:
             start, end = self.span(match, name)
             return self.tokens[start:end]
 
         if part[0] == "$" and len(part) == 2:
-            return captured(part[1])
+            return tokens_of(part[1])
         if part[0] == "&" and len(part) == 2:
-            return [self.translate(token) for token in captured(part[1])]
+            return [self.translate(token) for token in tokens_of(part[1])]
         if part[0] != "@":
             return [make_token(part.strip("'"))]
         function, *names = part[1:].split(":")
-        match_here = _Match(self, [captured(name) for name in names], self.span(match)[0])
+        match_here = _Match(self, [tokens_of(name) for name in names], self.span(match)[0])
         return _FUNCTIONS[function](match_here)
 
     def translate(self, token: Lexeme) -> Lexeme:
-        concept = self.names.meant(token.text, NEAR) if token.kind is WORD else ""
+        concept = self.names.find_meaning(token.text, NEAR) if token.kind is WORD else ""
         concept = concept or "".join(lexicon_meaning(token.text, "number"))
         return make_token(concept) if concept not in ("", token.text) else token
 
@@ -326,7 +327,7 @@ def _numbers(tokens: Sequence[Lexeme]) -> Counter[str]:
 
 
 class _Match(NamedTuple):
-    """What a function of the table gets: the line, its captures, and where the match begins."""
+    """The argument of a table's function: the line, its captures, and the start of the match."""
 
     line: Encoded
     captures: list[list[Lexeme]]
@@ -353,7 +354,7 @@ def _end_of(match: _Match) -> _Replacement:
 
 
 def _decimal(match: _Match) -> _Replacement:
-    """`1,5` is 1.5 where nobody takes it for two values."""
+    """`1,5` is 1.5 if nobody takes it for two values."""
     (whole_token,), (comma_token,), (decimals_token,) = match.captures
     text_before = match.line.tokens[match.start - 1].text if match.start else ""
     most_decimals = 3 if whole_token.text == "0" else 2 if text_before == "=" else 1
@@ -394,7 +395,7 @@ def _seconds_of_minutes(match: _Match) -> _Replacement:
 
 
 def _times_number(match: _Match) -> _Replacement:
-    """`x4` is 4, where no variable is called so."""
+    """`x4` is 4, if no variable is called so."""
     word = match.captures[0][0].text
     return None if match.line.names.is_name(word) else [make_token(word[1:])]
 
@@ -419,7 +420,7 @@ def _limit(is_high: bool, match: _Match) -> _Replacement:
 
 
 def _seconds(match: _Match) -> _Replacement:
-    """So many milliseconds, in seconds."""
+    """Convert milliseconds into seconds."""
     (token,) = match.captures[0]
     return [make_token(f"{float(token.text) / 1000:g}")]
 
@@ -503,7 +504,7 @@ def _sensor_of_side(tokens: Sequence[Lexeme], k: int, names: Names) -> tuple[str
     side_index = 1 if signs[:1] in (("(",), ("[",), ("-",), (".",)) else 0
     is_closed = signs[:1] not in (("(",), ("[",)) or signs[2:3] in ((")",), ("]",))
     name = "_".join((tokens[k].text, *signs[side_index : side_index + 1]))
-    sensor = name if name in names.sensors else names.meant(name)
+    sensor = name if name in names.sensors else names.find_meaning(name)
     count = 2 if not side_index else 4 if signs[0] in "([" else 3
     is_call = not side_index and signs[1:2] == (
         "(",

@@ -11,7 +11,7 @@ more often. `^` is where an instruction begins: a line, or what follows `SI|`, a
 is where one ends. A row of a whole line says `^^` and `$$`. `c=` captures, and `<part>` is a piece
 of PARTS. The cheapest reading is told; 1 is usual.
 Classes: @num @word @val (a value with a name), of which an @amount is no yes or no by itself,
-@cross (X that is no name) @like_CM
+@cross (X that is not a name) @like_CM
 @like_DEG (a slip away) @name @newname @usedname @def, of which a @defw takes
 values and a @step does not, @callw (takes values)
 @device (an actuator) @start (begins an instruction) @close (ends one) @unit; a number that is
@@ -38,7 +38,7 @@ Rows are sorted by what they are about. A row is here since programs of stranger
 it keeps a law, which the heading above it names:
 
 - `sign`: a sign of paper, a telephone or another language means the one of this language.
-- `number`: a number keeps its digits, its sign, its unit and how often it says.
+- `number`: a number keeps its digits, its sign, its unit and how many times it says.
 - `branch`: no question, order or branch of a line is left out of what is offered.
 - `kind`: what is read of one word is read of each of its kind: comparisons, ends, blocks, devices.
 - `two`: of two meanings that cost about the same both are offered.
@@ -58,10 +58,10 @@ PARTS = {
     "end": "BREAK ; ENDIF ; END_LOOP",
 }
 
-# Of a DEF or an end that stands where it may not.
+# A misplaced DEF or end.
 MISPLACED_CODES = {codes.CALL_BEFORE_DEF, codes.CALLS_ITSELF, codes.DEF_NOT_TOP, codes.WRONG_END}
 
-# Slips of one sign, tried where no row reads a line: of one that is missing, of one that is taken
+# Slips of one sign, tried if no row reads a line: of one that is missing, of one that is taken
 # for another, of one too many, and of one after its neighbour.
 CODE_OF_MISSING_SIGN = {"(": codes.MISSING_OPEN, ")": codes.MISSING_CLOSE, ",": codes.MISSING_COMMA}
 MISSING_COST, CONFUSED_COST, EXTRA_COST, SWAPPED_COST = 1.6, 1.1, 1.5, 1.7
@@ -73,12 +73,12 @@ SIGNS_MEANT_BY = {
 # What is on the key of `)`, and beside that of `,`: what stands in the place of the sign may be it.
 CLOSE_KEY, COMMA_KEY = "9", "M"
 
-# What stands for `SI|` and `SB|`: signs, a letter that looks like the bar, or nothing.
+# Replacements of `SI|` and `SB|`: signs, a letter that looks like the bar, or nothing.
 SETUP = (
     r"\s*(?P<head>[Ss][IiÍíBb1Ll])(?P<sep>\s*(?:\|\|+|//|[^\w\s|｜(]{1,3}\|?|[(_]|\||"
     r"(?!IF\([^)]*[<>=])[lLI1](?=\s+[^\W\d]|(?i:[FBLRWM]|IF|LOOP|WHILE|BEEP)\())?)\s*"
 )
-BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # signs that stand for the bar whatever follows
+BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # signs that replace the bar before any text
 
 SIGNS = r"""
 # characters that stand for others, and what is pasted around a program: sign, number, kind, other

@@ -42,9 +42,9 @@ from tiniscript.recovery.writing import (
 )
 from tiniscript.syntax.outline import Failure
 
-MOST_UNREAD_LINES = 5  # lines that nobody can read, after which others are read quickly
+MOST_UNREAD_LINES = 5  # unreadable lines after which others are read quickly
 MOST_ALTERNATIVES = 12  # readings of a line that are tried beside the cheapest ones
-# A line that begins a block whose condition comes at its end, and its last line.
+# First and last line of a block whose condition is at its end.
 _LONE_LOOP_START = re.compile(
     rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make')})\b\s*\{{?\s*$"
 )
@@ -52,7 +52,7 @@ _END_UNTIL = re.compile(rf"\b{words_of('end')}[ _]?{words_of('until')}\b")
 _SETUP_AT_START = re.compile(r"^\s*SI\s*\|\s*(?=\w)", re.IGNORECASE)
 _WHEN_AT_START = re.compile(rf"\s*(S[IB]\s*\|)?\s*{words_of('whenever')}\b")
 
-# What begins a block or ends one, as far as a word says it.
+# Words that begin or end a block.
 _BLOCK_WORDS = frozenset((*BLOCK_ENDS, *WORD_OF_END, "ELSE", "ELSEIF", "FOREVER", "UNTIL"))
 _BLOCK_START_KINDS = ("count", "each", "every", "unless", "when", "end", "repeat", "main")
 
@@ -60,13 +60,15 @@ Mistakes = Callable[[str], Sequence[Code]]  # the codes of a program's mistakes
 
 
 class LineChange(NamedTuple):
-    """What lines `first_line` to `last_line`, from 0, become by their rewrites; most stay as is."""
+    """The rewritten form of lines `first_line` to `last_line`, counted from 0; most stay
+    unchanged.
+    """
 
     first_line: int
     last_line: int
     text: str
     steps: Sequence[Step]
-    is_sure: bool  # else it is a guess
+    is_sure: bool  # otherwise it is a guess
 
 
 class Candidate(NamedTuple):
@@ -105,7 +107,7 @@ class _TextLine:
 
 
 class Recovery:
-    """What may have been meant by a wrong program; each line of it is read once.
+    """The possible meanings of a wrong program; each line of it is read once.
 
     What a line may be read as (`choices`) gets its blocks and is asked about (`candidate`), until
     `chosen_candidate` has a program without mistakes.
@@ -170,7 +172,7 @@ class Recovery:
             if body == line.body and is_right(lexemes(body), names):
                 continue
             for row in rewrites.sign_rows():
-                for _ in row.pattern.findall(body):  # a step each, which is told at its place
+                for _ in row.pattern.findall(body):  # one step for each, reported at its place
                     new_body = row.pattern.sub(row.replacement, body, count=1)
                     old_tokens, new_tokens = lexemes(body), lexemes(new_body)
                     lost_defs = names.defs & ({*texts(old_tokens)} - {*texts(new_tokens)})
@@ -186,7 +188,7 @@ class Recovery:
             line.note = note + line.note
 
     def has_signs(self, offset: int) -> bool:
-        """Whether rewrites of signs alone make the line right that a place is in."""
+        """Return whether rewriting only signs makes the line at an offset right."""
         line_number = self.program.count("\n", 0, offset)
         lines_near = (
             line
@@ -209,7 +211,7 @@ class Recovery:
         until_pattern = re.compile(rf"^\s*{words_of('until')}\b", re.MULTILINE)
         text = plain(self.program)
         if not until_pattern.search(text) or _END_UNTIL.search(text):
-            return  # there is none, or it is taken for a block
+            return  # there is no candidate, or the words are read as a block
         is_do_line = False
         for line in self.lines:
             text_above = next(
@@ -319,7 +321,7 @@ class Recovery:
         return [*candidates.values()][1:]
 
     def candidate(self, readings: list[Reading], has_blocks: bool) -> Candidate | None:
-        """Return the program of some readings, None where it is no better than the text."""
+        """Return the program of some readings, None if it is no better than the text."""
         matching = self.match_blocks(readings if has_blocks else ())
         if matching is None:
             return None
@@ -350,7 +352,7 @@ class Recovery:
         return sorted(costlier_readings, key=lambda it: it[0])
 
     def choices(self) -> Iterator[tuple[list[Reading], bool]]:
-        """Give what each line may be read as; at last without the blocks of a program."""
+        """Yield the readings of each line; finally those without the program's blocks."""
         cheapest = [line.reading for line in self.lines]
         yield cheapest, True
         for _, k, rival in self.rivals()[:MOST_ALTERNATIVES]:
@@ -361,9 +363,7 @@ class Recovery:
             for line, reading in zip(self.lines, sure_readings, strict=True)
             if reading.items is None
         )
-        if not any(
-            map(self.may_be_of_block, unread_lines)
-        ):  # they are instructions in their blocks
+        if not any(map(self.may_be_of_block, unread_lines)):  # they are instructions inside blocks
             yield sure_readings, True
         yield sure_readings, False
         has_blocks = [
@@ -377,16 +377,16 @@ class Recovery:
             yield without_blocks, False
 
     def may_be_of_block(self, line: _TextLine) -> bool:
-        """Whether a line that nobody can read may begin a block, or end one."""
+        """Return whether an unreadable line may begin or end a block."""
         return any(
             word in BRACES
             or lexicon_meaning(word, *_BLOCK_START_KINDS)
-            or self.names.meant(word, NEAR) in _BLOCK_WORDS
+            or self.names.find_meaning(word, NEAR) in _BLOCK_WORDS
             for word in texts(lexemes(line.body))
         )
 
     def match_blocks(self, readings: Sequence[Reading]) -> Matching | None:
-        """Return what all blocks of the lines need, or None where they fit in no way."""
+        """Return the ends that all blocks of the lines need, or None if they never fit."""
         lines_read = [
             Line(line.indent, _WHEN_AT_START.match(line.source.upper()) is not None, reading)
             for line, reading in zip(self.lines, readings, strict=False)
@@ -408,7 +408,7 @@ class Recovery:
 
 
 def _may_be_mistyped_bracket(old_tokens: Sequence[Lexeme], new_tokens: Sequence[Lexeme]) -> bool:
-    """Whether a digit may be meant for the bracket that is missing after it: `DISTANCE < 209`."""
+    """Return whether a digit may be a mistyped bracket: `DISTANCE < 209`."""
     old_texts = texts(old_tokens)
     return old_texts.count("(") > old_texts.count(")") and any(
         sign.text == ")"
@@ -419,7 +419,7 @@ def _may_be_mistyped_bracket(old_tokens: Sequence[Lexeme], new_tokens: Sequence[
 
 
 def _open_brackets(tokens: Sequence[Lexeme]) -> int:
-    """Return how many brackets are not closed."""
+    """Return the number of unclosed brackets."""
     depth = 0
     for sign in texts(tokens):
         depth = depth + 1 if sign == "(" else max(0, depth - (sign == ")"))
@@ -435,7 +435,7 @@ def _rank_of(candidate: Candidate) -> tuple[bool, bool]:
 
 
 def _count_kept(reading: Reading) -> int:
-    """Return how many tokens of the text are in a reading: one with fewer is no equal rival."""
+    """Return the number of the text's tokens in a reading; one with fewer is no equal rival."""
     return sum(token.source is not None for token in reading.tokens)
 
 

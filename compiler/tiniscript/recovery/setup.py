@@ -1,4 +1,4 @@
-"""How a program begins: what stands for its `SI|`, or above it."""
+"""The beginning of a program: replacements of its `SI|`, and text above it."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ from tiniscript.recovery.meanings import (
 from tiniscript.recovery.writing import split_note
 from tiniscript.syntax.operators import COMPARISONS
 
-SEAL = "~"  # begins a checksum: what has one is copied again
+SEAL = "~"  # begins a checksum: such a line is copied again
 _MOST_CHARACTERS = 4_000  # characters of a first line that are read
-_MOST_START_WORDS = 8  # words that say how a program starts
+_MOST_START_WORDS = 8  # words about the start of a program
 _CALL = re.compile(r"(?i)\s*(?:[FBLRMW]|BEEP)\s*\(")
 _SETUP, _LINE = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
 _HEAD_IN_WORDS = re.compile(r"(?i)(s[ií]|sb)[ \t]*[,.:!]?[ \t]+(?=[^\W\d])")
@@ -47,7 +47,7 @@ Check = Callable[[str], Sequence[Diagnostic]]
 def beginning_diagnostics(
     source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
-    """Return what is said about a text by the way that it begins: with it the rest is read."""
+    """Return the diagnostics for the beginning of a text, with which the rest is read."""
     setup_problem = setup_diagnostic(source.text)
     if setup_problem and setup_problem.repair:
         diagnostics_after = check(apply_edits(source.text, setup_problem.repair.edits))
@@ -62,7 +62,7 @@ def beginning_diagnostics(
 
 
 def wrong_setup_word(source: Source, diagnostics: Sequence[Diagnostic]) -> Diagnostic | None:
-    """Return what is said about a word before the bar that is no `SI`."""
+    """Return the diagnostics for a word before the bar other than `SI`."""
     first_lexemes = lexemes(source.text[:_MOST_CHARACTERS].lstrip().partition("\n")[0])[:1]
     has_setup = SEAL in source.text or (first_lexemes and first_lexemes[0].text in ("SI", "SB"))
     setup_diagnostics = (
@@ -72,7 +72,7 @@ def wrong_setup_word(source: Source, diagnostics: Sequence[Diagnostic]) -> Diagn
 
 
 def setup_diagnostic(text: str) -> Diagnostic | None:
-    """Return what is said about the beginning of a program where something stands for its `SI|`."""
+    """Return the diagnostic for a program that begins with something instead of `SI|`."""
     start = len(text) - len(text.lstrip())
     line = text[start:].split("\n", 1)[0]
     body = split_note(line)[0]
@@ -100,7 +100,7 @@ def setup_diagnostic(text: str) -> Diagnostic | None:
 
 
 def _frame_diagnostic(source: Source) -> Diagnostic | None:
-    """Return what is said about `void setup() { … }`, in which a sketch has its beginning.
+    """Return the diagnostic for `void setup() { … }` at the beginning of a sketch.
 
     What is in its brackets begins the program; `void loop()` after it is a loop.
     """
@@ -134,7 +134,7 @@ def _frame_repair(source: Source, head: re.Match[str], close_offset: int) -> Dia
 
 
 def _spoken_diagnostic(source: Source, kit: Kit) -> Diagnostic | None:
-    """Return what is said about a first line that says how it starts, then instructions, in words.
+    """Return the diagnostic for a first line that describes the start, then instructions in words.
 
     `SI go forward 2 seconds, then stop` is `SI|F(2, 80);S`: after SI comes the bar. `start and go`
     is SI, too, and `when the button is pressed` is SB.
@@ -175,7 +175,7 @@ def _start_in_words(words: Sequence[Lexeme], names: Names) -> tuple[str, int]:
     """Return the start that the first words of a line say, and how many they are."""
     if not words:
         return "", 0
-    if names.meant(words[0].text) == "START":
+    if names.find_meaning(words[0].text) == "START":
         return "SI", 1
     first_words = words[:_MOST_START_WORDS]
     button_positions = [
@@ -185,7 +185,7 @@ def _start_in_words(words: Sequence[Lexeme], names: Names) -> tuple[str, int]:
     if not button_positions or not press_positions or "BUTTON" in names.sensors:
         return "", 0
     word_count = max(button_positions[0], press_positions[0]) + 1
-    actions = {names.meant(it.text) for it in first_words[:word_count]} & {
+    actions = {names.find_meaning(it.text) for it in first_words[:word_count]} & {
         *CALL_WORDS,
         "UNTIL",
         "S",
@@ -195,7 +195,7 @@ def _start_in_words(words: Sequence[Lexeme], names: Names) -> tuple[str, int]:
 
 
 def _begins_instruction(text_after: str, sign: str, is_separate: bool) -> bool:
-    """Whether an instruction begins, and no condition; a sign before it says that by itself."""
+    """Return whether an instruction begins, not a condition; a sign before it is enough."""
     match = re.match(r"([^\W\d]\w*)\s*(\(|=|;|$)?", text_after)
     if match is None:
         return False
@@ -208,7 +208,7 @@ def _begins_instruction(text_after: str, sign: str, is_separate: bool) -> bool:
 
 
 def _assignments_before_setup(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return what is said about variables that are set above `SI|`, with a type before them.
+    """Return the diagnostics for typed variables assigned above `SI|`.
 
     `int vel = 70;` above `SI|F(2, vel)` is `SI|vel = 70;F(2, vel)`: SI| comes before them.
     """

@@ -1,4 +1,4 @@
-"""A share of what a sensor sees, `LIGHT_L > 80%`: a sensor goes from 0 up to a number of its own.
+"""Shares of a sensor's range, `LIGHT_L > 80%`: each sensor has its own maximum.
 
 The number that the share is and the number without its sign are both shown, and none is made.
 """
@@ -25,7 +25,7 @@ _COMPARING_KINDS = ("less", "more", "than", "is", "equal", "to", "extra", "or", 
 
 
 def find_shares(source: Source, kit: Kit) -> tuple[list[Diagnostic], list[Edit]]:
-    """Return what is said about sensors that are compared with a number in percent.
+    """Return the diagnostics for sensors compared with a percentage.
 
     The rest is read with the shares.
     """
@@ -79,7 +79,7 @@ def _shares_of(body: str, line_start: int, names: Names) -> Iterator[tuple[Diagn
 
 
 def _percent_token_count(tokens: Sequence[Lexeme], k: int, names: Names) -> int:
-    """Return how many tokens say percent, 0 where `%` stands between two values, as in `7 % 2`."""
+    """Return the number of tokens that mean percent, or 0 for a remainder such as `7 % 2`."""
     text, next_text = (tokens[n].text if n < len(tokens) else "" for n in (k, k + 1))
     if lexicon_meaning(text, "by") and lexicon_meaning(next_text, "number") == ("100",):
         return 2
@@ -101,7 +101,7 @@ def _compared_index(tokens: Sequence[Lexeme], k: int) -> int:
 
 def _sensor(word: str, names: Names) -> Device | None:
     """Return the sensor that a word names, or one of those that it may mean."""
-    candidates = [word, names.meant(word, NEAR)]
+    candidates = [word, names.find_meaning(word, NEAR)]
     candidates += sensors_of(word, names) if lexicon_meaning(word, "stem", "ahead") else []
     return next(
         (names.number_readings[name] for name in candidates if name in names.number_readings), None

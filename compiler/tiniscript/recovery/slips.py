@@ -1,4 +1,4 @@
-"""Slips: how an instruction differs from what it becomes, its code, and what a message says of it.
+"""Slips: the differences of an instruction from its repair, their codes, and message values.
 
 A message names few things of a slip: `NAMES_OF_CODE` says which, `_VALUE_GAPS` how each is written.
 Knows no block and no sentence of any language.
@@ -32,7 +32,7 @@ from tiniscript.recovery.writing import format_line
 from tiniscript.syntax.lexer import NUMBER, WORD
 
 BLOCK_WORDS = frozenset((*BLOCK_ENDS, *WORD_OF_END, "ELSE", "ELSEIF", *BRACES))
-# What messages name, and what they offer: of two codes `dedupe` asks for `found`, too.
+# Values of messages, and their offers: `dedupe` also asks for `found` of two codes.
 _CODES_BY_NAMES: dict[tuple[str, ...], tuple[Code, ...]] = {
     ("fix",): (
         codes.DECIMAL_COMMA, codes.SEMICOLON_INSIDE, codes.ARGUMENT_COUNT, codes.UNTIL_ALONE,
@@ -78,12 +78,12 @@ class InstructionChange(NamedTuple):
 
 
 class Slip(NamedTuple):
-    """Where a rewrite changes `step_tokens` into `step_result` first: from `start` on,
+    """The first change of a rewrite from `step_tokens` to `step_result`: from `start` on,
     `found_tokens` becomes `right_tokens`.
 
     With all rewrites `old_instructions`, of one instruction or several, becomes `new_instructions`.
     `shown_instructions` are the instructions to show of the `line_tokens` that it becomes, and
-    where there are more than before, the first one ends at `first_length` in `new_instructions`.
+    if there are more than before, the first one ends at `first_length` in `new_instructions`.
     """
 
     code: Code
@@ -100,19 +100,19 @@ class Slip(NamedTuple):
 
 
 def message_values(slip: Slip, code: Code) -> dict[str, str]:
-    """Return what a message with this code says of a slip."""
+    """Return the values of a message with this code about a slip."""
     return {name: _VALUE_GAPS[name](slip) for name in NAMES_OF_CODE.get(code, ())}
 
 
 def slip_of(change: InstructionChange, code: Code, step: Step | None) -> Slip:
-    """Return what is wrong with an instruction that is told with a code, of a rewrite if of one."""
+    """Return the slip of an instruction with a code, and of a rewrite if there is one."""
     has_own_step = step is not None and code is not codes.OTHER_NOTE
     old_tokens, new_tokens = (
         (step.old_tokens, step.new_tokens)
         if step and has_own_step
         else (change.old_tokens, change.new_tokens)
     )
-    if "WHEN" in texts(change.new_tokens):  # what the steps took for an IF
+    if "WHEN" in texts(change.new_tokens):  # the steps replaced the WHEN by an IF
         old_tokens, new_tokens = (
             [token._replace(text="WHEN") if token.text == "IF" else token for token in line]
             for line in (old_tokens, new_tokens)
@@ -156,7 +156,7 @@ def slip_of(change: InstructionChange, code: Code, step: Step | None) -> Slip:
 
 
 def code_of(change: InstructionChange) -> tuple[Code, Step | None]:
-    """Return with which code a change is told, and the rewrite that it is told of."""
+    """Return the code of a change, and the rewrite that it concerns."""
     _, _, steps, old_tokens, new_tokens = change
     lost_texts = Counter(texts(old_tokens)) - Counter(texts(new_tokens))
     added_words = {*texts(new_tokens)} - {*texts(old_tokens)}
@@ -171,7 +171,7 @@ def code_of(change: InstructionChange) -> tuple[Code, Step | None]:
         and added_words & {*WORD_OF_END}
         and any(lexicon_meaning(text, "end") for text in lost_texts)
     ):
-        return codes.END_ALONE, None  # it is no word too many: it ends a block
+        return codes.END_ALONE, None  # the word is not superfluous: it ends a block
     if code is codes.MISSING_OPEN and step and _translated_word(step):
         return codes.OTHER_LANGUAGE, step
     return code, step
@@ -286,7 +286,7 @@ def _foreign_words(slip: Slip) -> Slip:
 
 
 def _is_counting(token: Lexeme) -> bool:
-    """Whether a word says that something is done several times: FOR, and EACH after it."""
+    """Return whether a word means repetition: FOR, and EACH after it."""
     return meant_by(token.text) == "LOOP" or bool(lexicon_meaning(token.text, "count", "each"))
 
 
@@ -357,7 +357,7 @@ _EXACT_SLIPS: dict[Code, Callable[[Slip], Slip]] = {
 
 
 def found_in(slip: Slip) -> str:
-    """Return what is wrong, as it was written: all of the instruction where a sign is missing."""
+    """Return the wrong text as written: the whole instruction if a sign is missing."""
     code, found_tokens = slip.code, slip.found_tokens
     if _is_between_words(slip):
         return text_of(slip.step_tokens[slip.start : slip.start + 1])
@@ -380,24 +380,24 @@ def found_in(slip: Slip) -> str:
 
 
 def _is_between_words(slip: Slip) -> bool:
-    """Whether something is missing between two words, which are named."""
+    """Return whether something is missing between two words, which are named."""
     is_between = slip.code in (codes.MISSING_VALUE, codes.MISSING_SIGN)
     return is_between and not slip.found_tokens and slip.start > 0
 
 
 def right_of(slip: Slip) -> str:
-    """Return how that is written in TiniScript."""
+    """Return the correct form in TiniScript."""
     changed_text = _changed_text(slip)
     right_text = format_line(slip.right_tokens) or changed_text
     right_text = (
         changed_text if right_text == UNNAMED_END and changed_text in WORD_OF_END else right_text
-    )  # of a block, whose end is known
+    )  # the end of this block is known
     if slip.code is codes.OTHER_LANGUAGE:
         right_text = _word_in(right_text)
     if slip.code is codes.OTHER_SIGN and right_text.split()[-1:] in (["AND"], ["OR"]):
         right_text = right_text.split()[
             -1
-        ]  # `A O B > 5`: what A lacks before it is no part of the sign
+        ]  # `A O B > 5`: text missing after A is not a part of the sign
     return f"{right_text} )" if right_text.endswith("(") else right_text
 
 
@@ -406,11 +406,11 @@ def _word_in(text: str) -> str:
     heads = (part for part in text.split(";") if re.split(r"\W", part)[0] in BLOCK_WORDS)
     text = re.split("[()]", next(heads, text), maxsplit=1)[0]
     text = next((word for word in text.split() if word in WORDS), text)
-    return text if text in WORDS else meant_by(text) or text  # of `bot.forward`
+    return text if text in WORDS else meant_by(text) or text  # the last part of `bot.forward`
 
 
 def text_before(slip: Slip) -> str:
-    """Return what is right of the instruction before the slip."""
+    """Return the correct part of the instruction before the slip."""
     if _is_between_words(slip):
         return text_of(slip.step_tokens[slip.start - 1 : slip.start])
     common_text = text_of(
@@ -440,13 +440,13 @@ def _changed_text(slip: Slip) -> str:
 
 
 def fix_of(slip: Slip) -> str:
-    """Return what is offered: those instructions, or `SI|` alone where its sign was another."""
+    """Return the offer: those instructions, or only `SI|` if its sign was wrong."""
     right = right_of(slip) if slip.code is codes.OTHER_SIGN else ""
     return f"{right}|" if right in ("SI", "SB") else _changed_text(slip)
 
 
 def _word(slip: Slip) -> str:
-    """Return the word that is told of: the one before its brackets, else the first one."""
+    """Return the word in question: the one before its brackets, or the first one."""
     word = _WORD_GAPS.get(slip.code, _first_word)(slip)
     is_def = slip.code is codes.EMPTY_BRACKETS and "DEF" in texts(slip.line_tokens)
     return f"DEF {word}" if is_def else word
@@ -509,7 +509,7 @@ _WORD_GAPS: dict[Code, Callable[[Slip], str]] = {
 
 
 def _usage(slip: Slip) -> str:
-    """Return how the word is written, nothing for one of the program or a DEF: names of its own."""
+    """Return the usage of the word; "" for names of the program."""
     word = _word(slip)
     return WORDS[word].usage if word in WORDS and word != "DEF" else ""
 
@@ -526,7 +526,7 @@ def _letter(slip: Slip) -> str:
 
 
 def _usage_if_longer(slip: Slip) -> str:
-    """Return the usage, where what is offered has more numbers than were written."""
+    """Return the usage if the offer has more numbers than were written."""
     number_count, needed_count = (
         sum(token.kind is NUMBER for token in instructions_tokens)
         for instructions_tokens in (slip.old_instructions, slip.new_instructions)
@@ -546,7 +546,7 @@ _VALUE_GAPS: dict[str, Callable[[Slip], str]] = {
 
 
 def common_lengths(old_items: Sequence[object], new_items: Sequence[object]) -> tuple[int, int]:
-    """Return how much two texts, or two lines, have alike at their beginning and at their end."""
+    """Return the lengths of the common start and end of two sequences."""
     most_items = min(len(old_items), len(new_items))
     head = next((k for k in range(most_items) if old_items[k] != new_items[k]), most_items)
     most_items -= head
@@ -558,7 +558,7 @@ def common_lengths(old_items: Sequence[object], new_items: Sequence[object]) -> 
 def first_difference(
     old_tokens: Sequence[Lexeme], new_tokens: Sequence[Lexeme]
 ) -> tuple[int, Sequence[Lexeme], Sequence[Lexeme]]:
-    """Return where two lines differ first, and what stands there in each of them."""
+    """Return the first place where two lines differ, and both contents."""
     old_texts = [
         token.text if (token.source or "").isascii() else token.source for token in old_tokens
     ]
@@ -570,7 +570,7 @@ def first_difference(
 
 
 def instructions(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
-    """Return the instructions of a line; what is between two separators is one.
+    """Return the instructions of a line, split at separators.
 
     A separator in brackets parts nothing, where all brackets of the line are closed.
     """

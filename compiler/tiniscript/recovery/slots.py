@@ -35,15 +35,16 @@ from tiniscript.recovery.meanings import (
 )
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-_LEAST_STEPS = 10  # so many are as many centimetres
-LEAST_MILLISECONDS = 100  # no wait is so many seconds
+_LEAST_STEPS = 10  # from this many steps on, one step is one centimetre
+LEAST_MILLISECONDS = 100  # no wait has so many seconds
 _SIDES = ("left", "right")
-_UNIT_OF_LETTER = {"T": "s", "P": "%", "V": "%"}  # how a value of a move is called, in one letter
+# One-letter names of a move's values, with their units.
+_UNIT_OF_LETTER = {"T": "s", "P": "%", "V": "%"}
 _IGNORED_SIGNS = frozenset("(),:=.-_") | {"->", "%"}
 
 
 class FilledCall(NamedTuple):
-    """A call in tokens; `times` is how often, where words say so. `is_sure`: nothing is guessed.
+    """A call in tokens; `times` is its number in words. `is_sure`: nothing is guessed.
 
     `samples` are the values that no word says, with their units: `80 %`.
     """
@@ -63,14 +64,14 @@ class _Value(NamedTuple):
 
     @property
     def number(self) -> float:
-        """Of a name none: no comparison with it holds."""
+        """Return the number, or NaN for a name, so that no comparison is true."""
         return nan if self.text.isidentifier() else float(self.text)
 
 
 def fill_call(
     words: Sequence[Lexeme], names: Names, has_until: bool, is_instruction: bool = False
 ) -> FilledCall | None:
-    """Return the call that some words say, or None where one of them has no place in it.
+    """Return the call that some words say, or None if one of them has no place in it.
 
     `is_instruction`: it may have no value of its own.
     """
@@ -113,7 +114,7 @@ class _Reader:
         return True
 
     def _has_one_group(self) -> bool:
-        """Whether nothing follows the brackets of the call; what is odd in them is a guess."""
+        """Return whether nothing follows the brackets of the call; odd contents make it a guess."""
         signs = [word.text for word in self.words]
         for k, (sign, next_sign) in enumerate(pairwise([*signs, ""])):
             tokens_after = self.words[k + 1 :]
@@ -123,11 +124,11 @@ class _Reader:
                 return False
             is_odd_comma = sign == "," and next_sign in (",", ")")
             has_second_group = sign == "(" and k > 2 and "(" in signs[:k]
-            is_call = sign == "(" and self.names.meant(next_sign, NEAR) in CALL_WORDS
+            is_call = sign == "(" and self.names.find_meaning(next_sign, NEAR) in CALL_WORDS
             if (
                 is_odd_comma
                 or has_second_group
-                or (is_call and self.names.meant(signs[0], NEAR) != "M")
+                or (is_call and self.names.find_meaning(signs[0], NEAR) != "M")
             ):
                 self.is_sure = False
         return True
@@ -136,7 +137,7 @@ class _Reader:
         return self.words[k].text if 0 <= k < len(self.words) else ""
 
     def _value_of_words(self, k: int) -> tuple[float, int] | None:
-        """Return the number that words say, where they can say nothing else, and what is next."""
+        """Return the number that words unambiguously mean, and the next index."""
         token, next_text = self.words[k], self.text_at(k + 1)
         if token.kind is NUMBER:
             is_dotted = token.text[0] == "." and self.text_at(k - 1) not in ("(", ",")
@@ -173,7 +174,7 @@ class _Reader:
         return number, k
 
     def _read_number(self, k: int) -> int | None:
-        """Read a number with its unit; return where to read on, None where none is here."""
+        """Read a number with its unit; return where to read on, None if none is here."""
         number_and_next = self._value_of_words(k)
         if number_and_next is None:
             return None
@@ -226,7 +227,7 @@ class _Reader:
         if is_minus and (previous_text in ("(", ",") or self._is_glued(k)):
             is_minus_of_move = self.command in MOVES and not self.is_reversed and not self.values
             self.is_sure, self.is_reversed = False, True
-            return k + 1 if is_minus_of_move else None  # nobody drops a sign
+            return k + 1 if is_minus_of_move else None  # a sign is never dropped
         if sign not in _IGNORED_SIGNS or (sign == "=" and not self.next_unit):
             return None
         if sign == "," and self.next_unit and previous_text != ",":
@@ -237,7 +238,7 @@ class _Reader:
         return k + 1
 
     def _is_glued(self, k: int) -> bool:
-        """Whether a sign belongs to what is after it, not to what is before it: `R -1 50`."""
+        """Return whether a sign belongs to the text after it: `R -1 50`."""
         return bool(self.words[k].space) and self.words[k + 1].space == ""
 
     def _read_word(self, k: int) -> int | None:
@@ -258,7 +259,7 @@ class _Reader:
             self.next_unit = _UNIT_OF_LETTER[word]
         elif lexicon_meaning(word, "turn"):
             if self.command in ("F", "B") and self.values:
-                return None  # another instruction
+                return None  # a different instruction
             self.is_turn = True
             self.command = None if self.command == "F" else self.command
         elif self._names_unit(word, value_meaning):
@@ -282,7 +283,7 @@ class _Reader:
         ):  # `pita 1 segundo a 440`
             self.values.append(_Value(note[0], "Hz"))
             self.is_sure = self.is_sure and len(word) > 1  # `C`
-        elif names.meant(word) == "FOREVER" and self.command in MOVES and self._is_worded():
+        elif names.find_meaning(word) == "FOREVER" and self.command in MOVES and self._is_worded():
             self._add_value("FOREVER", "s")
             self.is_sure = False
         elif lexicon_meaning(word, "power") and self.command:
@@ -305,7 +306,7 @@ class _Reader:
         return k + 1
 
     def _is_worded(self) -> bool:
-        """Whether words say a move, without values and brackets: `avanzar siempre`."""
+        """Return whether a move is in words, without values and brackets: `avanzar siempre`."""
         return not self.values and all(word.text != "(" for word in self.words)
 
     def _names_unit(self, word: str, value_meaning: tuple[str, ...]) -> bool:
@@ -351,7 +352,7 @@ class _Reader:
             return None
         slots = self._fill_slots(values, word.arguments, has_until)
         if not slots or (word.text == "M" and len(values) == 1):
-            return None  # of which motor?
+            return None  # the motor is ambiguous
         texts: list[str] = []
         samples: list[str] = []
         for value, argument in zip(slots, word.arguments, strict=True):
@@ -363,7 +364,7 @@ class _Reader:
         return FilledCall(tokens, self.cost, self.is_sure, self.times, tuple(samples))
 
     def _own_value(self, argument: Argument) -> str:
-        """Return what a program has for an argument, "" for nothing or more than one thing.
+        """Return the program's own value for an argument, or "" if there is not exactly one.
 
         The one variable that is called so, VELOCIDAD for `F(2)`, else what all other calls give.
         """
@@ -452,7 +453,7 @@ class _Reader:
             is_long_time = values[k].number >= LONG_TIME_S and values[k].unit is None
             if is_long_time and arguments[slot_k].unit == "s" and len(arguments) > 1:
                 if self.words[0].text not in WORDS:
-                    return None  # of another language: rarely seconds, as in `move(50, 50)`
+                    return None  # values of another language are rarely seconds: `move(50, 50)`
                 self.is_sure = False
         if None in slots:
             if any(value.unit == "%" and value.number < LONG_TIME_S for value in values):

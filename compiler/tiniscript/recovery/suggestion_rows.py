@@ -1,4 +1,4 @@
-"""What is told where no repair is read: of words beside instructions, and of what was found.
+"""Suggestions if no repair is read: for words beside instructions, and for the text found.
 
 `SUGGESTIONS` has these columns, and the first row that holds is told:
 
@@ -17,7 +17,7 @@ behind it:
 3. What was found by who checks a text, TS015, before the instruction that it is in; also @strange
    (a word that nobody knows begins it), and @TS033_PING, with what stands there. `usage` has more.
 
-Classes of the words of 1 and 2: @number (in words, too), @often (a number that says how often),
+Classes of the words of 1 and 2: @number (in words, too), @often (a number of repetitions),
 @percent (one that says a power), @in_s (a unit of time), @other (the other way), @paced (another
 pace than its power), @told (says nothing that the instruction does not), @quote, @mark (what is
 written below a line that is meant again), @dots, @ask (a word of the language that asks) and

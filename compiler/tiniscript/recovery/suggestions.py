@@ -1,4 +1,4 @@
-"""Suggestions: what is said about words that no repair reads surely.
+"""Suggestions: messages about words that no repair reads with certainty.
 
 Reads each instruction of a line with the words after it, and words without one, by the rows of
 `suggestion_rows`; `matching_rows` finds them, for `usage`, too. Knows no row and no sentence of any
@@ -61,7 +61,7 @@ _NOTE_CODES = (codes.WORDS_AFTER, codes.SEVERAL_INSTRUCTIONS)
 _UNIT_MEANINGS = (("s",), ("cm",), ("°",), ("%",), ("Hz",))
 _PROSE_SIGNS = frozenset((",", ".", ":", "!", "\u00a1", *QUOTES))
 _MOST_REPEATED = 8  # instructions that an example repeats
-_MOST_LINES_BACK = 40  # lines and instructions that are looked at for what is done again
+_MOST_LINES_BACK = 40  # lines and instructions that are searched for repetitions
 _BODY_STARTS = (*BLOCK_ENDS, "ELSE", "ELSEIF")
 # An instruction of a line, and the bar of a `SI|`.
 _INSTRUCTION_AND_BAR = re.compile(r"((?:[^;{}|]|\|\|)+)(\|?)")
@@ -73,8 +73,9 @@ _NEEDLESS_SIGNS = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
 
 
 class SuggestionRow(NamedTuple):
-    """A row: its code is None where it is told with that which was found, and `conditions` says
-    where."""
+    """A row: its code is None if it extends the original message, and `conditions` limit its
+    places.
+    """
 
     pattern: rewrites.Pattern
     code: Code | None
@@ -84,7 +85,7 @@ class SuggestionRow(NamedTuple):
 
 
 class Subject(Protocol):
-    """What rows speak of: what comes first, and the tokens of the `row_tokens` after it."""
+    """The subject of rows: the first word, and the `row_tokens` after it."""
 
     text: str
     names: Names
@@ -106,7 +107,7 @@ class Subject(Protocol):
 
 
 class Suggestion(NamedTuple):
-    """What is told, and the words that are passed over so that the rest can be read."""
+    """A suggestion, and the words to skip so that the rest can be read."""
 
     diagnostic: Diagnostic
     blanking_edit: Edit
@@ -140,7 +141,7 @@ def _row_index() -> rewrites.RowIndex:
 
 
 def find_suggestions(text: str, kit: Kit) -> list[Suggestion]:
-    """Return what is said about words after each instruction of a text, or in place of one."""
+    """Return the suggestions for words after or instead of instructions."""
     bodies = [split_note(line)[0] for line in text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
     suggestions: list[Suggestion] = []
@@ -171,10 +172,12 @@ def find_suggestions(text: str, kit: Kit) -> list[Suggestion]:
         if body.strip() and not any(
             suggestion.diagnostic.code is codes.SAME_AGAIN for suggestion in suggestions_of_line
         ):
-            uncounted = _LINE_COUNT.sub("", body)  # `2. S`
-            is_right = is_right or (uncounted != body and lines.is_right(lexemes(uncounted), names))
+            uncounted_text = _LINE_COUNT.sub("", body)  # `2. S`
+            is_right = is_right or (
+                uncounted_text != body and lines.is_right(lexemes(uncounted_text), names)
+            )
             instructions_above.append(
-                _as_instructions(uncounted.partition("|")[2] or uncounted, is_right)
+                _as_instructions(uncounted_text.partition("|")[2] or uncounted_text, is_right)
             )
         depth += sum((token.text in BLOCK_ENDS) - (token.text in WORD_OF_END) for token in tokens)
         line_start += len(line) + 1
@@ -191,7 +194,7 @@ def _as_instructions(line: str, is_right: bool) -> str | None:
 
 
 def _trailing_words(body: str, start: int, line_context: LineContext) -> Iterator[_TrailingWords]:
-    """Give each instruction of a line that has words after it, and words without one."""
+    """Yield each instruction of a line with the words after it, and words without one."""
     names = line_context.names
     instructions_before: list[str | None] = []
     for match in _INSTRUCTION_AND_BAR.finditer(body):
@@ -218,7 +221,7 @@ def _trailing_words(body: str, start: int, line_context: LineContext) -> Iterato
             if any(token.text in ASKING_WORDS for token in tokens[:instruction_size]):
                 has_only_then = all(
                     lexicon_meaning(item.text, "do") for item in tokens_after
-                )  # by a THEN
+                )  # the condition ends at a THEN
                 yield _TrailingWords(
                     line_context,
                     start_offset,
@@ -240,7 +243,7 @@ def _trailing_words(body: str, start: int, line_context: LineContext) -> Iterato
 
 
 def matching_rows(subject: Subject) -> Iterator[tuple[SuggestionRow, Gaps]]:
-    """Give the rows that hold at a place, with what fills their gaps, in the order of the table."""
+    """Yield the rows that apply at a place, with the values of their gaps, in table order."""
     encoded_line = rewrites.Encoded(
         [make_token(";"), *subject.row_tokens], subject.names, subject.labels()
     )
@@ -263,9 +266,9 @@ def _suggestion_for(trailing: _TrailingWords) -> Suggestion | None:
 
 
 def _is_read_surely(trailing: Trailing) -> bool:
-    """Whether a repair of the whole instruction can mean nothing else."""
+    """Return whether a repair of the whole instruction is unambiguous."""
     if trailing.command == "DEF":
-        return False  # it may be called by its first word
+        return False  # the first word may be a name of its own
     readings = lines.read([*trailing.tokens, *trailing.row_tokens], trailing.names, is_quick=True)
     return bool(readings) and readings[0].is_sure and len(readings[0].items or ()) == 1
 
@@ -298,7 +301,7 @@ def _suggestion(row: SuggestionRow, gaps: Gaps) -> Suggestion:
     fix_span = trailing.whole_span if values["fix"] else None
     is_right = lines.is_right(trailing.tokens, trailing.names)
     if fix_span and not is_right and values["fix"].startswith(trailing.call_text):
-        fix_span = trailing.words_span  # of a call with a mistake of its own
+        fix_span = trailing.words_span  # the call has a mistake of its own
         values["fix"] = values["fix"][len(trailing.call_text) :].lstrip(" ")
     start, end = gaps.span("s") if "s" in group_names else (1, len(trailing.spans))
     span = Span(trailing.spans[start].start, trailing.spans[end - 1].end)
@@ -307,7 +310,8 @@ def _suggestion(row: SuggestionRow, gaps: Gaps) -> Suggestion:
     has_other_values = any(values[gap] for gap in values if gap not in ("before", "words", "order"))
     has_note = "//" in values["fix"] or not has_other_values
     if code in _NOTE_CODES and trailing.tokens and not has_note:
-        values = {**values, **_note_values(trailing)}  # what changes no movement comes first
+        # A change without effect on movement comes first.
+        values = {**values, **_note_values(trailing)}
     if code is codes.OTHER_LANGUAGE and values["found"].upper() == values["right"]:
         code, values = codes.MISSING_OPEN, {**values, "word": values["right"], "words": ""}
     diagnostic = Diagnostic(code, span, values, fix_span)
@@ -330,7 +334,7 @@ def _suggestion(row: SuggestionRow, gaps: Gaps) -> Suggestion:
 
 def _spoken_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
     """Return the call that words before a condition say, and how many they are."""
-    concepts = [names.meant(token.text, NEAR) for token in tokens]
+    concepts = [names.find_meaning(token.text, NEAR) for token in tokens]
     condition_index = next((k for k in range(1, len(tokens)) if concepts[k] in ("IF", "WHILE")), 0)
     has_until = concepts[condition_index] == "WHILE"
     call = (
@@ -351,10 +355,12 @@ class Gaps(dict[str, str]):
     `filled_values` are the values so far: a gap may speak of those before it.
     """
 
-    def __init__(self, subject: Subject, encoded: rewrites.Encoded, match: re.Match[str]) -> None:
+    def __init__(
+        self, subject: Subject, encoded_words: rewrites.Encoded, match: re.Match[str]
+    ) -> None:
         self.subject = subject
         self.filled_values: dict[str, str] = {}
-        self._line = encoded
+        self._line = encoded_words
         self._match = match
 
     @property
@@ -383,7 +389,7 @@ class Gaps(dict[str, str]):
         return text
 
     def span(self, name: str) -> tuple[int, int]:
-        """Return where a capture stands: from which token on, and before which."""
+        """Return the token range of a capture."""
         return self._line.span(self._match, name)
 
     def tokens(self, name: str) -> Sequence[Lexeme]:
@@ -423,7 +429,7 @@ class Gaps(dict[str, str]):
 
 
 def _loop_over_all(gaps: Gaps, times: str) -> str:
-    """The loop that does so often all that stands before, nothing where that is long."""
+    """The loop that does so often all that stands before, nothing if that is long."""
     trailing, lines_before = (
         gaps.trailing,
         [line for line in gaps.trailing.instructions_before if line],
@@ -452,7 +458,7 @@ def _loop_over_all(gaps: Gaps, times: str) -> str:
 
 
 def _condition_gaps(gaps: Gaps) -> dict[str, str]:
-    """What the words of a condition ask."""
+    """Return the values of a condition in words."""
     tokens, names = gaps.tokens("s"), gaps.trailing.names
     is_bare = [token.text for token in gaps.tokens_from("s")[len(tokens) :][:1]] != [")"]
     is_for_instruction = is_bare and gaps["head"] == "UNTIL" and not gaps.trailing.tokens
@@ -465,12 +471,12 @@ def _condition_gaps(gaps: Gaps) -> dict[str, str]:
 
 
 def _sensor(gaps: Gaps, k: int) -> str:
-    """One of the sensors that a word may mean."""
+    """Return a sensor that a word may mean."""
     return "".join(sensors_of(plain(gaps["l"]), gaps.trailing.names)[k : k + 1])
 
 
 def _measured_condition(gaps: Gaps) -> str:
-    """What words ask with a number of their own: `la pared a 30 cm`."""
+    """Return the condition of words with a number of their own: `la pared a 30 cm`."""
     words = gaps.tokens("l")
     has_word = any(
         word.kind is WORD and not lexicon_meaning(word.text, "unit", "in") for word in words
@@ -479,7 +485,7 @@ def _measured_condition(gaps: Gaps) -> str:
 
 
 def _sensor_on_side(gaps: Gaps) -> str:
-    """The sensor on the side of an L or R, which is no name."""
+    """Return the sensor on the side of an L or R that is not a name."""
     word, part = gaps["s"].upper(), gaps.trailing
     return "" if word in words_set(part.text) else part.names.sensor_on_side(word)
 
@@ -491,7 +497,7 @@ def _lone_condition(gaps: Gaps) -> str:
 
 
 def _consequence(gaps: Gaps) -> str:
-    """What is done: the words from a capture on if they are right, else what they instruct."""
+    """Return the consequence: the words from a capture on if correct, or their meaning."""
     words, names = gaps.tokens_from("w"), gaps.trailing.names
     return (
         _rest_of_words(gaps, "w")
@@ -501,7 +507,7 @@ def _consequence(gaps: Gaps) -> str:
 
 
 def _free_name(gaps: Gaps) -> str:
-    """A name that may get the value before it, which is no other name."""
+    """Return an unused name for the value before it."""
     names, name = gaps.trailing.names, plain(gaps["x"])
     is_name = all(token.kind is WORD for token in gaps.tokens("v"))
     is_taken = name in names.sensors or name in names.defs or name in names.actuators
@@ -537,7 +543,7 @@ def _loop(gaps: Gaps) -> str:
 
 
 def _with_value(gaps: Gaps, match: re.Match[str] | None, template: str) -> str:
-    """The call with another value, of which the old one is a part; nothing where it is the same."""
+    """Return the call with another value that contains the old one; "" if it is the same."""
     template = match.expand(template) if match else ""
     if match is None or match[1] == template:
         return ""
@@ -557,7 +563,7 @@ def _condition_tokens(gaps: Gaps, name: str = "q") -> list[Lexeme]:
 
 
 def _shown_word(gaps: Gaps) -> str:
-    """A word to show, which is no letter and like no name of the program."""
+    """Return a word to show, which is neither a letter nor similar to a name of the program."""
     word = gaps["s"]
     names = gaps.trailing.names
     is_name = len(word) < _SHORTEST_WORD or nearest(plain(word), names.known_names.values)
@@ -575,7 +581,7 @@ def _rest_of_words(gaps: Gaps, name: str) -> str:
 
 
 def _instructions_said(part: Trailing) -> list[SpokenInstruction]:
-    """The instructions that the words say, nothing where a turn of them says no way."""
+    """The instructions that the words say, nothing if a turn of them says no way."""
     found_instructions = spoken_instructions(part.row_tokens, part.names)
     return (
         []
@@ -607,7 +613,7 @@ def _call_with_note(gaps: Gaps) -> str:
 
 
 def _is_last(trailing: Trailing) -> bool:
-    """Whether nothing but a note follows the words on their line."""
+    """Return whether only a note follows the words on their line."""
     text_behind = trailing.text[trailing.whole_span.end :].split("\n")[0].lstrip(" \t;\r")
     return not text_behind or text_behind.startswith("//")
 

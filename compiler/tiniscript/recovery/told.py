@@ -1,4 +1,4 @@
-"""What people are told about a wrong text: each step of it, in their order.
+"""Diagnoses a wrong text by steps, in their order.
 
 The first of `READERS` that says something is told. The rest of the text is read as if its edits
 were made, so that no consequence of a mistake is reported; `usage` says what no reader does. What
@@ -41,13 +41,13 @@ from tiniscript.recovery.shares import find_shares
 from tiniscript.recovery.suggestions import find_suggestions
 from tiniscript.recovery.usage import with_usage
 
-MOST_ROUNDS = 20  # of reading what follows a mistake from the repaired text
+MOST_ROUNDS = 20  # most rounds of reading on from the repaired text
 _LONE_CR = re.compile(r"\r(?!\n)")
 MOST_CHARACTERS = 4_000  # characters of a text that is read as a whole
 
 
 class Findings(NamedTuple):
-    """What is said about a text, and the edits with which the rest of it is read."""
+    """The diagnostics of a text, and the edits for reading the rest."""
 
     diagnostics: list[Diagnostic]
     edits: list[Edit]
@@ -84,7 +84,7 @@ class WrongText:
 def diagnose(
     source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
-    """Return what is said about a wrong text, which has these `diagnostics` of parser and checker.
+    """Return the diagnoses of a wrong text, given the `diagnostics` of parser and checker.
 
     The readers know one end of a line that is a character: what the text has instead takes as much.
     """
@@ -94,19 +94,19 @@ def diagnose(
     if len(results) > MOST_DIAGNOSTICS:
         results = sorted(results, key=lambda diagnostic: diagnostic.span)[: MOST_DIAGNOSTICS + 1]
     results = [explain_brackets(diagnostic, text, kit, is_offered=True) for diagnostic in results]
-    results = drop_wrong_offers(results, text, check)  # what is offered is right
-    results = withhold_lossy_repairs(results, text, kit)  # what is made keeps what was written
+    results = drop_wrong_offers(results, text, check)  # every offer is correct
+    results = withhold_lossy_repairs(results, text, kit)  # every repair keeps what was written
     results = [explain_brackets(diagnostic, text, kit, is_offered=False) for diagnostic in results]
     results = [explain_else_question(diagnostic, text) for diagnostic in results]
     results = name_samples(
         results, text, kit
-    )  # of a distance that nobody wrote it says: an example
+    )  # the distance is an example, because nobody wrote one
     results = [name_invisible_sign(diagnostic, text) for diagnostic in results]
     return codes.in_order([point_at_found(diagnostic, source) for diagnostic in results])
 
 
 def _read(wrong_text: WrongText, rounds_left: int) -> list[Diagnostic]:
-    """Return what the readers say of a text, and then of what their edits leave wrong."""
+    """Return the readers' diagnostics of a text, and then those of the rest after their edits."""
     findings = (reader(wrong_text) for reader in READERS if rounds_left)
     diagnostics, edits = next(
         (finding for finding in findings if finding.diagnostics), Findings([], [])
@@ -118,7 +118,7 @@ def _read(wrong_text: WrongText, rounds_left: int) -> list[Diagnostic]:
         diagnostics_left = wrong_text.check(repaired_text)
         if any(
             diagnostic.is_mistake for diagnostic in diagnostics_left
-        ):  # else its warnings come when it is repaired
+        ):  # otherwise the warnings appear after its repair
             later_diagnostics = _read(
                 WrongText(
                     Source(repaired_text), diagnostics_left, wrong_text.check, wrong_text.kit
@@ -150,12 +150,12 @@ def _notes(wrong_text: WrongText) -> Findings:
 
 
 def _labels(wrong_text: WrongText) -> Findings:
-    """Return what counts the instructions of a text, before each of them (`labels`)."""
+    """Return the diagnostics for labels that number the instructions (`labels`)."""
     return _with_edits(label_diagnostics(wrong_text.source))
 
 
 def _keys(wrong_text: WrongText) -> Findings:
-    """Return what is wrong with keys that are asked for (`keys`).
+    """Return the diagnostics for keys (`keys`).
 
     The rest is read with a key that exists.
     """
@@ -169,12 +169,12 @@ def _keys(wrong_text: WrongText) -> Findings:
 
 
 def _shares(wrong_text: WrongText) -> Findings:
-    """Return what is wrong with sensors that are asked for a percentage (`shares`)."""
+    """Return the diagnostics for sensors compared with a percentage (`shares`)."""
     return Findings(*find_shares(wrong_text.source, wrong_text.kit))
 
 
 def _beginning(wrong_text: WrongText) -> Findings:
-    """Return what is wrong with the lines before the program, and with its `SI|` (`setup`)."""
+    """Return the diagnostics for the lines before the program, and for its `SI|` (`setup`)."""
     return _with_edits(
         beginning_diagnostics(
             wrong_text.source, wrong_text.diagnostics, wrong_text.check, wrong_text.kit
@@ -183,7 +183,7 @@ def _beginning(wrong_text: WrongText) -> Findings:
 
 
 def _calls(wrong_text: WrongText) -> Findings:
-    """Return what is wrong with calls that have all their values in another form (`calls`)."""
+    """Return the diagnostics for calls with all values in another form (`calls`)."""
     names = Names([lexemes(line) for line in wrong_text.source.text.split("\n")], wrong_text.kit)
     return _with_edits(
         misplaced_values(wrong_text.source) or run_on_calls(wrong_text.source, names)
@@ -191,7 +191,7 @@ def _calls(wrong_text: WrongText) -> Findings:
 
 
 def _motors(wrong_text: WrongText) -> Findings:
-    """Return what is wrong with motors that are switched on and off, or one by one (`motors`)."""
+    """Return the diagnostics for motors switched on and off, or set one by one (`motors`)."""
     if moves := switch_diagnostics(wrong_text.source):
         return _with_edits(moves)
     diagnostics_and_edits = motor_diagnostics(wrong_text.source)
@@ -202,22 +202,22 @@ def _motors(wrong_text: WrongText) -> Findings:
 
 
 def _turtle(wrong_text: WrongText) -> Findings:
-    """Return what is wrong with lines of Logo, whose words have one number each (`logo`)."""
+    """Return the diagnostics for lines of Logo, whose words have one number each (`logo`)."""
     return _with_edits(logo_diagnostics(wrong_text.source, wrong_text.kit))
 
 
 def _given_back(wrong_text: WrongText) -> Findings:
-    """Return what is wrong with DEFs that give a value back (`given_back`)."""
+    """Return the diagnostics for DEFs that return a value (`given_back`)."""
     return Findings(*find_returned_values(wrong_text.source))
 
 
 def _counters(wrong_text: WrongText) -> Findings:
-    """Return what is wrong with loops that count, where LOOP counts nothing (`counters`)."""
+    """Return the diagnostics for counting loops, because LOOP has no counter (`counters`)."""
     return _with_edits(counter_diagnostics(wrong_text.source))
 
 
 def _frame(wrong_text: WrongText) -> Findings:
-    """Return what begins a program once more, or ends it, which needs no word (`leftovers`)."""
+    """Return the diagnostics for superfluous starts and ends of a program (`leftovers`)."""
     return _with_edits(setup_and_end_diagnostics(wrong_text.source, wrong_text.kit))
 
 
@@ -227,7 +227,9 @@ def _leftovers(wrong_text: WrongText) -> Findings:
 
 
 def _wrong_start(wrong_text: WrongText) -> Findings:
-    """Return that another word stands in the place of `SI|` (`setup`); the rest is read with SI."""
+    """Return the diagnostic for another word instead of `SI|` (`setup`); the rest is read with
+    SI.
+    """
     wrong_start = wrong_setup_word(wrong_text.source, wrong_text.diagnostics)
     if wrong_start is None:
         return Findings([], [])
@@ -236,7 +238,7 @@ def _wrong_start(wrong_text: WrongText) -> Findings:
 
 
 def _sure_findings(wrong_text: WrongText) -> Findings:
-    """Return what is wrong with a text that is read wholly and surely (`search`, `meant`)."""
+    """Return the diagnostics for a text with a complete and certain reading (`search`, `meant`)."""
     recovery = wrong_text.recovery
     if recovery is None:
         return Findings([], [])
@@ -246,9 +248,9 @@ def _sure_findings(wrong_text: WrongText) -> Findings:
 
 
 def _words_after(wrong_text: WrongText) -> Findings:
-    """Return what words say after instructions, or in the place of one (`suggestions`)."""
+    """Return the diagnostics for words after or instead of instructions (`suggestions`)."""
     suggestions = find_suggestions(wrong_text.source.text, wrong_text.kit)
-    if recovery := wrong_text.recovery:  # they belong to the instruction by its sign: `X = 20 x 3`
+    if recovery := wrong_text.recovery:  # its sign joins them to the instruction: `X = 20 x 3`
         suggestions = [
             suggestion
             for suggestion in suggestions
@@ -261,7 +263,7 @@ def _words_after(wrong_text: WrongText) -> Findings:
 
 
 def _likely_findings(wrong_text: WrongText) -> Findings:
-    """Return what is wrong with the lines that are read, if not surely (`search`, `meant`)."""
+    """Return the diagnostics for lines with an uncertain reading (`search`, `meant`)."""
     recovery = wrong_text.recovery
     if recovery is None:
         return Findings([], [])
@@ -287,7 +289,7 @@ def _words_of_blocks(wrong_text: WrongText) -> Findings:
     )
 
 
-# Laws of their own come before what a search finds surely, and what it guesses comes last.
+# Certain laws come before the search's certain results, and guesses come last.
 READERS: tuple[Callable[[WrongText], Findings], ...] = (
     _notes, _labels, _given_back, _beginning, _keys, _shares, _motors, _turtle, _calls, _counters,
     _frame, _wrong_start, _sure_findings, _leftovers, _words_after, _likely_findings,
@@ -315,7 +317,7 @@ def _sure_edits(diagnostic: Diagnostic) -> Sequence[Edit]:
 
 
 def _unsure_if_guessed(diagnostic: Diagnostic, guessed_edits: Sequence[Edit]) -> Diagnostic:
-    """Return a diagnostic whose repair is not sure where it writes what is only shown."""
+    """Return a diagnostic with an uncertain repair if it writes text that is only shown."""
     repair = diagnostic.repair
     spans = [edit.span for edit in repair.edits] if repair else []
     if repair is None or not any(
@@ -330,7 +332,7 @@ def _unsure_if_guessed(diagnostic: Diagnostic, guessed_edits: Sequence[Edit]) ->
 def to_original(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
     """Return a diagnostic of the text with these edits, as one of the text without them.
 
-    A condition that nobody can read is shown as it is written, and not what it was passed over for.
+    A condition that nobody can read is shown as written, and not what it was passed over for.
     """
     values = dict(diagnostic.values)
     for edit in edits:
@@ -356,7 +358,7 @@ def to_original(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -
 
 
 def _original_span(span: Span, edits: Sequence[Edit]) -> Span:
-    """Return where a span of the text with edits stood before them; all of one it begins in."""
+    """Return the original span of a span in the edited text, including edits it begins in."""
     start_shift = end_shift = shift = 0
     for edit in sorted(edits):
         edit_start = edit.span.start + shift

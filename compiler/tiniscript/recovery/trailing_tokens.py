@@ -1,4 +1,4 @@
-"""What words after an instruction say, beside what the instruction says itself.
+"""The content of words after an instruction, beyond that of the instruction.
 
 Knows which words begin an instruction, and which numbers and words only repeat. Knows no row.
 """
@@ -50,7 +50,7 @@ _LONG_WORDS = tuple(word for word in WORDS if len(word) > 2)
 
 
 class LineContext(NamedTuple):
-    """Where an instruction stands: `depth` blocks are open there.
+    """The context of an instruction: `depth` is the number of open blocks.
 
     `instructions_above` are the lines before it, "" for one of no instructions, None for one that
     begins a block.
@@ -63,12 +63,12 @@ class LineContext(NamedTuple):
 
 
 def token_width(token: Lexeme) -> int:
-    """Return how many characters a token of a text takes, with the space before it."""
+    """Return the width of a token in characters, including the space before it."""
     return len(token.space or "") + len(token.source or "")
 
 
 def instruction_length(tokens: Sequence[Lexeme], names: Names) -> int:
-    """Return how many tokens begin a line as a whole instruction."""
+    """Return the number of tokens at a line's start that form a whole instruction."""
     first_text, second_text = tokens[0].text, tokens[1].text if len(tokens) > 1 else ";"
     if first_text in names.defs or (second_text == "=" and first_text not in WORDS):
         failure = lines.parse_line(tokens, names)
@@ -76,7 +76,7 @@ def instruction_length(tokens: Sequence[Lexeme], names: Names) -> int:
         is_right = lines.is_right(tokens[:failure_index], names)
         return failure_index if is_right and tokens[failure_index].space else 0
     word_row = WORDS.get(first_text)
-    if word_row is None and not names.takes_values(names.meant(first_text, NEAR)):
+    if word_row is None and not names.takes_values(names.find_meaning(first_text, NEAR)):
         return 0
     if first_text == "DEF":
         return 2 if len(tokens) > 1 and tokens[1].kind is WORD else 0
@@ -125,7 +125,7 @@ class Trailing:
         self.words_text = text[slice(*self.words_span)]
         self.spans = [call_span, *spans[instruction_size:]]
         self.text = text
-        concept = self.names.meant(self.tokens[0].text, NEAR) if instruction_size else ""
+        concept = self.names.find_meaning(self.tokens[0].text, NEAR) if instruction_size else ""
         word_row = WORDS.get(concept)
         self.is_arm = word_row is not None and word_row.role.belongs_to_blocks
         self.command = WORD_OF_END.get(concept, concept)
@@ -141,7 +141,7 @@ class Trailing:
         self.number_texts = {token.text for token in self.tokens if token.kind is NUMBER}
 
     def may_say_something(self) -> bool:
-        """Whether the words may say something: of no instruction, where they are none."""
+        """Return whether the words may have a meaning."""
         if not self.tokens:
             return not lines.is_right(self.row_tokens, self.names)
         if self._is_factor():
@@ -152,7 +152,7 @@ class Trailing:
         return WORD in kinds or (has_sign and lines.is_right(self.tokens, self.names))
 
     def _is_factor(self) -> bool:
-        """Whether the words go on with a value of the instruction: `V = 2 x SIDE`."""
+        """Return whether the words continue a value of the instruction: `V = 2 x SIDE`."""
         signs, values = (
             [token.text for token in self.row_tokens[:2]],
             (self.tokens[-1], *self.row_tokens[1:2]),
@@ -203,7 +203,7 @@ class Trailing:
         return join_labels("\x01", labels)
 
     def _is_opening(self) -> bool:
-        """Whether words are the first line of a text, and others follow."""
+        """Return whether words are the first line of a text, and others follow."""
         text_before, text_after = (
             self.text[: self.whole_span.start],
             self.text[self.whole_span.end :],
@@ -260,12 +260,12 @@ class Trailing:
         return self.row_tokens[k].text if 0 <= k < len(self.row_tokens) else ""
 
     def means(self, word: str) -> str:
-        """Return the word of the language that is said, "" where none is."""
-        meant = "" if word in EXTENTS else self.names.meant(word)
-        return WORD_OF_END.get(meant, meant)
+        """Return the word of the language that is said, "" if none is."""
+        meant_text = "" if word in EXTENTS else self.names.find_meaning(word)
+        return WORD_OF_END.get(meant_text, meant_text)
 
     def number(self, k: int) -> str | None:
-        """Return the number at a place in digits, None where there is none."""
+        """Return the number at a place in digits, None if there is none."""
         token = self.row_tokens[k]
         if token.kind is NUMBER:
             return token.text
@@ -289,7 +289,7 @@ class Trailing:
         )
 
     def _is_redundant(self, k: int) -> bool:
-        """Whether a token says nothing that the instruction does not."""
+        """Return whether a token adds nothing to the instruction."""
         token, text = self.row_tokens[k], self.row_tokens[k].text
         is_first = not any(token.kind in (WORD, NUMBER) for token in self.row_tokens[:k])
         if token.kind is WORD and self.number(k) is None:
@@ -314,7 +314,7 @@ class Trailing:
         )
 
     def _is_alone(self, k: int) -> bool:
-        """Whether a single word is rather a misspelt one, or the name of a DEF."""
+        """Return whether a single word is probably misspelt, or the name of a DEF."""
         token = self.row_tokens[k]
         words = [token for token in self.row_tokens if token.kind is WORD]
         if self.names.is_name(token.text):
@@ -333,7 +333,7 @@ class Trailing:
         return is_capital_name or nearest(token.text, _LONG_WORDS) is not None
 
     def _is_instruction(self, k: int) -> bool:
-        """Whether the word at a place says what the instruction does not."""
+        """Return whether the word at a place adds something to the instruction."""
         text, command = self.row_tokens[k].text, self.command
         is_last = not any(token.kind in (WORD, NUMBER) for token in self.row_tokens[k + 1 :])
         is_after_word = k or len(text) == 1 or lexicon_meaning(text, "count")
@@ -365,7 +365,7 @@ class Trailing:
 
 @lru_cache(maxsize=1)
 def words_set(text: str) -> frozenset[str]:
-    """Return the words that a text sets, which is told at their own lines."""
+    """Return the variables that a text assigns, which are reported at their own lines."""
     return frozenset(re.findall(r"\b(\w+)\s*=", text.upper()))
 
 

@@ -91,9 +91,9 @@ _WORDS_WITH_VALUES = (
     "M",
     "BEEP",
     "W",
-)  # of values alone: which way first, then the others
+)  # order of values: the direction first
 _LOW_POWER = 20  # an example of a low power
-_MOST_INSTRUCTIONS = 6  # instructions that an example takes into a block
+_MOST_INSTRUCTIONS = 6  # instructions that an example moves into a block
 _END_WORD = re.compile(rf"\b{words_of('end')}")
 _BLOCK_WORD = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
 _TOP_LEVEL_WORD = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
@@ -107,14 +107,14 @@ _ANGLE_AND_POWER = re.compile(r"\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)$")
 _FOREVER_SECOND = re.compile(r"(?i)([FBLR])\s*\(([^(),]+),\s*FOREVER\s*\)(\s*UNTIL.*)?")
 _TURNED_CALL = re.compile(r"(?im)\b[FBLR]\s*\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)(?!\s*UNTIL)")
 _MOST_CHARACTERS = 120  # characters of a sentence that a message shows
-_MOST_DIAGNOSTICS = 30  # diagnostics of which more is said
+_MOST_DIAGNOSTICS = 30  # diagnostics with further explanations
 _VALUE_CODES = (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE)
 _NAME_CODES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
-_INSTRUCTION_STARTS = (";", "newline", "|")  # what an instruction begins after
+_INSTRUCTION_STARTS = (";", "newline", "|")  # tokens after which an instruction begins
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _FARTHEST_CM = 400  # more is rather in milliseconds
-_NOUN_OF_UNIT = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
+_NOUN_OF_UNIT = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # noun of each unit
 _MOST_END_WORDS = 4  # words: `fin del bucle`
 _KINDS_NO_CALL = ("leaves", "again", "etc", "end")
 _KINDS_AFTER_NUMBER = (
@@ -126,12 +126,12 @@ _KINDS_AFTER_NUMBER = (
     "to",
     "at",
     "by",
-)  # after a number
-_KINDS_NO_NAME = (*_KINDS_NO_CALL, "filler", "same")  # without values
+)  # words allowed after a number
+_KINDS_NO_NAME = (*_KINDS_NO_CALL, "filler", "same")  # kinds without values
 
 
 def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return what is wrong with a text, in words that say how it is written."""
+    """Return the mistakes in a text, with messages that show the right usage."""
     text = _Text(source, kit)
     text.lacks_loop = [
         diagnostic.values["right"]
@@ -177,11 +177,11 @@ class _Text:
 
     @cached_property
     def has_block_ends(self) -> bool:
-        """Whether any block has an end."""
+        """Return whether any block has an end."""
         return _END_WORD.search(plain(self.source.text)) is not None
 
     def is_in_wrong_def(self, diagnostic: Diagnostic, diagnostics: Sequence[Diagnostic]) -> bool:
-        """Whether a name is in the body of a DEF that names no values in its brackets."""
+        """Return whether a name is in the body of a DEF without parameters."""
         starts = (
             diagnostic_of_def.span.end
             for diagnostic_of_def in diagnostics
@@ -207,7 +207,7 @@ class _Text:
             for part in split_note(line)[0].split(";"):
                 first_word = next((token.text for token in lexemes(part.rpartition("|")[2])), "")
                 concept = {"FOREVER": "LOOP"}.get(
-                    self.names.meant(first_word), self.names.meant(first_word)
+                    self.names.find_meaning(first_word), self.names.find_meaning(first_word)
                 )
                 if concept in BLOCK_ENDS:
                     ends.append(BLOCK_ENDS[concept])
@@ -248,12 +248,12 @@ class _Text:
 
 
 def _usage_diagnostic(usage: Usage) -> Diagnostic | None:
-    """Return what the first row that holds says about a place, None where there is none."""
+    """Return the diagnostic of the first row that applies to a place, or None."""
     return next((usage.diagnostic_of(row, gaps) for row, gaps in matching_rows(usage)), None)
 
 
 class Usage:
-    """What was found wrong, and the instruction around its place.
+    """A mistake, and the instruction around its place.
 
     `row_tokens` are the tokens of the instruction; before them rows have what was found.
     """
@@ -335,13 +335,15 @@ class Usage:
         return join_labels("\x01", labels)
 
     def _is_pressed(self) -> bool:
-        """Whether parts of one word say that a button is pressed: `onButtonPressed(…)`."""
+        """Return whether parts of a word mean that a button is pressed: `onButtonPressed(…)`."""
         word_parts = re.findall("[A-Z]?[a-z]+", self.source[self.instruction_span].split("(")[0])
         return len(word_parts) > 1 and any(self.is_button(plain(part)) for part in word_parts)
 
     def _label_of(self, k: int) -> str:
         text, span = self.row_tokens[k].text, self.spans[k + 1]
-        has_meaning = bool(self.names.meant(text) or lexicon_meaning(text, "turn", "end", "short"))
+        has_meaning = bool(
+            self.names.find_meaning(text) or lexicon_meaning(text, "turn", "end", "short")
+        )
         labels = {
             "@quote": text in QUOTES,
             "@known": text in WORDS,
@@ -354,7 +356,7 @@ class Usage:
     # -- where it is told -------------------------------------------------------------------------
 
     def diagnostic_of(self, row: SuggestionRow, gaps: Gaps) -> Diagnostic:
-        """Return what a row tells: of the place, or where its words say."""
+        """Return the diagnostic of a row, at the place or at its words."""
         values, fix = gaps.filled_values, gaps.filled_values.get("fix", "")
         span = next(
             (
@@ -382,7 +384,7 @@ class Usage:
         return _usage_diagnostic(Usage(self.program_text, diagnostic)) or diagnostic
 
     def values(self) -> dict[str, str]:
-        """Return what is said before the gaps of a row are filled."""
+        """Return the values of the message before the row's gaps are filled."""
         return {}
 
     def several_values(self, name: str, gaps: Gaps) -> Mapping[str, str]:
@@ -395,7 +397,7 @@ class Usage:
     # -- what its words say -----------------------------------------------------------------------
 
     def usage(self, word: str) -> str:
-        """Return how an instruction is written: a block with its end, where the text has none."""
+        """Return the usage of an instruction: a block with its end, if the text has none."""
         if word in ASKING_WORDS and (question := self.question(word)):
             return question
         if word in ("L", "R") and (
@@ -419,7 +421,7 @@ class Usage:
             return _usage(word)
         loop_readings = (
             lines.read(self.row_tokens, self.names) if word == "LOOP" else []
-        )  # else a guess
+        )  # otherwise it is a guess
         is_head = bool(loop_readings) and [item.kind for item in loop_readings[0].items or ()] == [
             "open"
         ]
@@ -429,7 +431,7 @@ class Usage:
     def question(self, word: str) -> str:
         """Return a header with the question that was written, without numbers that were not.
 
-        Nothing where no number is asked for, and no yes or no.
+        Nothing if no number is asked for, and no yes or no.
         """
         tokens = self.question_tokens(word)
         if not any(token.kind is NUMBER or self.names.is_yes_no(token.text) for token in tokens):
@@ -438,11 +440,11 @@ class Usage:
         return f"{word}({text})" if text else WORDS[word].usage
 
     def question_tokens(self, word: str) -> list[Lexeme]:
-        """Return what stands after a header, up to what is done."""
-        tokens_behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.row_tokens)][
-            1:
-        ]
-        concepts = [self.names.meant(token.text) for token in tokens_behind]
+        """Return the tokens of a header up to its body."""
+        tokens_behind = [
+            *dropwhile(lambda it: self.names.find_meaning(it.text) != word, self.row_tokens)
+        ][1:]
+        concepts = [self.names.find_meaning(token.text) for token in tokens_behind]
         are_instructions = (
             concept in INSTRUCTION_WORDS
             and (concept not in ("L", "R") or next_token.text == "(")  # `pared a la derecha`
@@ -462,7 +464,9 @@ class Usage:
     @cached_property
     def instruction_of_word(self) -> dict[str, str]:
         """The words of no program that mean an instruction, and which."""
-        concept_of_word = {word: self.names.meant(word) for word in self.words if word not in WORDS}
+        concept_of_word = {
+            word: self.names.find_meaning(word) for word in self.words if word not in WORDS
+        }
         return {
             it: instruction_word
             for it, instruction_word in concept_of_word.items()
@@ -484,7 +488,7 @@ class Usage:
     def word_meaning(self, concept: str, default: str) -> str:
         """Return the word that means another one, else `default`."""
         return next(
-            (text for text in self.token_texts if self.names.meant(text) == concept != text),
+            (text for text in self.token_texts if self.names.find_meaning(text) == concept != text),
             default,
         )
 
@@ -493,7 +497,12 @@ class Usage:
         """A turn that says no way, or no number."""
         words = (*self.words, "_".join(self.words[:2]))
         direction = next(
-            (concept for concept in map(self.names.meant, self.words) if concept in ("L", "R")), ""
+            (
+                concept
+                for concept in map(self.names.find_meaning, self.words)
+                if concept in ("L", "R")
+            ),
+            "",
         )
         degrees = {"half": "180", "whole": "360"}
         turn_kinds = (
@@ -529,14 +538,14 @@ class Usage:
         numbers_given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.text) if name else []
         if (
             not name or number or len({*numbers_given}) > 1
-        ):  # seconds, or how often: who writes it knows
+        ):  # seconds or repetitions, as the author knows
             call = _CALL_WITH_VALUES.fullmatch(instruction_text)
             is_known_call = call is None or lexicon_meaning(call[1], *_KINDS_NO_CALL)
             is_often = bool(number and self.program_text.lacks_loop)
             return _OwnWord(
                 "", "" if is_known_call or call is None else call[1], is_often, 0, False
             )
-        if self.names.meant(name):
+        if self.names.find_meaning(name):
             return _OwnWord("", "", False, 0, False)  # a function of another language
         lone_uses = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.text)
         is_taught = bool(
@@ -549,9 +558,9 @@ class Usage:
         return lexemes(self.source[Span(self.instruction_span.start, self.diagnostic.span.start)])
 
     def header_word(self) -> str:
-        """Return the word before the brackets that the place is in, "" where none asks."""
+        """Return the word before the brackets that the place is in, "" if none asks."""
         header_concepts = [
-            self.names.meant(it.text)
+            self.names.find_meaning(it.text)
             for it, sign in pairwise(self.tokens_before())
             if sign.text == "("
         ]
@@ -567,7 +576,7 @@ class Usage:
 
     @cached_property
     def wrong_value(self) -> _WrongValue | None:
-        """A word after a number, which is no value: a unit of something else, or nothing."""
+        """Return a word after a number that is not a value: another unit, or nothing."""
         tokens_before = self.tokens_before()
         calls = [
             token.text for token, next_token in pairwise(tokens_before) if next_token.text == "("
@@ -619,7 +628,7 @@ class Usage:
         return {"begun": setup_text, "asked": asked_text or "BUTTON", "when": when_text}
 
     def number_values(self, word: str) -> dict[str, str]:
-        """How far a move goes that has one number, which no robot drives so many seconds.
+        """Return the distance of a move with one number that is too large for seconds.
 
         `forward 50` is a way as in Logo, or a power; what is no power is a way.
         """
@@ -673,20 +682,22 @@ class Usage:
         return "" if is_other else self.names.sensor_on_side(word)
 
     def call_if_lamp(self, call: str) -> str:
-        """What is said of the robot's lamp, "" where it has none."""
+        """Return a call of the robot's lamp, or "" if it has none."""
         return call if "LED" in self.names.actuators else ""
 
     def worded_values(self, word: str) -> dict[str, str]:
         """A question in words without brackets: `IF BRIGHT THEN STOP`."""
         values = (
             condition_values([make_token("THE"), *self.question_tokens(word)], self.names) or {}
-        )  # one alone is asked
+        )  # only a single word is a question
         return values if values.get("asked") or values.get("question") else {}
 
     def bracketed_values(self, word: str) -> dict[str, str]:
         """A question in words in the brackets of a header: what they ask, else an example."""
         start = next(
-            k for k, token in enumerate(self.row_tokens) if self.names.meant(token.text) == word
+            k
+            for k, token in enumerate(self.row_tokens)
+            if self.names.find_meaning(token.text) == word
         )
         question_tokens = self.row_tokens[start + 2 : brackets_end(self.row_tokens, start + 1) - 1]
         sample = {"example": WORDS[word].arguments[0].sample, "question": ""}
@@ -715,7 +726,7 @@ class Usage:
         return values
 
     def unended_values(self) -> dict[str, str]:
-        """Where a block ends that has no end: its indentation, or its line, says so."""
+        """Return the end of a block without one, by its indentation or its line."""
         text_lines = self.text.splitlines()
         line_index = self.source.position(self.diagnostic.span.start)[0] - 1
         first_line = split_note(self.text_after[: len(text_lines[line_index])])[0]
@@ -736,7 +747,7 @@ class Usage:
         indentations = [len(line) - len(line.lstrip()) for line in text_lines]
         top_level_index = min(
             (index for index in lines_below if _TOP_LEVEL_WORD.match(text_lines[index])), default=0
-        )  # which no block is around
+        )  # ends outside of any block
         lines_inside = [
             *takewhile(
                 lambda index: (
@@ -790,11 +801,11 @@ class Usage:
     def name_and_meaning(self) -> tuple[str, str]:
         """A name without the letters that a name has not, and what it means."""
         right = re.sub(r"^[^A-Za-z]+|\W", "", plain(self.source[self.diagnostic.span]))
-        return right, self.names.meant(right)
+        return right, self.names.find_meaning(right)
 
 
 class _Turn(NamedTuple):
-    """A turn: `direction` is L or R, "" where no word says it; `values_text` are those of it."""
+    """A turn: `direction` is L or R, "" if no word says it; `values_text` are those of it."""
 
     direction: str
     angle: str
@@ -830,7 +841,7 @@ class _OtherName(NamedTuple):
 
 
 def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterator[int]:
-    """Give the places where a word of the language is meant as the name of a DEF, or a variable.
+    """Yield the places where a word of the language is used as the name of a DEF or a variable.
 
     A DEF is called where its name stands alone, or with as many values as the DEF has and the word
     has not, but not in its own body. Where a word of blocks stands alone it is of a block.
@@ -862,7 +873,7 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
 
 
 def _value_count(tokens: Sequence[Token], k: int) -> int:
-    """Return how many values the brackets have that open there, -1 where none open."""
+    """Return the number of values in the brackets that open there, or -1 if none do."""
     depth = commas = 0
     for index in range(k, len(tokens)):
         depth += (tokens[index].kind == "(") - (tokens[index].kind == ")")
@@ -873,7 +884,7 @@ def _value_count(tokens: Sequence[Token], k: int) -> int:
 
 
 def _ends_question(token: Lexeme) -> bool:
-    """Whether a question ends before a token."""
+    """Return whether a question ends before a token."""
     return token.text in (":", "{", ",") or bool(lexicon_meaning(token.text, "do"))
 
 
@@ -920,12 +931,12 @@ def _usage(word: str) -> str:
 
 
 def _intended_word(gaps: Gaps) -> str:
-    """The word that means what is written in its place."""
+    """Return the word meant by the text in its place."""
     return _usage_of(gaps).word_meaning(_offered_word(gaps), _usage_of(gaps).instruction_name)
 
 
 def _offered_word(gaps: Gaps) -> str:
-    """The word that what is offered begins with."""
+    """Return the first word of the offer."""
     return re.split("[(;]", gaps.filled_values["fix"])[0]
 
 
@@ -948,7 +959,7 @@ def _only_instruction(gaps: Gaps) -> str:
 
 
 def _several_instructions(gaps: Gaps, is_sided: bool) -> str:
-    """The instructions that words say; `is_sided`: of one nobody says which way it turns."""
+    """Return the instructions that words describe; `is_sided`: one has no direction of turn."""
     spoken_instructions = _usage_of(gaps).spoken_instructions
     is_free = any(instruction.is_side_free for instruction in spoken_instructions)
     return (
@@ -976,20 +987,20 @@ def _other_instruction_words(gaps: Gaps) -> set[str]:
 def _forever_word(gaps: Gaps) -> str:
     """The word for FOREVER, where words say no instruction."""
     usage = _usage_of(gaps)
-    endless_words = (word for word in usage.words if usage.names.meant(word) == "FOREVER")
+    endless_words = (word for word in usage.words if usage.names.find_meaning(word) == "FOREVER")
     return "" if usage.instruction_name else next(endless_words, "")
 
 
 def _foreign_word(gaps: Gaps) -> str:
     """The word of another language that begins an instruction, or says one."""
     usage = _usage_of(gaps)
-    return next(filter(usage.names.meant, (*usage.words[:1], usage.instruction_name)), "")
+    return next(filter(usage.names.find_meaning, (*usage.words[:1], usage.instruction_name)), "")
 
 
 def _concept(gaps: Gaps) -> str:
     """The word of the language that it means."""
     usage, word = _usage_of(gaps), _foreign_word(gaps)
-    concept = usage.names.meant(word)
+    concept = usage.names.find_meaning(word)
     is_instruction = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
     is_among = concept == "S" and {*usage.instruction_of_word.values()} != {
         "S"
@@ -998,7 +1009,7 @@ def _concept(gaps: Gaps) -> str:
 
 
 def _concept_alone(gaps: Gaps, is_numbered: bool) -> str:
-    """The same of one without values, alone or with a number, which it would lose."""
+    """Return the concept of a word without values, alone or with a number that it would lose."""
     concept, tokens = _concept(gaps), _usage_of(gaps).row_tokens
     if not concept or WORDS[concept].arguments:
         return ""
@@ -1039,16 +1050,18 @@ def _own_name(gaps: Gaps) -> str:
 def _block_end(gaps: Gaps) -> str:
     """The end that words say, or that of the block which is open."""
     usage = _usage_of(gaps)
-    named_ends = (BLOCK_ENDS.get(usage.names.meant(word), "") for word in usage.words[1:])
+    named_ends = (BLOCK_ENDS.get(usage.names.find_meaning(word), "") for word in usage.words[1:])
     return next(named_ends, "") or usage.program_text.innermost_end(usage.instruction_span.start)
 
 
 def _method_call(gaps: Gaps) -> str:
-    """What a part of a thing does, if that is a call: WRITE of `servo.write`."""
+    """Return the method of an object, if it is called: WRITE of `servo.write`."""
     thing, _, action = plain(gaps.subject.text[slice(*_member_span(_usage_of(gaps)))]).rpartition(
         "."
     )
-    action_word = "" if lexicon_meaning(thing, "device") else gaps.subject.names.meant(action)
+    action_word = (
+        "" if lexicon_meaning(thing, "device") else gaps.subject.names.find_meaning(action)
+    )
     return action_word if gaps.subject.names.takes_values(action_word) else ""
 
 
@@ -1107,10 +1120,10 @@ def _spoken_direction(gaps: Gaps) -> str:
 
 
 def _other_robots_word(gaps: Gaps) -> str:
-    """A word with values that this robot does not have: whoever writes it wants the word."""
+    """Return a word with values that only other robots have, and that the user wants."""
     usage = _usage_of(gaps)
     word = "".join(usage.words[:1])
-    is_other = usage.names.meant(word) or usage.names.is_name(word)
+    is_other = usage.names.find_meaning(word) or usage.names.is_name(word)
     return "" if usage.token_texts[:2] != [word, "("] or is_other else word
 
 
@@ -1125,7 +1138,7 @@ def _worded_header(gaps: Gaps) -> str:
     """The header of a name that asks something in words: DARK of `X > 5 OR DARK`."""
     usage = _usage_of(gaps)
     name = plain(usage.source[usage.diagnostic.span])
-    tokens_before = usage.tokens_before()  # in its line
+    tokens_before = usage.tokens_before()  # tokens of the same line
     is_compared = bool(tokens_before) and tokens_before[-1].text in COMPARISONS
     return (
         usage.header_word() if lexicon_meaning(name, "light", "ahead") and not is_compared else ""
@@ -1135,7 +1148,7 @@ def _worded_header(gaps: Gaps) -> str:
 def _endless_move(gaps: Gaps) -> str:
     """A move with FOREVER as its time, and an UNTIL."""
     usage = _usage_of(gaps)
-    is_endless = usage.names.meant(plain(usage.source[usage.diagnostic.span])) == "FOREVER"
+    is_endless = usage.names.find_meaning(plain(usage.source[usage.diagnostic.span])) == "FOREVER"
     if not is_endless or not usage.token_texts or usage.token_texts[0] not in MOVES:
         return ""
     start, end = (offset - usage.instruction_span.start for offset in usage.diagnostic.span)
@@ -1201,7 +1214,7 @@ def _begun_behind(gaps: Gaps) -> str:
 def _else_word(gaps: Gaps) -> str:
     """`si no`, alone."""
     usage = _usage_of(gaps)
-    arm = usage.names.meant("_".join(usage.words[:2]))
+    arm = usage.names.find_meaning("_".join(usage.words[:2]))
     return arm if arm == "ELSE" and len(usage.row_tokens) == 2 else ""
 
 
@@ -1281,7 +1294,7 @@ def _times_in_line(gaps: Gaps) -> str:
 
 
 def _words_after(gaps: Gaps) -> str:
-    """What begins no instruction comes after one: with a `;` between them it is as wrong."""
+    """Return words after an instruction that begin no other; a `;` between them would not help."""
     usage = _usage_of(gaps)
     text = usage.source[_following_span(usage)]
     outline = lines.parse_line(lexemes(text), usage.names)
@@ -1375,7 +1388,7 @@ def _gap_of(value_of: Callable[[Usage], str | None]) -> Callable[[Gaps], str]:
     return lambda gaps: value_of(_usage_of(gaps)) or ""
 
 
-# Where a row tells what it says, but where it was found.
+# Rows with a place of their own instead of that of the finding.
 _SPAN_FUNCTIONS: dict[str, Callable[[Usage], Span]] = {
     "here": lambda it: it.instruction_span, "behind": _following_span, "member": _member_span,
     "quoted": _quoted_span,
@@ -1384,7 +1397,7 @@ _SPAN_FUNCTIONS: dict[str, Callable[[Usage], Span]] = {
         Span(it.instruction_span.start, it.instruction_span.start + len(it.words[0])),
     "amount": _amount_span,
 }  # fmt: skip
-# Values that come together, of a place and the word that is told of.
+# Values that belong together: of a place, and of the word in question.
 _SEVERAL_FUNCTIONS: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "amount": lambda it, _: it.amount_values, "bound": lambda it, _: it.bound_values(),
     "button": lambda it, _: it.button_values(),

@@ -26,13 +26,13 @@ _EMPTY_WORD = make_token("THE")  # a word that asks nothing: one alone may be a 
 _KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
 _ASKED_KINDS = frozenset(("little", "much", "light", "ahead", "none"))
 _SAMPLE_CM = 10  # centimetres, as in every example
-_SAMPLE_NUMBER = 50  # of what a variable holds
+_SAMPLE_NUMBER = 50  # a sample value of a variable
 _MIRRORED_SIGNS = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}
 _ROUND_NUMBERS_FROM = 100  # above it an example is a round number
 
 
 def condition_values(tokens: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
-    """Return what a condition in words asks, None where it is none or cannot be understood.
+    """Return the values of a condition in words, or None if it is not understood.
 
     It is `question` where it has its number, a `question` where a word says what, and else an
     `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several,
@@ -44,7 +44,8 @@ def condition_values(tokens: Sequence[Lexeme], names: Names) -> dict[str, str] |
     texts = [token.text for token in tokens]
     if mixed_values := _mixed_condition(tokens, names):
         return mixed_values
-    is_condition = any(text in ("AND", "OR") for text in texts)  # of the language itself
+    # The language itself has these words.
+    is_condition = any(text in ("AND", "OR") for text in texts)
     has_number = any(token.kind is NUMBER for token in tokens)  # `COLOR = 3` is no `> 3`
     if is_condition or (
         is_compared and (has_number or not _mentioned_words(texts, names) & _ASKED_KINDS)
@@ -61,7 +62,7 @@ def condition_values(tokens: Sequence[Lexeme], names: Names) -> dict[str, str] |
     ):
         kinds_mentioned.add("ahead")  # `20 cm`, `less than 10`
     if any(names.is_yes_no(text) for text in own_names):
-        return None  # which nothing is compared with
+        return None  # nothing is compared with it
     is_bare_name = len(texts) == 1 and not (
         kinds_mentioned & {"light", "ahead"} and not lexicon_meaning(texts[0], "sensor")
     )
@@ -78,7 +79,7 @@ def condition_values(tokens: Sequence[Lexeme], names: Names) -> dict[str, str] |
         and kinds_mentioned & {"left", "right"}
         and question[0].startswith("DISTANCE")
     ):
-        return {"question": "", "aside": "DISTANCE"}  # it looks ahead
+        return {"question": "", "aside": "DISTANCE"}  # the sensor looks ahead
     is_asking = bool(own_names or kinds_mentioned & _ASKED_KINDS)
     gap_names = (
         ("asked", "also") if number else ("question", "another") if is_asking else ("example",)
@@ -111,7 +112,7 @@ def _joining_word(texts: Sequence[str], names: Names) -> str:
 
 
 def _mixed_condition(tokens: Sequence[Lexeme], names: Names) -> dict[str, str]:
-    """Return what is asked where words are joined with a comparison: `DISTANCE < 10 o hay luz`."""
+    """Return the condition of words joined with a comparison: `DISTANCE < 10 o hay luz`."""
     joint_indexes = [k for k, token in enumerate(tokens) if _joining_word_of(token.text, names)]
     pieces = [tokens[a + 1 : b] for a, b in pairwise((-1, *joint_indexes, len(tokens)))]
     are_comparisons = [any(token.text in COMPARISONS for token in piece) for piece in pieces]
@@ -120,7 +121,7 @@ def _mixed_condition(tokens: Sequence[Lexeme], names: Names) -> dict[str, str]:
     joint = _joining_word_of(tokens[joint_indexes[0]].text, names)
     questions = []
     for piece, is_compared in zip(pieces, are_comparisons, strict=True):
-        text = " ".join(names.meant(token.text) or token.text for token in piece)
+        text = " ".join(names.find_meaning(token.text) or token.text for token in piece)
         values = (
             {"asked": text} if is_compared else condition_values([_EMPTY_WORD, *piece], names) or {}
         )
@@ -168,7 +169,9 @@ def _subjects(
     """Return the sensors that are asked, or the variable."""
     sensors = [text for text in own_names if text in names.number_readings]
     sensors += [
-        concept for text in texts if (concept := names.meant(text, NEAR)) in names.number_readings
+        concept
+        for text in texts
+        if (concept := names.find_meaning(text, NEAR)) in names.number_readings
     ]
     subjects = sensors[:1] or list(own_names[:1])
     if not subjects and "light" in kinds_said and "ahead" not in kinds_said:

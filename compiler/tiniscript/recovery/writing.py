@@ -17,13 +17,14 @@ from tiniscript.recovery.meanings import (
 from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 
-# What the lexicon calls the signs that somebody says.
+# The lexicon's names of dictated signs.
 SIGN_OF_NAME = {"open": "(", "close": ")", "comma": ",", "semicolon": ";", "bar": "|"}
 _SPOKEN_SIGN = re.compile(rf"\b{words_of('sign').replace('_', ' ')}\b")
 _NAMED_LETTER = re.compile(rf"(?i)\b{words_of('spelt').replace('_', ' ')}(?=\s*\()")
 MOST_BLOCK_CHARACTERS = 160  # characters of one that a message shows
 PLAIN_SIGNS = str.maketrans("“”„‘’", '"""\'\'')
-PLAIN_SIGNS |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese keyboards
+# Full-width signs of Chinese keyboards.
+PLAIN_SIGNS |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}
 _INSTRUCTION = re.compile(r"[^;|{}]*")
 _NOTE_START = re.compile(r"(?i)(?<!\bSI)(?<!\bSB)//")
 
@@ -35,7 +36,7 @@ def format_line(tokens: Sequence[Lexeme]) -> str:
 
 
 def as_written(tokens: Sequence[Lexeme]) -> str:
-    """Return a line as it was written, with its own spaces where nothing was changed."""
+    """Return a line as it was written, with its own spaces if nothing was changed."""
     line, previous = "", make_token("(")
     for token in tokens:
         space = token.space
@@ -135,7 +136,9 @@ def _meaning(words: str, kind: str) -> str:
 
 
 def has_ambiguous_sign(line: str) -> bool:
-    """Whether a dictated line has what may mean another sign: `ve` is a letter and a word."""
+    """Return whether a dictated line has text that may be another sign: `ve` is a letter and a
+    word.
+    """
     sign_names = [
         lexicon_meaning(it[0].replace(" ", "_"), "sign")[0]
         for it in _SPOKEN_SIGN.finditer(plain(line))

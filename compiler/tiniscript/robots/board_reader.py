@@ -98,7 +98,7 @@ class Pins:
         chip, pin = self._chip, pin_key.fixed_number
         if chip is None or pin is None:
             return None
-        if chip.first_analog is None:  # its pins are in other places
+        if chip.first_analog is None:  # the pins of this chip have other places
             if not any(code == "shield_of_uno" for code, _ in table.reasons):
                 table.complain("shield_of_uno", key, chip=chip.name)
             return None
@@ -241,7 +241,7 @@ def _read_devices(
 
 
 def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
-    """Return how one device is connected. A device of unknown kind fits no driver."""
+    """Return the wiring of one device. A device of unknown kind fits no driver."""
     driver_names = drivers_for(used_by)
     if not driver_names:
         return NO_WIRING

@@ -42,8 +42,8 @@ class Chip(NamedTuple):
         frozenset()
     )  # count the edges of a disc, by interrupts of their own
     pwm_timers: int = 0
-    pin_volts: int = 5 * ONE  # in thousandths: what its pins give, and the most that they take
-    capabilities: int = 0  # what its firmware has of `needs` in an image
+    pin_volts: int = 5 * ONE  # thousandths of a volt: output of its pins, and most input
+    capabilities: int = 0  # features of its firmware, as bits of an image's `needs`
 
     def can(self, pin: int, ability: str) -> bool:
         """Return whether `pin` has the ability `ability`, one of NEEDS."""
@@ -60,7 +60,7 @@ class Chip(NamedTuple):
         return pin in self.digital_pins  # output, pull_up, servo, tone
 
     def pin_number(self, pin_text: object) -> int | None:
-        """Return the number of `5` or `"A0"`, or None where the board has no such pin."""
+        """Return the number of `5` or `"A0"`, or None if the board has no such pin."""
         number = pin_text if isinstance(pin_text, int) else None
         if isinstance(pin_text, str) and self.first_analog is not None:
             letter, digits = pin_text[:1].upper(), pin_text[1:]
@@ -105,7 +105,7 @@ _TASKS, _WAYS = 1, 2
 
 
 def _avr(name: str, digital: range, analog: range, program_bytes: int, capabilities: int) -> Chip:
-    """Return a chip of which `ports` has the pins. Timer 0 keeps the time and also does PWM."""
+    """Return a chip with the pins in `ports`. Timer 0 keeps the time and also does PWM."""
     avr = AVRS[name]
     return Chip(
         name,

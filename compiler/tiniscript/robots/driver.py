@@ -1,4 +1,4 @@
-"""What a driver says of a part that a robot may have: pins, firmware, sketch, wiring, sentences.
+"""The driver of a robot's part: pins, firmware, sketch, wiring, sentences.
 
 Knows what every driver must say; the drivers themselves are the files of `drivers/`. Knows no
 robot: `board_reader` asks for a driver's pins and settings, `firmware` for its C++, the sketch for
@@ -20,7 +20,7 @@ from tiniscript.robots.profile import Robot, Wiring
 
 SIDES = ("left", "right")
 DIRECTIONS = ("forward", "backward")
-AT_STOP = "at_stop"  # what a stop does with a servo; it turns other actuators off
+AT_STOP = "at_stop"  # action of a servo at a stop; other actuators are turned off
 HOLD_CHOICE = 1
 FULL_COUNT = 1023  # reading of the A/D converter at the highest voltage
 
@@ -59,7 +59,7 @@ class Setting(NamedTuple):
 
 
 class Terminal(NamedTuple):
-    """A terminal of a part: what is printed on it, a rail, or a key of `wiring.texts`.
+    """A terminal of a part: its printed name, a rail, or a key of `wiring.texts`.
 
     It goes to the pin that `pin_key` of the profile names, or to a rail, or it stays free.
     Between the pin and the terminal may be a resistor `series_resistor`, then one
@@ -75,7 +75,7 @@ class Terminal(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """What a part is: its icon, the key of what to buy, its terminals from top to bottom.
+    """The form of a part: its icon, the key of its shopping entry, its terminals from the top.
 
     `need_key` is empty where resistors are all. `model` is printed in its title. `motor_terminals`
     are the terminals of the left and the right motor; `note_keys` are keys of what to mind,
@@ -98,7 +98,7 @@ class PinTexts(Protocol):
     """The pins of one robot; each text stands for an object of C++."""
 
     interrupt_vectors: list[str]  # names of interrupts, for the handlers
-    counter_vectors: list[str]  # and those of discs, left and right
+    counter_vectors: list[str]  # interrupt vectors of the discs, left and right
 
     def pin(self, pin: int | None) -> str: ...
 
@@ -114,7 +114,7 @@ class PinTexts(Protocol):
 
 
 class HeaderPart:
-    """What drivers add to the header of a robot, for one chip."""
+    """The drivers' additions to a robot's header, for one chip."""
 
     def __init__(self, robot: Robot, pins: PinTexts) -> None:
         self.robot = robot
@@ -144,14 +144,14 @@ class HeaderPart:
 
 
 class DriverPlan:
-    """What drivers add to a sketch: lines, in which `$words` stand for names."""
+    """The drivers' additions to a sketch: lines in which `$words` stand for names."""
 
     def __init__(self, robot: Robot, is_exact: bool) -> None:
         self.robot = robot
         self.is_exact = is_exact
         self.constant_lines: list[str] = []  # pins, and comments
         self.begin_lines: list[str] = []
-        self.off_lines: list[str] = []  # what a stop turns off besides the motors
+        self.off_lines: list[str] = []  # code that a stop runs, besides the motors'
         self.servo_pins: list[str] = []
 
     def pin(self, name: str, number: int, mode: str = "", comment: str = "") -> str:
@@ -201,7 +201,7 @@ class Driver(ABC):
     def shape(
         self, wiring: Wiring, device: Device | None, sensed_kind: str, pin_volts: int
     ) -> Shape:
-        """Return what it looks like; `sensed_kind` is what the place in the robot's body says."""
+        """Return the form of the part; `sensed_kind` is that of its place in the robot's body."""
         return self.fixed_shape
 
 
@@ -237,7 +237,9 @@ class DiscDriver(Driver):
     has_two_channels: ClassVar[bool] = False
 
     def edges(self, wiring: Wiring, wheel_base_cm: float) -> tuple[int, int]:
-        """Return what a wheel goes from edge to edge, and the robot turns: 64ths of thousandths."""
+        """Return a wheel's distance between edges, and the robot's rotation: 64ths of
+        thousandths.
+        """
         wheel_step = math.pi * wiring.settings["wheel_cm"] / (2 * wiring.settings["holes"]) * 64
         return round(wheel_step), round(wheel_step * 360 / (math.pi * wheel_base_cm))
 
@@ -271,7 +273,7 @@ class SensorDriver(Driver):
         """Return the lines of a sketch that put a reading into `name`."""
 
     def is_count(self, device: Device, wiring: Wiring) -> bool:
-        """Whether a reading is what the converter counts."""
+        """Return whether a reading is the converter's raw count."""
         return False
 
 
@@ -341,7 +343,7 @@ class Bridge(MotorDriver):
 
     module = "motors_bridge"
     profile_help = "left_pwm, left_forward, left_backward and the same for right"
-    keys: ClassVar[tuple[str, ...]] = ("pwm", *DIRECTIONS)  # of each side
+    keys: ClassVar[tuple[str, ...]] = ("pwm", *DIRECTIONS)  # keys of each side
     pins = tuple(
         PinKey(f"{side}_{key}", need)
         for side in SIDES

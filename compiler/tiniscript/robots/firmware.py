@@ -85,7 +85,7 @@ class Header(HeaderPart):
         super().__init__(robot, texts_of(robot))
 
     def paragraphs(self) -> tuple[str, ...]:
-        """Return what drivers and the board define for the preprocessor, then what C++ has."""
+        """Return the preprocessor definitions of drivers and board, then the C++ code."""
         kit, board = self.robot.kit, self.robot.board
         motors = motors_of(board.motors).firmware_lines(self, board.motors)
         sensors = self._case_lines(kit.sensors, board.sensors, sensor_of)
@@ -168,7 +168,7 @@ class Header(HeaderPart):
         self, devices: Sequence[Device], wirings: Sequence[Wiring],
         driver_of: Callable[[str, Wiring], SensorDriver | ActuatorDriver],
     ) -> list[str]:  # fmt: skip
-        """Return what reads sensors or sets actuators, by their numbers."""
+        """Return the code that reads sensors or sets actuators, by their numbers."""
         lines = []
         for number, (device, wiring) in enumerate(zip(devices, wirings, strict=True)):
             lines.append(f"    case {number}:  // {device.name}")
@@ -220,7 +220,7 @@ def _bytes(data: bytes) -> list[str]:
 def _with_remote(
     rows_before: Sequence[str], remote: Sequence[str], rows_after: Sequence[str]
 ) -> list[str]:
-    """Return the rows of an array, some of them only where there is a remote control."""
+    """Return the rows of an array, some of them only if there is a remote control."""
     condition = ["#ifdef tiniscript_has_remote", *_in_rows(remote), "#endif"] if remote else []
     return [*_in_rows(rows_before), *condition, *_in_rows(rows_after)]
 
@@ -305,5 +305,5 @@ class Esp32Pins:
 
 
 def texts_of(robot: Robot) -> PinTexts:
-    """Return what writes the pins of a robot."""
+    """Return the code that writes the pins of a robot."""
     return Esp32Pins(robot) if robot.board.chip in ESP32S else AvrPins(robot)

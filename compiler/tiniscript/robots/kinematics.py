@@ -69,8 +69,8 @@ class Way:
     def __init__(self, body: Body, pose: Pose = START) -> None:
         self.body = body
         self.left = self.right = 0  # the current setting, in percent,
-        self.since_ms: float = 0  # since when,
-        self.start_pose = pose  # and the pose at that time
+        self.since_ms: float = 0  # start time of the current movement
+        self.start_pose = pose  # pose at that time
         self.corners = [pose]  # points of the path so far, joined by straight lines
 
     def set_motors(self, now_ms: float, left: int, right: int) -> None:

@@ -13,7 +13,7 @@ from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import Board, Wiring
 
 CHANNELS_PER_TIMER = 2  # channels
-FREQUENCIES = ("tone", "pwm", "servo")  # of `boards.NEEDS`, in the order of their channels
+FREQUENCIES = ("tone", "pwm", "servo")  # names from `boards.NEEDS`, in the order of their channels
 
 
 def channels_of(board: Board) -> dict[int, int]:
@@ -39,7 +39,7 @@ def channels_of(board: Board) -> dict[int, int]:
 
 
 def timers_of(pin_count: int) -> int:
-    """Return how many timers so many pins of one frequency take."""
+    """Return the number of timers for so many pins of one frequency."""
     return -(-pin_count // CHANNELS_PER_TIMER)
 
 

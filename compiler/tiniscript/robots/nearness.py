@@ -51,7 +51,7 @@ def nearest_to(robot: Robot) -> NearestRobot:
 
 
 def _devices(kit: Kit) -> set[tuple[bool, Device]]:
-    """Return what programs know of a kit: whether it senses, and what it is."""
+    """Return the devices that programs know of a kit, and whether each is a sensor."""
     return {
         (is_sensor, device)
         for is_sensor, devices in ((True, kit.sensors), (False, kit.actuators))

@@ -43,7 +43,8 @@ class Avr(NamedTuple):
     bit_by_pin: Mapping[int, Bit]
     compare_by_pin: Mapping[int, Compare]
     interrupt_by_pin: Mapping[int, Interrupt]
-    external_interrupt_by_pin: Mapping[int, Interrupt]  # those that a pin has for itself
+    # External interrupts with a pin of their own.
+    external_interrupt_by_pin: Mapping[int, Interrupt]
 
 
 EXTERNAL_GROUP = 3  # the group of INT0 to INT7
@@ -125,6 +126,6 @@ AVR_2560 = Avr(
     },
     _external_interrupts(_BITS_2560, _EXTERNAL_2560),
 )
-# What the configuration of Espressif's core defines for the chips of `CHIPS`.
+# Definitions of Espressif's core configuration for the chips of `CHIPS`.
 ESP32S = {"esp32dev": "CONFIG_IDF_TARGET_ESP32", "esp32c3": "CONFIG_IDF_TARGET_ESP32C3"}
 AVRS = {"uno": AVR_328P, "nano": AVR_328P, "mega": AVR_2560}  # boards of `CHIPS`

@@ -36,13 +36,13 @@ def answer_languages() -> list[str]:
 
 
 def language_number(language: str) -> int:
-    """Return by what firmware knows a language: the letters of its code; 0 for English."""
+    """Return the firmware's number of a language: the letters of its code; 0 for English."""
     code = int.from_bytes(language[:2].encode(), "big")
     return code if language in answer_languages()[1:] else 0
 
 
 class Wiring(NamedTuple):
-    """How a device is connected: a driver of `drivers`, its pins and its settings.
+    """The connection of a device: a driver of `drivers`, its pins and its settings.
 
     Pins are the numbers of the chip's Arduino core (A0 of an Uno is 14); pins that the profile
     omits are missing. All settings are present: yes/no as 0 and 1, `zero` and `full` as
@@ -55,12 +55,12 @@ class Wiring(NamedTuple):
 
 
 class Board(NamedTuple):
-    """What the firmware must know. Sensors and actuators are in the kit's order.
+    """The board as the firmware needs it. Sensors and actuators are in the kit's order.
 
     `program_bytes` is the largest size of a program's code. `max_run_seconds` limits how long a
     program runs without a client. A pin that is None is not wired. `language`,
     is that of its answers to text; empty: that of whoever makes its firmware.
-    `discs` are those on the wheels, None where it measures no ways.
+    `discs` are those on the wheels, None if it measures no ways.
     """
 
     chip: str
@@ -79,7 +79,7 @@ class Board(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where a sensor sits, from the middle between the wheels, and what it detects.
+    """The place of a sensor, from the middle between the wheels, and its object.
 
     `x_cm` goes forward and `y_cm` to the left; `heading` is in degrees, 0 ahead and 90 to the
     left. `sees` is one of SEES. `turns_with` names the actuator that carries it, a servo: its value
@@ -97,7 +97,7 @@ SEEN_KINDS = ("light", "distance", "line", "white", "touch")  # a line is black
 
 
 class Body(NamedTuple):
-    """What a simulator must know. It goes `speed_cm_s` and turns `turn_s` degrees at 100 %.
+    """The body as a simulator needs it, with `speed_cm_s` and `turn_s` degrees at 100 %.
 
     They are the kit's `speed` and `turn`, where it says them. `wheel_base_cm` is where the wheels
     are, which turn it less than their places say: they slip.

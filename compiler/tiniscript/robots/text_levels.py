@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from tiniscript.base.words import ALIASES, BLOCK_ENDS, EXTENTS, TASKS, WORDS
 
-CODE_BYTES = 255  # of a typed program: a jump of one byte reaches over all of it
-LONGEST_WORD = 255  # letters of a word that a reader takes
+CODE_BYTES = 255  # bytes of a typed program; a one-byte jump spans all of it
+LONGEST_WORD = 255  # letters of a word that a reader stores
 
 
 def _block_words(*blocks: str) -> frozenset[str]:
@@ -28,7 +28,7 @@ _UNREAD_INSTRUCTIONS = [word for word in _INSTRUCTIONS if word.role.name not in 
 NEVER_READ_WORDS = frozenset(word.text for word in _UNREAD_INSTRUCTIONS if not word.stands_for)
 UNREAD_WORDS = frozenset(
     word.text for word in _UNREAD_INSTRUCTIONS
-)  # also those that `line` writes out
+)  # including those that `line` writes
 
 
 class Level(NamedTuple):
@@ -38,8 +38,8 @@ class Level(NamedTuple):
     """
 
     name: str
-    board: str  # whose memory it has, as `robots.boards` names it
-    sensor_bytes: int  # of a set of sensors, with a bit for each, in its reader
+    board: str  # the board whose memory it has, named as in `robots.boards`
+    sensor_bytes: int  # bytes of a set of sensors in its reader, one bit for each
     lacks: frozenset[str] = frozenset()
 
     @property

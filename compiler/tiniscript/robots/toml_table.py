@@ -41,10 +41,10 @@ def parse_toml(text: str) -> dict[str, object] | Reason:
 @contextmanager
 def root_of(text: str, refusal_type: type[ProfileRefused]) -> Iterator[Table]:
     """Yield the table of a whole file. Raises `refusal_type` with all complaints."""
-    parsed = parse_toml(text)
-    if isinstance(parsed, tuple):
-        raise refusal_type(parsed)
-    root = Table(parsed, "", [])
+    parsed_fields = parse_toml(text)
+    if isinstance(parsed_fields, tuple):
+        raise refusal_type(parsed_fields)
+    root = Table(parsed_fields, "", [])
     yield root
     root.finish()
     if root.reasons:

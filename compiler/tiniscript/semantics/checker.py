@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 class CheckedProgram(NamedTuple):
-    """`program` is a whole program only where no diagnostic is a mistake."""
+    """`program` is a whole program only if no diagnostic is a mistake."""
 
     program: ir.Program
     diagnostics: list[Diagnostic]
@@ -60,7 +60,7 @@ def check(source: Source, parsed_program: ast.Program, kit: Kit) -> CheckedProgr
 
 
 class _Procedure(NamedTuple):
-    """What a call of a DEF brings with it."""
+    """The effects of calling a DEF."""
 
     definitely_read_mask: int
     block_depth: int
@@ -68,7 +68,7 @@ class _Procedure(NamedTuple):
 
 
 class _Outside(NamedTuple):
-    """What is known of the program around a DEF or a task, while that is checked."""
+    """The known facts about the program around a DEF or a task."""
 
     definitely_read_mask: int
     block_depth: int
@@ -87,7 +87,7 @@ class _Checker(Scope):
         self.tasks: list[ir.Task] = []
         self.has_tasks = any(isinstance(node, ast.Task) for node in parsed_program.body)
         self.blocks_in_other_tasks = 0  # open at once in the other tasks, all of them together,
-        self.calls_in_other_tasks = 0  # and their calls
+        self.calls_in_other_tasks = 0  # calls in other tasks
         self.current_def: str | None = None  # the DEF whose body is being checked
         self.definitely_read_mask = 0  # a bit for each sensor
         self.loop_depth = 0
@@ -108,7 +108,7 @@ class _Checker(Scope):
 
     @cached_property
     def wrong_calls(self) -> WrongCalls:
-        """What there is to say of wrong instructions. A right program never loads it."""
+        """Return the checker of wrong instructions. A correct program never loads it."""
         from tiniscript.semantics.wrong_calls import WrongCalls
 
         return WrongCalls(self)
@@ -378,7 +378,7 @@ class _Checker(Scope):
         self.deepest_block = max(self.deepest_block, self.block_depth)
         if (
             self.block_depth + self.blocks_in_other_tasks == BLOCKS + 1
-        ):  # what is alone too deep is not here
+        ):  # code that is too deep by itself is not counted here
             self.report(codes.BLOCKS_TOO_DEEP, span, limit=str(BLOCKS))
         body = self.body(instructions)
         self.block_depth -= 1
@@ -394,7 +394,7 @@ class _Checker(Scope):
 
     def if_(self, node: ast.If, output: list[Statement]) -> None:
         mask_before, chain_mask = self.definitely_read_mask, 0
-        mask_after = -1  # what all arms make surely read
+        mask_after = -1  # sensors that all arms certainly read
         arms: list[ir.Arm] = []
         for arm in node.arms:
             value = self.types.no_value
@@ -476,7 +476,7 @@ class _Checker(Scope):
             variable_numbers.append(
                 self.new_variable(parameter.name, parameter.span, kind if is_new_name else ANY)
             )
-            if known_name is None:  # even if it is taken below: that is said once
+            if known_name is None:  # each name is reported once, even if another message covers it
                 self.names[parameter.name] = Name("variable", variable_numbers[-1])
             if is_new_name:
                 continue
@@ -552,13 +552,13 @@ def _relocate(node: Any, span: Span, argument_of: Mapping[str, ast.Argument]) ->
     return node
 
 
-# What those instructions become, by the role of their words, that are no `ir.Act`.
+# Statements of instructions other than `ir.Act`, by the role of their words.
 _STATEMENT_MAKERS: dict[str, Callable[[Sequence[Value], Span], Statement]] = {
     "motors": lambda values, span: ir.Motors(values[0].terms, values[1].terms, span),
     "show": lambda values, span: ir.Show(values[0].terms, values[0].type == "yes_no", span),
     "stop": lambda values, span: ir.Stop(span),
 }
-# What names do as instructions, by what they stand for; these take values in brackets.
+# The effect of names as instructions, by their meaning; these have values in brackets.
 _KINDS_WITH_VALUES = frozenset(("actuator", "def"))
 _BY_NAME_KIND: dict[str, Callable[[_Checker, ast.Command, int, list[Statement]], None]] = {
     "actuator": _Checker.actuator,

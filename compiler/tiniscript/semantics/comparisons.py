@@ -14,11 +14,12 @@ from tiniscript.base.words import OPPOSITE_MOVES, lexicon_concept
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.syntax.operators import SIGN_OF
 
-MANY_VALUES = 100_000  # thousandths: a sensor with such a range is hardly ever at one of them
+MANY_VALUES = 100_000  # thousandths: a sensor with such a range rarely reads exactly one of them
 TIME = Device("TIME", NUMBER, "s", 0, HIGHEST)
 _MIRRORED = {"LT": "GT", "LE": "GE", "GT": "LT", "GE": "LE", "EQ": "EQ", "NE": "NE"}
 _LESS, _MORE = ("LT", "LE"), ("GT", "GE")
-_OUTCOMES_BY_MOVE = {"F": _LESS, "B": _MORE}  # what comes true, by the way that the robot goes
+# Comparisons that become true, by direction of the move.
+_OUTCOMES_BY_MOVE = {"F": _LESS, "B": _MORE}
 
 
 class Comparison(NamedTuple):
@@ -50,7 +51,7 @@ def is_distance(device: Device) -> bool:
 
 
 def looks_ahead(device: Device) -> bool:
-    """Whether a sensor has a distance that gets smaller as the robot goes forward.
+    """Return whether a sensor measures a distance that shrinks as the robot drives forward.
 
     Its name says so: `DISTANCE`, `DISTANCE_FRONT`, but not `TRAVEL` or `DISTANCE_BACK`.
     """
@@ -59,13 +60,13 @@ def looks_ahead(device: Device) -> bool:
 
 
 def is_aside(suffix: str) -> bool:
-    """Whether a word is no way ahead: R, LEFT, ATRAS."""
+    """Return whether a word means a direction other than ahead: R, LEFT, ATRAS."""
     words = (suffix, lexicon_concept(suffix)) if suffix else ()
     return not OPPOSITE_MOVES.keys().isdisjoint({*words} - {"F", None})
 
 
 def is_one_of_many(device: Device, number: int) -> bool:
-    """Whether a number is one of very many that a sensor may read, and not the last.
+    """Return whether a number is one of very many readings of a sensor, and not the last.
 
     A stick that nobody holds reads 0.
     """
@@ -75,7 +76,7 @@ def is_one_of_many(device: Device, number: int) -> bool:
 
 
 def answer_of(comparison: Comparison) -> str:
-    """Return the answer that a comparison always has, as a term; nothing where it may change."""
+    """Return the answer that a comparison always has, as a term; nothing if it may change."""
     device, op, number = comparison
     if device.is_yes_no:
         return ""
@@ -100,7 +101,7 @@ def answer_of(comparison: Comparison) -> str:
 def answer_of_both(condition: Expression, kit: Kit) -> tuple[str, str]:
     """Return the answer that `DISTANCE < 10 AND DISTANCE > 40` always has, and what was meant.
 
-    Nothing, twice, where no two comparisons of a sensor exclude each other or leave nothing out.
+    Nothing, twice, if no two comparisons of a sensor exclude each other or leave nothing out.
     """
     op = condition[-1].op if len(condition) == 8 else ""
     first_comparison, second_comparison = (comparison_of(condition[k : k + 3], kit) for k in (0, 4))
@@ -135,7 +136,7 @@ def answer_of_both(condition: Expression, kit: Kit) -> tuple[str, str]:
 
 
 def can_come_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
-    """Return whether a condition is one for the UNTIL of a move; None where that is not known.
+    """Return whether a condition is one for the UNTIL of a move; None if that is not known.
 
     It is none where a distance changes the other way, where it asks for exactly one of very many
     numbers, and where its answer is always the same.
@@ -144,19 +145,19 @@ def can_come_true(condition: Expression, direction: str, kit: Kit) -> bool | Non
         term.op == "SENSOR" and is_distance(kit.readings[term.value]) for term in condition
     )
     is_sure = all(term.op != "NOT" for term in condition)
-    for compared in comparisons_in(condition, kit):
-        if answer_of(compared) or (compared.op == "EQ" and is_one_of_many(*compared[::2])):
+    for comparison in comparisons_in(condition, kit):
+        if answer_of(comparison) or (comparison.op == "EQ" and is_one_of_many(*comparison[::2])):
             return False
-        if is_distance(compared.device):
-            distances_left -= looks_ahead(compared.device)
-            if is_sure and looks_ahead(compared.device):
-                if compared.op not in _OUTCOMES_BY_MOVE.get(direction, (compared.op,)):
+        if is_distance(comparison.device):
+            distances_left -= looks_ahead(comparison.device)
+            if is_sure and looks_ahead(comparison.device):
+                if comparison.op not in _OUTCOMES_BY_MOVE.get(direction, (comparison.op,)):
                     return False
     return True if is_sure and (not distances_left or direction not in _OUTCOMES_BY_MOVE) else None
 
 
 def asks_if_near(condition: Expression, kit: Kit) -> bool:
-    """Whether a part of a condition is `DISTANCE < 20`, of a sensor that looks ahead."""
+    """Return whether a condition contains `DISTANCE < 20` for a sensor that looks ahead."""
     return any(
         looks_ahead(compared.device) and compared.op in _LESS
         for compared in comparisons_in(condition, kit)
@@ -169,9 +170,9 @@ def comparisons_in(condition: Expression, kit: Kit) -> Iterator[Comparison]:
         terms = condition[k : k + 3]
         middle = next(((device.low + device.high) // 2 for device in _devices(terms, kit)), 0)
         likely = tuple(Term("NUMBER", middle) if term.op == "VARIABLE" else term for term in terms)
-        compared = comparison_of(likely, kit)
-        if compared is not None:
-            yield compared
+        comparison = comparison_of(likely, kit)
+        if comparison is not None:
+            yield comparison
 
 
 def _devices(terms: Expression, kit: Kit) -> Iterator[Device]:

@@ -1,6 +1,6 @@
 """Finds what ends a move that has FOREVER and no UNTIL: a wait and an S, or an S further on.
 
-Whoever writes `F(FOREVER, 60);W(3);S` thinks that the robot drives on during the wait.
+Anyone who writes `F(FOREVER, 60);W(3);S` thinks that the robot drives on during the wait.
 """
 
 from __future__ import annotations
@@ -11,14 +11,15 @@ from collections.abc import Sequence
 from tiniscript.base.source import Source
 from tiniscript.syntax import ast
 
-# What the motors do in a move, by its power.
+# The state of the motors in a move, by its power.
 _MOTORS = {"F": "M({0}, {0})", "B": "M(-{0}, -{0})", "L": "M(-{0}, {0})", "R": "M({0}, -{0})"}
 Body = Sequence[ast.Instruction]
 
 
 def find_move_end(source: Source, program: ast.Program, move: ast.Command) -> dict[str, str]:
-    """Return `whole`, the move that ends there, or what is `running`, its motors; `used` is either
-    in the text. Empty if no S ends it."""
+    """Return `whole`, the move that ends there, or `running`, if motors run; `used` is its text.
+    Empty if no S ends it.
+    """
     if move.word not in _MOTORS or not move.arguments or len(move.arguments) != 2:
         return {}
     power = source[move.arguments[1].span]
@@ -47,7 +48,7 @@ def find_move_end(source: Source, program: ast.Program, move: ast.Command) -> di
 
 
 def _instructions_after(body: Body, node: ast.Command) -> Body:
-    """Return what comes after an instruction in its own block."""
+    """Return the instructions after one in its own block."""
     start = node.span.start
     while body:
         k = bisect_right(body, start, key=lambda instruction: instruction.span.start) - 1
@@ -71,5 +72,5 @@ def _is_stop(node: ast.Instruction | None) -> bool:
 
 
 def _ends_a_move(node: ast.Instruction) -> bool:
-    """Whether it is a move of its own, or waits for something: then an S may be meant for that."""
+    """Return whether it is a move or a wait, so that a following S may belong to it."""
     return isinstance(node, ast.Command) and (node.until is not None or node.word in _MOTORS)

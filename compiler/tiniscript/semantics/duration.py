@@ -1,4 +1,4 @@
-"""How long a program runs, if this can be known in advance.
+"""The duration of a program, if it can be known in advance.
 
 Knows the checked program. Only moves, waits and what else takes time by the row of its word count;
 readings and other instructions take none.
@@ -31,9 +31,9 @@ _UNKNOWN = Duration(0, None)
 
 
 def duration_of_program(program: ir.Program, kit: Kit) -> Duration:
-    """Return how long `program`, best an optimised one, runs.
+    """Return the duration of `program`, preferably an optimized one.
 
-    Of several tasks it is known how long they run where no more than one moves: a move waits for
+    Of several tasks it is known how long they run if no more than one moves: a move waits for
     the motors, and S ends one.
     """
     calculator = _Durations(program, kit)
@@ -52,18 +52,18 @@ def duration_of_program(program: ir.Program, kit: Kit) -> Duration:
 
 
 class _Durations:
-    """Those of the bodies of one program."""
+    """The durations of one program's bodies."""
 
     def __init__(self, program: ir.Program, kit: Kit) -> None:
         self.kit = kit
-        self.turn_ms = 1 if program.tasks else 0  # what a turn of a loop takes that has no wait
+        self.turn_ms = 1 if program.tasks else 0  # time of a turn of a loop without a wait
         self.def_durations: list[Duration] = []
         self.procedures = program.procedures
         for procedure in program.procedures:
             self.def_durations.append(self.duration_of(procedure.body))
 
     def drives(self, body: ir.Body) -> bool:
-        """Whether a body has a move or an S, or calls something that has one."""
+        """Return whether a body has a move or an S, or calls something that has one."""
         return any(
             isinstance(call, ir.Stop) or (isinstance(call, ir.Move) and call.power is not None)
             for call in ir.walk_with_calls(body, self.procedures)
@@ -105,7 +105,7 @@ class _Durations:
         return _NONE
 
     def duration_of_extent(self, move: ir.Move) -> Duration:
-        """How long a move takes by its way; one that faults ends the program."""
+        """Return the duration of a move by distance; one that faults ends the program."""
         try:
             time_ms = extent_move_ms(move, self.kit)
         except Fault:

@@ -63,7 +63,7 @@ class Stop(NamedTuple):
 
 
 class Act(NamedTuple):
-    """What a robot does with values, but not with its motors: a sound.
+    """An action of a robot with values, other than with its motors.
 
     What is known of it the row of its word says. It becomes the instruction, and in a sketch the
     helper, that is named as the role of the word.
@@ -79,7 +79,7 @@ class Act(NamedTuple):
 
     @property
     def time(self) -> Expression | None:
-        """How long it lasts, if it has a time."""
+        """Return its duration, if it has one."""
         return next((value for argument, value in self.arguments if argument.unit == "s"), None)
 
 
@@ -169,7 +169,7 @@ class Task(NamedTuple):
 
     @property
     def word(self) -> Span:
-        """Where TASK or WHEN stands."""
+        """Return the span of the word TASK or WHEN."""
         return Span(self.span.start, self.span.start + len("TASK"))
 
 
@@ -222,7 +222,7 @@ def all_statements(program: Program) -> Iterator[Statement]:
 
 
 def first_extent_move(program: Program) -> Span | None:
-    """Return where the first move is that goes by centimetres or degrees."""
+    """Return the span of the first move by centimetres or degrees."""
     moves = (move for move in all_statements(program) if isinstance(move, Move) and move.unit)
     return min((move.span for move in moves), default=None)
 
@@ -237,7 +237,7 @@ _YES_NO_OPS = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "
 
 
 def yes_no_variables(program: Program, kit: Kit) -> list[bool]:
-    """Return for each variable of a program whether it is a yes/no."""
+    """Return for each variable whether it is a yes-no value."""
     are_yes_no = [False] * len(program.variables)
     copies: list[Assign] = []  # the value is another variable
     for statement in all_statements(program):
@@ -258,7 +258,7 @@ def yes_no_variables(program: Program, kit: Kit) -> list[bool]:
     return are_yes_no
 
 
-# The fields of statements that are expressions: whoever adds a statement names them so.
+# The fields of statements that are expressions; new statements must use these names.
 _VALUE_FIELDS = frozenset(("time", "power", "left", "right", "value", "times", "condition"))
 
 
@@ -281,14 +281,14 @@ def changed_values(
 
 
 def takes_time(statement: Statement) -> bool:
-    """Whether what follows comes after a time: that of a move, a wait or a sound."""
+    """Return whether a statement takes time: a move, a wait or a sound."""
     return isinstance(statement, Move) or (
         isinstance(statement, Act) and statement.word.role.takes_time
     )
 
 
 def time_of(statement: Statement) -> Expression | None:
-    """Return the time after which what follows comes, where it is one; a way is none."""
+    """Return the time after which the next statement starts, if it is fixed; a distance is not."""
     if isinstance(statement, (Move, Act)) and takes_time(statement):
         return None if isinstance(statement, Move) and statement.unit else statement.time
     return None
@@ -320,7 +320,7 @@ def referenced_numbers(op: str, statements: Iterable[Statement | Task]) -> set[i
 
 
 def breaks_out(body: Body) -> bool:
-    """Whether a BREAK in `body` leaves the loop around it."""
+    """Return whether a BREAK in `body` leaves the loop around it."""
     for statement in body:
         if isinstance(statement, Break):
             return True
@@ -330,7 +330,7 @@ def breaks_out(body: Body) -> bool:
 
 
 def falls_through(body: Body) -> bool:
-    """Whether what follows `body` can be reached, whatever its conditions say."""
+    """Return whether the end of `body` can be reached, whatever its conditions."""
     for statement in body:
         if isinstance(statement, Break):
             return False

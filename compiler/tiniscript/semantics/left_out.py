@@ -1,4 +1,4 @@
-"""What a BREAK outside a loop leaves out: `IF(C);S;BREAK;ENDIF;BEEP(1, 440)`.
+"""The instructions that a BREAK outside a loop skips: `IF(C);S;BREAK;ENDIF;BEEP(1, 440)`.
 
 A person wants the rest of the program only where the BREAK is not reached: it goes into the other
 branch, `IF(C);S;ELSE;BEEP(1, 440);ENDIF`.
@@ -27,7 +27,7 @@ class RewrittenIf(NamedTuple):
 def rewrite_without_break(
     source: Source, parsed_program: ast.Program, break_node: ast.Break
 ) -> RewrittenIf | None:
-    """Return how an IF leaves out the rest without its BREAK, its last instruction in a branch.
+    """Return an IF that skips the rest without its BREAK, the last instruction in a branch.
 
     The IF is no part of another block but a DEF or a TASK, whose rest is what follows.
     """
@@ -42,7 +42,7 @@ def rewrite_without_break(
             ]
             if isinstance(statement, ast.If) and len(statement.arms) == 1 and later_instructions:
                 if len(later_instructions) != len(body) - k - 1:
-                    continue  # a DEF among them goes into no block
+                    continue  # a DEF among them cannot be inside a block
                 if rewritten_if := _rewrite_if(source, statement, later_instructions, break_node):
                     return rewritten_if
     return None
@@ -68,7 +68,7 @@ def _rewrite_if(
     branch_texts[1 - ended_branch] += [
         source[instruction.span] for instruction in later_instructions
     ]
-    branch_texts[0] = branch_texts[0] or ["S"]  # it stands still there
+    branch_texts[0] = branch_texts[0] or ["S"]  # the robot stands still in that branch
     header = f"IF({source[arm.condition.span]})"
     parts = [
         header,
@@ -92,7 +92,7 @@ def _with_notes(
     break_node: ast.Break,
     text: str,
 ) -> RewrittenIf | None:
-    """Return the same where lines have notes: each stays where it is, and ENDIF comes last."""
+    """Return the lines with their notes in place, and ENDIF last."""
     body, else_body = if_node.arms[0].body, if_node.else_body
     end_match = _END.search(source[if_node.span])
     if break_node is not body[-1] or else_body or end_match is None:

@@ -16,28 +16,30 @@ def is_power(name: str) -> bool:
 
 
 def value_of(name: str) -> str:
-    """Return a value that a variable of this name may have, "" where the name says nothing."""
+    """Return a value that a variable of this name may have, "" if the name says nothing."""
     if is_power(name):
         return "50"
     return "2" if is_time(name) else ""
 
 
 def yes_no_of(word: str) -> str:
-    """Return what a word says of a lamp, a button or a pin: TRUE for ON and HIGH, FALSE for OFF."""
+    """Return the yes-no value of a word about a lamp, a button or a pin: TRUE for ON, FALSE for
+    OFF.
+    """
     return (
         "TRUE" if lexicon_meaning(word, "lit") else "FALSE" if lexicon_meaning(word, "dark") else ""
     )
 
 
 def use_of(name: str) -> str:
-    """Return how a variable of this name is used: `F(2, SPEED)`, `F(TIME_S, 80)`, `SHOW(X)`."""
+    """Return a use of a variable with this name: `F(2, SPEED)`, `F(TIME_S, 80)`, `SHOW(X)`."""
     if is_power(name):
         return f"F(2, {name})"
     return f"F({name}, 80)" if is_time(name) else f"SHOW({name})"
 
 
 def _names_argument(name: str, argument: Argument) -> bool:
-    """Whether a part of a name is what such a value is called."""
+    """Return whether a part of a name is a usual name of the argument."""
     return any(names_argument(part, argument) for part in _parts(name))
 
 

@@ -86,12 +86,12 @@ def fold(expression: ir.Expression) -> ir.Expression:
 
 
 def constant(expression: ir.Expression) -> int | None:
-    """Return the value of a folded expression, or None where only the robot knows it."""
+    """Return the value of a folded expression, or None if only the robot knows it."""
     return expression[0].value if _is_constant(expression) else None
 
 
 def known_value(expression: ir.Expression | None) -> int | None:
-    """Return what an expression has for its value, None for none, or where only the robot knows."""
+    """Return the value of an expression; None if there is none or only the robot knows it."""
     return None if expression is None else constant(fold(expression))
 
 
@@ -128,7 +128,7 @@ def _is_constant(terms: ir.Expression | list[ir.Term]) -> bool:
 
 
 def _calculate(op: str, left: list[ir.Term], right: list[ir.Term] | None) -> list[ir.Term] | None:
-    """Return the result of an operator on constants, or None where it faults."""
+    """Return the result of an operator on constants, or None if it faults."""
     try:
         if right is None:
             value = _UNARY[op](left[0].value)
@@ -203,7 +203,7 @@ def _optimize_if(statement: ir.If) -> tuple[ir.Statement, ...]:
             break
     if not arms:
         return else_body
-    if arms[0].reads:  # an ELSEIF that has become the IF: its readings come first
+    if arms[0].reads:  # an ELSEIF that became the IF: its readings come first
         reads = tuple(ir.Read(sensor, arms[0].span) for sensor in arms[0].reads)
         rest_of_if = ir.If((arms[0]._replace(reads=()), *arms[1:]), else_body, statement.span)
         return (*reads, *_optimize_if(rest_of_if))

@@ -14,7 +14,7 @@ from tiniscript.syntax import ast
 
 
 class _ScopedExpression(NamedTuple):
-    """An expression, and the DEF around it, where there is one."""
+    """An expression, and the DEF around it, if there is one."""
 
     expression: ast.Expression
     enclosing_def: ast.Def | None
@@ -28,12 +28,12 @@ class ParameterKinds:
         self._first_calls: dict[
             str, tuple[ast.Command, ast.Def | None]
         ] = {}  # the first of each name
-        self._first_values: dict[str, _ScopedExpression] = {}  # what each variable gets first
+        self._first_values: dict[str, _ScopedExpression] = {}  # first value of each variable
         defs = (node for node in parsed_program.body if isinstance(node, ast.Def))
         names = {node.name: [parameter.name for parameter in node.parameters] for node in defs}
         for node, enclosing_def in _instructions(parsed_program.body, None):
             if isinstance(node, ast.Command):
-                if not names_a_value(node, names.get(node.word, ())):  # which is told of
+                if not names_a_value(node, names.get(node.word, ())):  # reported elsewhere
                     self._first_calls.setdefault(node.word, (node, enclosing_def))
             elif node.value is not None and _parameter(node.name, enclosing_def) is None:
                 self._first_values.setdefault(
@@ -44,11 +44,14 @@ class ParameterKinds:
         """Return NUMBER or YES_NO for each value of a DEF."""
         return [self._kind_of(self._first_argument(node, k)) for k in range(len(node.parameters))]
 
-    def _kind_of(self, scoped: _ScopedExpression | None) -> str:
+    def _kind_of(self, scoped_expression: _ScopedExpression | None) -> str:
         """Follow a name to what it gets its kind from; in a circle it is a number."""
         names_followed: set[tuple[str, str]] = set()
-        while scoped is not None:
-            last_part, enclosing_def = scoped.expression[-1], scoped.enclosing_def
+        while scoped_expression is not None:
+            last_part, enclosing_def = (
+                scoped_expression.expression[-1],
+                scoped_expression.enclosing_def,
+            )
             if last_part.op != "NAME":
                 return YES_NO if last_part.op in YES_NO_OPS else NUMBER
             name = str(last_part.value)
@@ -58,15 +61,15 @@ class ParameterKinds:
                 break
             names_followed.add(key)
             if enclosing_def is not None and k is not None:
-                scoped = self._first_argument(enclosing_def, k)
+                scoped_expression = self._first_argument(enclosing_def, k)
             elif name in self._sensors:
                 return YES_NO
             else:
-                scoped = self._first_values.get(name)
+                scoped_expression = self._first_values.get(name)
         return NUMBER
 
     def _first_argument(self, node: ast.Def, k: int) -> _ScopedExpression | None:
-        """Return what the first call gives to a value of a DEF."""
+        """Return the argument of the first call for a parameter of a DEF."""
         call, calling_def = self._first_calls.get(node.name, (None, None))
         arguments = () if call is None else call.arguments or ()
         return (
@@ -75,7 +78,7 @@ class ParameterKinds:
 
 
 def names_a_value(call: ast.Command, names: Sequence[str]) -> bool:
-    """Whether a call names a value of its DEF: `SIDE(size=20)`."""
+    """Return whether a call names a parameter of its DEF: `SIDE(size=20)`."""
     expressions = (argument.expression for argument in call.arguments or ())
     return any(
         expression[0].op == "NAME" and expression[0].value in names and expression[-1].op == "EQ"

@@ -21,7 +21,7 @@ YES_NO_OPS = frozenset(("TRUE", "FALSE", "NOT", "AND", "OR", *(name for name, _ 
 
 
 class Name(NamedTuple):
-    """What a name stands for: a sensor, an actuator, a variable or a DEF, by its number."""
+    """The meaning of a name: a sensor, an actuator, a variable or a DEF, with its number."""
 
     kind: str
     number: int
@@ -56,9 +56,7 @@ class Scope:
         self.assigned_names = self._first_assignments.keys()
         self.parsed_program = parsed_program
         self.def_names = {node.name for node in parsed_program.body if isinstance(node, ast.Def)}
-        self.unset_names_of_def: dict[
-            str, list[str]
-        ] = {}  # the names in a DEF that nothing gives a value
+        self.unset_names_of_def: dict[str, list[str]] = {}  # unassigned names in a DEF
 
     def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:
         self.diagnostics.append(Diagnostic(code, span, values, place))
@@ -104,7 +102,7 @@ class Scope:
         return self.source[node.span] if node and node.value and node.value.is_plain else ""
 
     def _is_yes_no(self, name: str) -> bool:
-        """Whether the first value that the text gives to `name` looks like a yes or no."""
+        """Return whether the first value assigned to `name` looks like a yes-no value."""
         node = self._first_assignments.get(name)
         if node is None or node.value is None or not node.value.expression:
             return False

@@ -28,7 +28,7 @@ def copy_defs_per_task(program: ir.Program) -> ir.Program:
         if not has_own_values[k] or len(tasks_reaching) < 2:
             for numbers in numbers_by_task:
                 numbers.copy_of_def[k] = len(procedures)
-            # one that no task shares keeps its variables, and calls what its task calls
+            # A copy that is not shared keeps its variables, and calls what its task calls.
             procedures.append(
                 _copy_procedure(
                     procedure, numbers_by_task[tasks_reaching[0] if tasks_reaching else 0]
@@ -43,7 +43,7 @@ def copy_defs_per_task(program: ir.Program) -> ir.Program:
                     variables.append(program.variables[variable])
             numbers.copy_of_def[k] = len(procedures)
             procedures.append(_copy_procedure(procedure, numbers))
-        for numbers in numbers_by_task:  # of a DEF that nobody calls: it calls the first copy
+        for numbers in numbers_by_task:  # a DEF without a caller calls the first copy
             numbers.copy_of_def.setdefault(k, numbers_by_task[tasks_reaching[0]].copy_of_def[k])
     main_numbers, *other_numbers = numbers_by_task
     tasks = tuple(
@@ -62,7 +62,7 @@ class Excess(NamedTuple):
     procedure: int
     tasks: tuple[int, ...]
     resource: str  # "variables" or "defs"
-    total: int  # with all copies
+    total: int  # total number, including copies
     limit: int
 
 
@@ -85,7 +85,7 @@ def find_excess(program: ir.Program) -> Excess | None:
 
 
 def count_tasks_by_def(program: ir.Program) -> list[int]:
-    """Return how many tasks reach each DEF."""
+    """Return for each DEF the number of tasks that reach it."""
     reachable_defs = _reachable_defs(program)
     return [
         sum(k in defs_reached for defs_reached in reachable_defs)
@@ -94,7 +94,7 @@ def count_tasks_by_def(program: ir.Program) -> list[int]:
 
 
 class _Numbers(NamedTuple):
-    """What a task calls, and which variables it uses, in the place of what the text names."""
+    """A task's own numbers of DEFs and variables, instead of those in the text."""
 
     copy_of_def: dict[int, int]
     copy_of_variable: dict[int, int]
@@ -112,7 +112,7 @@ def _reachable_defs(program: ir.Program) -> list[set[int]]:
 
 
 def _owns_values(program: ir.Program) -> list[bool]:
-    """Return for each DEF whether it has values, or calls one that has."""
+    """Return for each DEF whether it, or one that it calls, has parameters."""
     has_own_values: list[bool] = []
     for procedure in program.procedures:
         calls = [call.procedure for call in ir.walk(procedure.body) if isinstance(call, ir.Call)]

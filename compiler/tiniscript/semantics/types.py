@@ -25,7 +25,7 @@ class Value(NamedTuple):
     terms: Expression
     type: str
     depth: int
-    sensors: tuple[int, ...]  # in order of appearance, perhaps several times
+    sensors: tuple[int, ...]  # in order of appearance; a sensor may appear several times
 
 
 _ARITHMETIC_OPS = frozenset(("ADD", "SUB", "MUL", "DIV", "MOD", "MIN", "MAX", "RANDOM", "ROUND"))
@@ -43,13 +43,15 @@ class Types:
 
     @cached_property
     def wrong_values(self) -> WrongValues:
-        """What there is to say of wrong values. A right program never loads it."""
+        """Return the checker of wrong values. A correct program never loads it."""
         from tiniscript.semantics.wrong_values import WrongValues
 
         return WrongValues(self.scope)
 
     def value(self, argument: Argument, target: str | None = None) -> Value:
-        """Return what an expression means. `target` is the new variable that it is put into."""
+        """Return the checked value of an expression. `target` is the new variable it is assigned
+        to.
+        """
         terms: list[Term] = []
         stack: list[Operand] = []
         sensors: list[int] = []

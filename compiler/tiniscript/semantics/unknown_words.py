@@ -28,9 +28,9 @@ from tiniscript.syntax.lexer import WORD, scan
 
 _LETTER = re.compile(r"(?i)(?<!\w)([A-Z])[ \t]*\(")
 _DIGITS = "0123456789"
-_LAMP_NAME = "LED"  # in the kits that have one
+_LAMP_NAME = "LED"  # name of the lamp in kits that have one
 _TRUTH_BY_VALUE = {"TRUE": "TRUE", "1": "TRUE", "FALSE": "FALSE", "0": "FALSE"}
-MOST_REPETITIONS = 20  # that a DEF is done by hand in a class
+MOST_REPETITIONS = 20  # most repetitions of a DEF that a class does by hand
 
 
 def report_unknown(scope: Scope, node: ast.Command, def_name: str | None) -> None:
@@ -84,7 +84,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     )
     is_own_name = suggestion in scope.assigned_names or suggestion in scope.def_names
     if is_own_name and suggestion.rstrip(_DIGITS) == word.rstrip(_DIGITS):
-        suggestion = ""  # `PASO2`, where there is a DEF PASO1
+        suggestion = ""  # `PASO2`, if there is a DEF PASO1
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
     letters = [word[0]] if is_held and word[0] in WORDS else expand_short(word)
     letters = letters or _initial(word, scope.source.text)
@@ -174,7 +174,7 @@ def _unset_names(scope: Scope, name: str) -> list[str]:
 def report_not_callable(scope: Scope, node: ast.Command) -> None:
     """`SQUARE(3)`, where SQUARE has no values: its DEF may name one, or it is done 3 times."""
     if re.search(rf"(?i)\bDEF\s+{node.word}[ \t]*\([^)\n]*\w", scope.source.text):
-        return  # what is wrong in the brackets of the DEF has been said
+        return  # the mistake in the DEF's brackets has been reported
     argument_texts = [scope.source[argument.span] for argument in node.arguments or ()]
     values = {"named": node.word} if node.word in scope.def_names else {}
     fix, names = "", _unset_names(scope, node.word)

@@ -12,7 +12,7 @@ from tiniscript.semantics.optimizer import known_value
 
 
 def extent_move_ms(move: Move, kit: Kit) -> int | None:
-    """Return how long a move takes whose way and power are fixed; None where they are not.
+    """Return the duration of a move by a constant distance and power, or None.
 
     Raises Fault, as the robot does.
     """
@@ -24,7 +24,7 @@ def extent_move_ms(move: Move, kit: Kit) -> int | None:
 
 
 def has_unknown_extent(statement: Statement) -> bool:
-    """Whether it is a move by its way that only the robot can tell the time of."""
+    """Return whether a move by distance has a duration that only the robot knows."""
     if not isinstance(statement, Move) or not statement.unit:
         return False
     values = (statement.time, statement.power)

@@ -1,4 +1,4 @@
-"""Says what is wrong with an instruction: its word, how many values it has, a number out of range.
+"""Diagnoses wrong instructions: the word, the number of values, a number out of range.
 
 Knows the program up to there. The checker knows which instructions are right, and asks here about
 the others.
@@ -51,17 +51,17 @@ _REPEATED = "WHILE(NOT ({c}));{call};END_WHILE"
 _ENDED_MOVE = {"motors": "{call};W(FOREVER) UNTIL({c});S",
           **dict.fromkeys(("stop", "actuator"), "{call};W(FOREVER) UNTIL({c})"),
           **dict.fromkeys(("show", "def"), _REPEATED)}  # fmt: skip
-_LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
+_LONG_TIME_S = 20  # longer moves are rarely meant: the number is a power, degrees or steps
 _LOWEST_HERTZ = 30
 _HIGHEST_POWER = 100
 _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
-_UNTIL_CLAUSE = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
+_UNTIL_CLAUSE = re.compile(r"(?i)\s*\bUNTIL\b.*")  # an UNTIL with its condition
 _UNTIL_AT_END = re.compile(r"(?i)\bUNTIL[ \t]*(\([^()\n;]+\))[\s;]*$")
 _MOST_CHARACTERS_BACK = 200
-_FEW_TIMES = [str(k) for k in range(2, 10)]  # so many may be times, or seconds
+_FEW_TIMES = [str(k) for k in range(2, 10)]  # numbers small enough to be repetitions or seconds
 _NAMED_VALUE = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
-# By the unit of a sensor, the unit of a move that goes as far, and how many of it one is.
+# For each sensor's unit, the unit of a move of that size, and the factor.
 _MOVE_UNIT_BY_SENSOR_UNIT = {
     "cm": ("CM", Fraction(1)),
     "mm": ("CM", Fraction(1, 10)),
@@ -322,7 +322,7 @@ class WrongCalls:
         self.scope.report(codes.NAME_TAKEN, node.span, None, name=node.name, other="", fix=fix)
 
     def free_name(self, name: str, procedures: Sequence[ir.Procedure]) -> str:
-        """Return `DANCE_2`, or with the first number of which the text has no name yet."""
+        """Return `DANCE_2`, or with the first number that makes an unused name."""
         if name not in self._free_names:
             self._free_names[name] = (numbered_names(self.scope.source.text, name), [])
         candidates, free_names = self._free_names[name]
@@ -340,7 +340,7 @@ def _with_first_value(call_match: re.Match[str], value: str) -> str:
 
 
 def _span_with_separator(source: Source, span: Span) -> Span:
-    """Return where an instruction is, with the `;` or the line end after it."""
+    """Return the span of an instruction, with the `;` or the line end after it."""
     match = re.compile(r"[ \t]*(?:;[ \t]*|\r?\n|$)").match(source.text, span.end)
     return Span(span.start, match.end()) if match else span
 
@@ -351,7 +351,7 @@ def _until_offset(source: Source, node: ast.Command, until: ast.Argument) -> int
 
 
 def _span_without_until(source: Source, node: ast.Command) -> Span:
-    """Return where an instruction is, without the question that may end it."""
+    """Return the span of an instruction without its UNTIL."""
     if node.until is None:
         return node.span
     call = source[Span(node.span.start, _until_offset(source, node, node.until))]
@@ -366,7 +366,7 @@ _NEAR_QUESTION = re.compile(
 
 
 def next_condition(source: Source, span: Span) -> str:
-    """Return the condition of an IF that follows what is at `span`.
+    """Return the condition of an IF after `span`.
 
     Else what the program asks of the same sensor, after it first; else an example.
     """
@@ -379,7 +379,7 @@ def next_condition(source: Source, span: Span) -> str:
 
 
 def _until_match(source: Source, span: Span) -> re.Match[str] | None:
-    """Return the UNTIL behind an instruction, or alone before it, as if it began a block."""
+    """Return the UNTIL after an instruction, or alone before it like the start of a block."""
     text_before = source.text[max(0, span.start - _MOST_CHARACTERS_BACK) : span.start]
     return _UNTIL_CLAUSE.search(source[span]) or _UNTIL_AT_END.search(text_before)
 
@@ -424,14 +424,14 @@ def _whole_number(text: str) -> int:
 
 
 def _is_frequency(text: str) -> bool:
-    """Whether a number is rather a tone than a power: 440, but not 200."""
+    """Return whether a number is a tone rather than a power: 440, but not 200."""
     return _whole_number(text) >= _LOW_TONE and _whole_number(text) % _ROUND_STEP != 0
 
 
 def _count_values(
     texts: Sequence[str], word: Word, until_match: re.Match[str] | None
 ) -> dict[str, str]:
-    """Return what is said of a wrong number of values: `power` of F(80) is F(2, 80), `spare` of
+    """Return the values for a wrong number of arguments: `power` of F(80) is F(2, 80), `spare` of
     F(2, 80, 5) is F(2, 80).
 
     `kept` is W(2) for W(2, 80): a wait has no power. With UNTIL the time may be FOREVER.

@@ -1,4 +1,4 @@
-"""Says what is wrong with a value: an unknown name, a number in the place of a yes or no.
+"""Diagnoses wrong values: an unknown name, a number instead of a yes or no.
 
 Knows the names of the program and the text around a value. `types` knows which values are right,
 and asks here about the others.
@@ -31,7 +31,7 @@ _EQUALITY_AT_END = re.compile(r"(\w+)\s*(?:=|<>)\s*$")  # `BUTTON = ` of `BUTTON
 _BEFORE_LOOP_COUNT = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
 _BEFORE_FREQUENCY = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
 _DIGITS = "0123456789"
-_BEFORE_TIME = re.compile(r"(?i)\b(?:[FBLRW]|BEEP)[ \t]*\([ \t]*$")  # a time comes first
+_BEFORE_TIME = re.compile(r"(?i)\b(?:[FBLRW]|BEEP)[ \t]*\([ \t]*$")  # the time comes first
 
 
 class WrongValues:
@@ -86,7 +86,7 @@ class WrongValues:
         if name == target or name in scope.assigned_names:
             if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name
                    for diagnostic in scope.diagnostics[-MOST_DIAGNOSTICS:]):  # fmt: skip
-                return  # said once
+                return  # reported once
             scope.report_used_before_set(name, span, suggestion)
         else:
             suggestion = "" if pair_hints or is_variable else suggestion
@@ -120,7 +120,7 @@ class WrongValues:
                          **pair_hints)  # fmt: skip
 
     def _is_compared(self, span: Span) -> bool:
-        """Whether a name stands beside `<` or `>`."""
+        """Return whether a name is beside `<` or `>`."""
         text = self.scope.source.text
         texts_around = text[: span.start].rstrip()[-2:], text[span.end :].lstrip()[:2]
         return any(it in "".join(texts_around) for it in "<>")
@@ -135,7 +135,7 @@ class WrongValues:
         return sensors[0] if len(sensors) == 1 and direction in OPPOSITE_MOVES else ""
 
     def _amount_values(self, span: Span, name: str) -> dict[str, str]:
-        """Return how the call around `poco` is written, or around the `lento` beside it."""
+        """Return the call around `poco`, or around the `lento` beside it, with numbers."""
         scope = self.scope
         if not is_amount(name) and not lexicon_meaning(name, "power"):
             return {}
@@ -143,7 +143,9 @@ class WrongValues:
         return values if is_amount(name) or "(" in values.get("example", "") else {}
 
     def _has_example(self, span: Span) -> bool:
-        """Whether the example for a value of the same call has a number for this one, too."""
+        """Return whether the example for a value of the same call also has a number for this
+        one.
+        """
         diagnostics = self.scope.diagnostics[-1:]
         if (
             not diagnostics

@@ -1,4 +1,4 @@
-"""What a page has asked of its robot and is told about it, and what is still done for it.
+"""The requests and events of a page about its robot, and the pending work for it.
 
 A page counts the times that its user presses STOP, and the count rides in every beat: a request
 that is lost, late or repeated loses no stop, and each number stops the robot once. It stops nothing
@@ -20,18 +20,18 @@ from tiniscript.studio.robot_link import BadRequest, Json, RobotLink
 
 ATTENDED_S = 0.5  # a page that is silent for longer does not drive
 LEFT_S = 3.0  # a page that is silent for longer has left
-LATCH_S = 2.0  # after a teacher's STOP, for uploads that are on their way
+LATCH_S = 2.0  # time after a teacher's STOP in which uploads under way are refused
 LOOK_S = 0.02
 MOST_KEPT_NEWS = 1000  # news for a page that does not fetch them
-ASKED, CONFIRMED, SILENT = "asked", "confirmed", "silent"  # what is known of a teacher's STOP
+ASKED, CONFIRMED, SILENT = "asked", "confirmed", "silent"  # states of a teacher's STOP
 _DROPPABLE_EVENTS = ("SHOW", "TEXT", "PLACE")
 _VOID_ANSWER = {"failure": "stopped_elsewhere"}
 
 
 class Attending:
-    """`last_stop`: what is known of the newest latching stop. `stop_count`: the page's newest one
-    that has nothing to stop any more. `witness`, if there is one, hears the news, too; it must not
-    let the robot wait."""
+    """`last_stop`: the state of the newest latching stop. `stop_count`: the page's newest one with
+    nothing left to stop. `witness`, if present, hears the events, too; it must not delay the robot.
+    """
 
     def __init__(self, clock: Callable[[], float] = monotonic, stop_count: int = 0) -> None:
         self.last_stop = ""
@@ -45,9 +45,10 @@ class Attending:
         self._news: list[Json] = []
         self._news_count = 0
         self._wants_stop = self._is_silent = False
-        self._last_request_number = 0  # one that comes again was lost on its way back
-        self._latch_news_number = 0  # of the news of the newest latching stop
-        self._stop_counts: dict[int, int] = {}  # that are asked for, with the stops before them
+        self._last_request_number = 0  # a repeated request means that its answer was lost
+        self._latch_news_number = 0  # number of the news about the newest latching stop
+        # Requested stops, with the number of stops before each.
+        self._stop_counts: dict[int, int] = {}
         self._was_heard = False
 
     # -- the page ---------------------------------------------------------------------------------
@@ -55,7 +56,7 @@ class Attending:
     def on_beat(self, requests: list[Json], seen_number: int, stop_count: int = 0) -> list[Json]:
         """The page is there: take its stops and its requests; return the news after `seen_number`.
 
-        `stop_count` is 0 where nobody has pressed STOP yet.
+        `stop_count` is 0 if nobody has pressed STOP yet.
         """
         with self._lock:
             self._heard_s = self._clock()
@@ -87,7 +88,7 @@ class Attending:
                 self._stop_run(stop_count)
 
     def latch(self, until_s: float | None = None, is_stopping: bool = True) -> None:
-        """Refuse what is asked for a while, and stop the robot."""
+        """Refuse requests for a while, and stop the robot."""
         with self._lock:
             self._latched_until_s = self._clock() + LATCH_S if until_s is None else until_s
             if is_stopping:
@@ -107,12 +108,12 @@ class Attending:
 
     @property
     def silent_s(self) -> float:
-        """For how long the page has not been heard."""
+        """Return the time since the page was last heard."""
         return self._clock() - self._heard_s
 
     @property
     def is_half_made(self) -> bool:
-        """Whether its page does not know of it: that was told it, and the answer was lost."""
+        """Return whether the page does not know its robot because the answer was lost."""
         return not self._was_heard and not self.is_attended
 
     @property
@@ -130,7 +131,7 @@ class Attending:
     # -- the robot --------------------------------------------------------------------------------
 
     def attend(self, link: RobotLink, limit_s: float = LOOK_S) -> None:
-        """Pass on what waits, and tell what is new."""
+        """Pass on waiting requests, and report new events."""
         if self._wants_stop:
             self._apply_news(link.news())  # no earlier stop confirms this one
         self.stop_if_wanted(link.stop)

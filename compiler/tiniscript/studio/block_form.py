@@ -1,4 +1,4 @@
-"""What a program is as blocks, and that as data for JSON.
+"""The blocks of a program, and their form as JSON data.
 
 A block of the page is a Block here, and an expression is flat, as in the AST: `values` are its
 parts in the order in which a stack machine meets them. Knows no text and no page.
@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 from tiniscript.studio.block_kinds import KIND_OF, KINDS, piece_of
 
-# A part: `NUMBER` and its decimal, `NAME` or `SENSOR` and the name; else what is done to the parts
-# before, with an empty text. `BRACKETS` stand around a lone number; `NOTHING` is an empty place.
+# A part: `NUMBER` and its decimal, `NAME` or `SENSOR` and the name; otherwise an operation on the
+# parts before, with an empty text. `BRACKETS` surround a lone number; `NOTHING` is an empty place.
 Value = tuple[tuple[str, str], ...]
 TextRange = tuple[int, int, int, int]  # line and column, from 1, and those of the end
 NOWHERE: TextRange = (0, 0, 0, 0)
@@ -40,7 +40,7 @@ class Block(NamedTuple):
     is_behind: bool = False
 
     def line(self, k: int) -> str:
-        """Return what a line was, or nothing where it is to be printed anew."""
+        """Return the original line, or "" if it is to be printed again."""
         return self.said[k] if k < len(self.said) else ""
 
 
@@ -84,7 +84,7 @@ def from_data(data: dict[str, Any]) -> Form:
 
 
 def size_of(form: Form) -> int:
-    """Return how many blocks of the page a program needs, those of its values included."""
+    """Return the number of blocks that a program needs, including those of values."""
     return sum(
         _own_size(block)
         for body in (form.body, *(stack.body for stack in form.loose))
@@ -102,8 +102,9 @@ def kinds_in(form: Form) -> set[str]:
 
 
 def pieces_in(form: Form) -> set[tuple[str, str]]:
-    """Return what a program's blocks are to who looks for them, and how each is used: with a unit,
-    or a word of one's own with values."""
+    """Return the searchable pieces of a program's blocks, and their use: with a unit, or as a
+    defined word with values.
+    """
     pieces: set[tuple[str, str]] = set()
     for block in in_order(form.body):
         use = block.word.partition(" ")[2] if KINDS[block.kind].units else ""
@@ -125,7 +126,7 @@ def lone_block(form: Form) -> Block | None:
 
 
 def first_blocks(form: Form, most_blocks: int) -> Form:
-    """Return a form with no more than so many blocks, and a last one that says that there were."""
+    """Return a form with at most so many blocks, and a last one about the omitted rest."""
     if size_of(form) <= most_blocks:
         return form
     body, _ = _first_blocks(form.body, most_blocks - 1)

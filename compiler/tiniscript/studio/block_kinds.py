@@ -2,7 +2,7 @@
 
 Knows what goes into each kind; no page and no program. What it says is in the page's catalogue, as
 `block/if` and `tip/if`: `%1` and so on are where values go. A word of the text stands in braces: on
-a block it is seen where somebody wants it, of `{IF} if %1` as `IF %1`.
+a block it is seen if somebody wants it, of `{IF} if %1` as `IF %1`.
 `python -m tools.builds.studio` gives the page the table.
 """
 
@@ -45,7 +45,7 @@ def plain_kind(count: int) -> str:
 
 
 def is_plain(word: Word) -> bool:
-    """Whether it is an instruction that has no kind of its own."""
+    """Return whether it is an instruction without a kind of its own."""
     return word.role.is_instruction and word.role.name not in KINDS
 
 
@@ -98,8 +98,8 @@ KINDS = {kind.name: kind for kind in (
     Kind("extreme", "numbers", ("number", "number"), gives="number", words=("MIN", "MAX")),
     Kind("random", "numbers", ("number", "number"), gives="number", part="RANDOM"),
 )}
-# All other instructions: those that take as many values are of one kind. What each says where the
-# catalogue has no `block/HORN`: `HORN = BEEP(0.5, 440)`, or its name.
+# All other instructions: those with the same number of values are of one kind. Their text without a
+# `block/HORN` in the catalogue: `HORN = BEEP(0.5, 440)`, or the name.
 _PLAIN = [word for word in WORDS.values() if is_plain(word)]
 PLAIN = {
     word.text: f"{{{word.text}}} {word.usage.upper()} = {word.stands_for}"
@@ -124,7 +124,7 @@ _KEY_SETS = {device.name: device.name.partition("_")[0] for device in REMOTE}  #
 
 
 def piece_of(kind: str, word: str) -> str:
-    """Return what a block is to who looks for it: its kind, and its word if each has its own.
+    """Return the searchable piece of a block: its kind, and its word if each has its own.
 
     A set of keys is one. `page/words.js` says the same.
     """
@@ -138,7 +138,7 @@ SAYS = {**{kind.name: kind.says for kind in KINDS.values()}, **SUMS, **COMPARISO
 
 
 def table_data() -> dict[str, Any]:
-    """Return the table as data for JSON: the kinds, and what is said in all languages."""
+    """Return the table as data for JSON: the kinds, and their texts in all languages."""
     kinds = {name: kind._asdict() for name, kind in KINDS.items()}
     for kind in kinds.values():
         del kind["name"], kind["says"]

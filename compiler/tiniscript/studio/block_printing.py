@@ -47,7 +47,9 @@ class _Instruction(NamedTuple):
 
     @property
     def takes_note(self) -> bool:
-        """Whether it is the line of an arm or of an end, whose comment is a block of its own."""
+        """Return whether the line is that of an arm or an end, whose comment is a separate
+        block.
+        """
         return self.word in _WORDS_WITH_NOTE and self.is_code and not self.note
 
 
@@ -61,12 +63,12 @@ class _Line(NamedTuple):
 def format_blocks(form: Form) -> Printed:
     """Return the text of a program's blocks, and where each of them is."""
     instructions: list[_Instruction] = []
-    indexes_of_blocks: list[list[int]] = []  # of each block, which instructions are its lines
+    indexes_of_blocks: list[list[int]] = []  # indexes of each block's instructions
     _add_all(form.body, instructions, indexes_of_blocks)
     lines = _lines(form, instructions)
     loose_rows = [Row("", line, k == 0) for k, line in enumerate(_loose_lines(form.loose))]
     texts = lines_of([line.row for line in lines] + loose_rows)
-    instruction_places: list[tuple[int, int, int]] = []  # of each instruction: line, column, end
+    instruction_places: list[tuple[int, int, int]] = []  # line, column and end of each instruction
     line_number = 0
     for text, line in zip(texts, lines, strict=False):
         line_number += 1 + text.count("\n")
@@ -204,7 +206,7 @@ def _lines(form: Form, instructions: list[_Instruction]) -> list[_Line]:
 def _is_one_line(
     form: Form, instructions_left: list[_Instruction], code_indexes: list[int]
 ) -> bool:
-    """Whether all instructions go on one line, as the formatter has it."""
+    """Return whether all instructions go on one line, as in the formatter."""
     if not code_indexes or (form.start and code_indexes[0] > 0):
         return False
     if not form.is_one_line and len(code_indexes) > 1:
@@ -274,7 +276,8 @@ def text_of(value: Value) -> str:
             stack.append((f"NOT {_bracket(stack.pop(), NOT)}", NOT))
         elif op == "NEG":
             text, precedence = stack.pop()
-            is_number = text[:1].isdigit() or text[:1] == "-"  # whose sign it would become
+            # The minus would become the number's sign.
+            is_number = text[:1].isdigit() or text[:1] == "-"
             inner_text = f"({text})" if is_number else _bracket((text, precedence), ATOM)
             stack.append((f"-{inner_text}", MINUS))
         elif op == "BRACKETS":

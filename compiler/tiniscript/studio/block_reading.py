@@ -31,9 +31,9 @@ from tiniscript.syntax.parser import ParsedText, parse
 
 LOOSE_PREFIX = "///"  # begins the lines of blocks that hang on nothing
 LOOSE_VALUE_PREFIX = "= "
-ROUNDS = 12  # of reading; then every line is grey
+ROUNDS = 12  # most rounds of reading, after which every line is grey
 
-_LEFT_OUT = frozenset(("AND_LEFT", "OR_LEFT"))  # of parts: where the left side ends
+_LEFT_OUT = frozenset(("AND_LEFT", "OR_LEFT"))  # part kinds that mark the end of the left side
 
 
 def read_blocks(text: str, kit: Kit) -> Form:
@@ -195,10 +195,10 @@ class _Reader:
         return tuple(bodies), tuple(self._value(condition) for condition in conditions)
 
     def _command(self, node: Command, piece: Piece) -> Block:
-        known = WORDS.get(node.word)
+        known_word = WORDS.get(node.word)
         arguments = node.arguments or ()
-        if known is not None:
-            kind = kind_of(known)
+        if known_word is not None:
+            kind = kind_of(known_word)
         elif node.arguments is not None:
             kind = "call" if node.word in self._defined_names else "set"
         else:
@@ -266,7 +266,7 @@ def _comment(piece: Piece) -> str:
 
 
 def _comment_behind(piece: Piece, place: TextRange = NOWHERE) -> tuple[Block, ...]:
-    """Return what stands behind an arm or an end."""
+    """Return the comment after an arm or an end."""
     comment = _comment(piece)
     block = Block("comment", _note(piece), place=place, comment=comment, is_behind=True)
     return (block,) if comment else ()

@@ -18,7 +18,8 @@ from tiniscript.studio.block_reading import read_blocks
 
 CODE_PATTERN = re.compile("`([^`]+)`")
 WORD_PATTERN = re.compile(r"\w+")
-# What makes a program of code in a sentence: the end of what it begins, or SHOW around a value.
+# Completions that make a program of code in a sentence: the end of its block, or SHOW around a
+# value.
 PROGRAM_FORMS = (
     "{}",
     *(f"{{}}\n{end}" for end in ("END_LOOP", "ENDIF", "END_WHILE", "END_WHEN", "END_DEF")),
@@ -33,7 +34,7 @@ _BEGINNING = re.compile(r"(?<![\w.])(?P<word>[A-Z][A-Z0-9_]*\b|[^\W\d]\w*(?=\())
 def mark_code(sentence: str, kit: Kit) -> str:
     """Return a sentence with back quotes around its code, as much of it as is read as one block."""
     if "`" in sentence:
-        return sentence  # it speaks of them
+        return sentence  # the sentence mentions its values
     parts, at = [], 0
     while beginning := _BEGINNING.search(sentence, at):
         start, word_end = beginning.start(), beginning.start() + len(beginning["word"])
@@ -52,13 +53,13 @@ def blocks_of(codes: list[str], kit: Kit) -> dict[str, dict[str, Any]]:
     block_of_code: dict[str, dict[str, Any]] = {}
     for code in codes:
         if WORD_PATTERN.fullmatch(code):
-            continue  # what a word is called, the page knows
+            continue  # the page has the names of words
         if block := _block_of(code, kit):
             block_of_code[code] = {"kind": block.kind, "word": block.word, "values": block.values}
     return block_of_code
 
 
-@lru_cache(maxsize=1000)  # the same are said again whenever a text is checked
+@lru_cache(maxsize=1000)  # the same ones occur again at every check of a text
 def _block_of(code: str, kit: Kit) -> Block | None:
     for form in (*PROGRAM_FORMS, VALUE_FORM):
         block = lone_block(read_blocks(form.format(code), kit))
@@ -68,7 +69,7 @@ def _block_of(code: str, kit: Kit) -> Block | None:
 
 
 def _end_of_code(sentence: str, start: int, kit: Kit) -> int:
-    """Return where the longest code ends that begins there, or 0 if there is none."""
+    """Return the end of the longest code that begins there, or 0 if there is none."""
     word = WORD_PATTERN.match(sentence, start)
     assert word is not None, "code begins with a name"
     ends, end = [word.end()], start

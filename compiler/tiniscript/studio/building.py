@@ -1,4 +1,4 @@
-"""Builds the studio's page in a clone: what that needs, what is fetched for it, and how far it is.
+"""Builds the studio's page in a clone: requirements, downloads, and progress.
 
 `tools/builds/studio.py`, which no package brings, does it. Prints nothing.
 """
@@ -18,15 +18,15 @@ PAGE = Path(__file__).with_name("page")
 INDEX_FILE = "index.html"
 CLONE = Path(__file__).resolve().parent.parent.parent.parent
 SOURCES = CLONE / "tools" / "studio"
-LOCK = SOURCES / "package-lock.json"  # which packages of npm
+LOCK = SOURCES / "package-lock.json"  # lock file of the npm packages
 MODULES = SOURCES / "node_modules"
-# Of which lock file the packages are, once all of them are there.
+# The lock file of the installed packages, written once all of them are there.
 FETCH_STAMP = MODULES / ".tiniscript"
 MODULE = "tools.builds.studio"
 BUILDER = CLONE / "tools" / "builds" / "studio.py"
-STAMP = "build.json"  # of the page: of which sources it is; no file of it
+STAMP = "build.json"  # file of the page with the digest of its sources; not part of the page
 OLDEST_NODE = 22
-# What it says when it begins with a step, and how far it is then, in percent.
+# The build's messages at each step, with the progress in percent.
 PACKAGES, TYPES, PACKING, BUNDLING = STEPS = (
     "packages from npm, into tools/studio/node_modules",
     "types of the sources",
@@ -34,13 +34,13 @@ PACKAGES, TYPES, PACKING, BUNDLING = STEPS = (
     "the page's files",
 )
 # Measured with an empty cache, on Linux.
-NODE_MB, NPM_MB = 61, 40  # what pip and npm fetch
-NODE_MODULES_MB = 77  # what npm makes of it
+NODE_MB, NPM_MB = 61, 40  # downloads of pip and npm
+NODE_MODULES_MB = 77  # size of the installed npm packages
 MINUTES = 2
 
 
 class Tools(NamedTuple):
-    """How node and npm are called."""
+    """The commands for node and npm."""
 
     node: list[str]
     npm: list[str]
@@ -48,17 +48,17 @@ class Tools(NamedTuple):
 
 
 def is_possible() -> bool:
-    """Whether tsc runs from a clone, which has the page's sources."""
+    """Return whether tsc runs from a clone, which contains the page's sources."""
     return LOCK.is_file()
 
 
 def has_page(page: Path = PAGE) -> bool:
-    """Whether this installation has the page."""
+    """Return whether this installation has the page."""
     return (page / INDEX_FILE).is_file()
 
 
 def is_built_from_sources(page: Path) -> bool:
-    """Whether the page in this folder was built of the sources that are there now."""
+    """Return whether the page in this folder was built from the current sources."""
     try:
         stamp = json.loads((page / STAMP).read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -118,7 +118,7 @@ def lock_digest() -> str:
 
 
 def are_packages_fetched() -> bool:
-    """Whether the packages that the lock file names are there."""
+    """Return whether the packages of the lock file are installed."""
     return FETCH_STAMP.is_file() and FETCH_STAMP.read_text(encoding="utf-8") == lock_digest()
 
 

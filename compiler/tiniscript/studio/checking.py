@@ -51,13 +51,12 @@ class Variable(NamedTuple):
 
 
 class CheckResult(NamedTuple):
-    """`image` is empty where the program has mistakes. `places` say for each instruction from
-    which offset on which range of the text it comes from, `halts` where a real robot halts before
-    each of them, `shows` which of them are SHOWs with a
-    name, by offset; `variables` are in the order of their
-    numbers; `start` is SI, SB or PING, or nothing where there are mistakes; `robot` is the one that
-    it was compiled for, which the text names where `names_robot`; `remote_words` are those of a
-    remote control that it reads."""
+    """`image` is empty for programs with mistakes. `places` map each instruction's start to a range
+    of the text, `halts` to the halt of a real robot before it, `shows` to the names of SHOWs, by
+    offset; `variables` are in the order of their numbers; `start` is SI, SB or PING, or empty if
+    there are mistakes; `robot` is the target, which the text names if `names_robot`; `remote_words`
+    are those of a remote control that it reads.
+    """
 
     image: bytes
     code_bytes: int
@@ -117,22 +116,24 @@ def _show_places(program_map: source_map.SourceMap) -> tuple[tuple[int, Show], .
 
 
 def repair(data: bytes, robot: str, finding_number: int) -> tuple[Change, ...]:
-    """Return what the button of a finding does, or nothing where it does not help.
+    """Return the edits behind a finding's button, or none if they do not help.
 
     `finding_number` counts the findings of this text from 0.
     """
     compilation = _compile(data, robot)
 
     def check(text: str) -> list[Diagnostic]:
-        changed = text.encode()
-        return compile_source(changed, profile_for(changed, robot), "", is_strict=True).diagnostics
+        changed_bytes = text.encode()
+        return compile_source(
+            changed_bytes, profile_for(changed_bytes, robot), "", is_strict=True
+        ).diagnostics
 
     edits = edits_offered(compilation.source.text, compilation.diagnostics, finding_number, check)
     return tuple(_change(edit, compilation.source) for edit in edits)
 
 
 def open_text(data: bytes, robot: str, language: str) -> str | Message:
-    """Return the text of a file, or what is wrong with it."""
+    """Return the text of a file, or its problem."""
     text = text_of(data, "")
     if isinstance(text, str):
         return text
@@ -171,7 +172,7 @@ def profile_for(data: bytes, robot: str) -> Robot:
     return robot_of(data, profile_of(robot))
 
 
-@lru_cache(maxsize=1)  # whose buttons are asked for, one after the other
+@lru_cache(maxsize=1)  # the page asks for the edits of one program repeatedly
 def _compile(data: bytes, robot: str) -> Compilation:
     profile = profile_for(data, robot)
     return fit_to_robot(compile_source(data, profile, "", is_strict=True), profile)

@@ -1,4 +1,4 @@
-"""What is kept of a class: the work of its pupils, as data, and a file from which it goes on.
+"""The stored state of a class: the work of its pupils, as data, and the file for resuming.
 
 The file is there while a class lasts: when the teacher's computer has crashed, `tsc studio --class`
 goes on from it, with the same code and the same pupils. Only the teacher ends a class: the next one
@@ -23,13 +23,13 @@ from tiniscript.base.files import LOCK_ENDING, read_limited, replace, settings_f
 
 Json = dict[str, Any]
 
-TEXT_CHARACTERS = 20_000  # of a program
+TEXT_CHARACTERS = 20_000  # most characters of a program
 MOST_PUPILS = 60
-MOST_WORKS = 120  # of who is here and of who is not
+MOST_WORKS = 120  # most works kept, for pupils present and absent
 MOST_LESSONS = 40
-FORM = 1  # of the file; another one is not read
+FORM = 1  # version of the file's form; others are not read
 SAME_LESSON_S = 3600.0  # pupils of a class that was seen last before must join again
-FILE_BYTES = 24_000_000  # all works, in which each character takes six bytes, and more
+FILE_BYTES = 24_000_000  # bytes of all works; a character may take six bytes
 _LESSON = re.compile(r"\w{1,60}")
 _TOKEN = re.compile(r"[0-9a-f]{32}")
 
@@ -49,7 +49,7 @@ class Work(NamedTuple):
             return None
         if not isinstance(lessons, list) or not all(is_lesson(lesson) for lesson in lessons):
             return None
-        # as the file has it
+        # The state in the form of the file.
         stored_text = text[:TEXT_CHARACTERS].encode("utf-8", "replace").decode()
         return cls(stored_text, str(robot), tuple(lessons[:MOST_LESSONS]))
 
@@ -73,7 +73,7 @@ class ClassTaken(Exception):
 
 
 class KeptClass(NamedTuple):
-    """`is_same_lesson`: seen within the last hour, or, where the clock is behind, nobody knows."""
+    """`is_same_lesson`: seen within the last hour, or unknown if the clock is behind."""
 
     state: Json
     is_same_lesson: bool
@@ -90,8 +90,9 @@ class Keeper:
             raise ClassTaken
 
     def _is_ours(self) -> bool:
-        """Whether no other command has the file. Where nothing can be written there is no lock
-        until there is room; some file systems have none at all."""
+        """Return whether no other command has the file. A full disk allows no lock until there is
+        room; some file systems have no locks.
+        """
         if self._lock is not None:
             return True
         flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
@@ -165,7 +166,7 @@ def _write(state: Json) -> None:
 
 
 def forget() -> None:
-    """Delete what is kept of a class that is over."""
+    """Delete the stored data of a class that is over."""
     for file in (path(), _unread_path()):
         with suppress(OSError):
             file.unlink()

@@ -1,6 +1,6 @@
 """A class: its pupils, the robots that it has, whose turn it is, and what the teacher may do.
 
-A pupil joins with the code of the class and gets a token. Whoever wants a robot stands in one
+A pupil joins with the code of the class and gets a token. Anyone who wants a robot stands in one
 queue; a turn ends when the pupil leaves the robot or is not heard, and after a time if somebody
 waits. A pupil reaches only the robot of their own turn: the page of a request is never one that a
 pupil names. A pupil's page reports its work, and whether a hand is up.
@@ -50,18 +50,18 @@ from tiniscript.studio.rates import Rate
 from tiniscript.studio.robot_link import BadRequest, Json, robot_of, whole_number
 from tiniscript.studio.serving import REQUEST_BYTES
 
-OWN_NAME_CHARACTERS, MOST_COLOUR = 16, 31  # of the robot that a pupil calls their own
+OWN_NAME_CHARACTERS, MOST_COLOUR = 16, 31  # longest name and colour of a robot that a pupil names
 
 
 class OwnRobot(NamedTuple):
-    """What a pupil has made of the virtual robot: `colour` is a number of the page's colours."""
+    """A pupil's own virtual robot: `colour` is a number of the page's colours."""
 
     name: str = ""
     colour: int = 0
 
     @classmethod
     def of(cls, data: object) -> OwnRobot:
-        """Return what a page says. Raises BadRequest."""
+        """Return the robot in a page's data. Raises BadRequest."""
         if not isinstance(data, dict) or not isinstance(data.get("name"), str):
             raise BadRequest
         name = printable(data["name"][:OWN_NAME_CHARACTERS])
@@ -73,8 +73,9 @@ NO_OWN_ROBOT = OwnRobot()
 
 @dataclass
 class RunRequest:
-    """The newest run of a pupil's page, which the teacher has asked for: what has come of its file,
-    which nobody here has checked. It is in memory until the teacher's page has it."""
+    """The newest run of a pupil's page, requested by the teacher: the received part of its file,
+    unchecked. It is in memory until the teacher's page has it.
+    """
 
     number: int
     file_text: str = ""
@@ -107,7 +108,7 @@ class Pupil:
     address: str
     heard_s: float
     work: Work = NOTHING
-    version: int = 0  # of the work
+    version: int = 0  # version of the pupil's work
     is_right: bool = True  # a program without mistakes
     own_robot: OwnRobot = NO_OWN_ROBOT
     queue_number: int | None = None
@@ -131,14 +132,15 @@ class KeptWork:
     token: str = ""
     address: str = ""
     recipient_token: str = ""
-    key: str = field(default_factory=new_token)  # for pages
+    key: str = field(default_factory=new_token)  # key that pages use for the pupil
 
 
 @dataclass(eq=False)
 class ClassRobot:
-    """`hosted_robot` is the connection of this turn, once the pupil's page has taken it;
-    `queue_number` is what the pupil had; `stop_number` is that of the newest STOP of a group, and
-    `group_runs` is where it hears what the robot tells."""
+    """`hosted_robot` is the connection of this turn, once the pupil's page has it; `queue_number`
+    is the pupil's former number; `stop_number` is that of the group's newest STOP, and `group_runs`
+    receives the robot's events.
+    """
 
     port: str
     name: str
@@ -155,7 +157,7 @@ class ClassRobot:
         self.queue_number, pupil.queue_number = pupil.queue_number, None
 
     def pass_to(self, pupil: Pupil) -> None:
-        """Let another pupil of the group have the rest of the turn, and stop what was started."""
+        """Pass the rest of the turn to another pupil of the group, and stop what was started."""
         if self.hosted_robot is not None:
             self.hosted_robot.leave("group_other")
         self.pupil, self.hosted_robot = pupil, None
@@ -170,28 +172,29 @@ class ClassRobot:
         self.end()
 
 
-LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"  # none looks like another
+LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"  # letters that do not look alike
 CODE_LETTERS = 6  # a thousand million codes
 JOIN_BYTES = 1000
-PLACES_PER_ADDRESS = 3  # of one address; the teacher may allow more
-WORKS_PER_PLACE = 3  # of one address for each of its places
+PLACES_PER_ADDRESS = 3  # most pupils at one address; the teacher may allow more
+WORKS_PER_PLACE = 3  # most works for each pupil's place at one address
 MOST_ROBOTS = 40
 TURN_S = 180
 SHORTEST_TURN_S, LONGEST_TURN_S = 10, 3600
-CONNECT_S = 10.0  # for a page to take its turn
+CONNECT_S = 10.0  # time for a page to take its turn
 QUEUE_S = 20.0  # a page that is silent for longer waits no more
 # A page that was heard since then may get a turn, and keeps one while others wait. It asks once a
 # second. With the time of a look the next one has waited less than 3 s.
 HERE_S = 2.0
-# A page that is silent for longer gives its place away: where its address is full, or to who comes
-# back with its name.
+# A page silent for longer may lose its place: at a full address, or to a pupil who returns with its
+# name.
 PLACE_S = 5.0
-REST_S = 10.0  # of a robot with which a turn has failed
-SILENT_S = 60.0  # after which a place in a full class is given away
-OVER_S = 6.0  # for pages to hear that the class is over
+REST_S = 10.0  # pause of a robot after a failed turn
+SILENT_S = 60.0  # silence after which a place in a full class may be given away
+OVER_S = 6.0  # time for pages to hear that the class is over
 # Wrong codes of a computer: twenty, then one in three seconds. A thousand million take a century.
 WRONG_CODE_RATE = (20, 1 / 3)
-REQUEST_RATE = (80, 40)  # of a pupil; a page that drives asks ten times a second
+# Burst and rate of a pupil's requests; a page that drives sends ten a second.
+REQUEST_RATE = (80, 40)
 # What a pupil may ask of a robot. Its name, its trim and its owner are the teacher's.
 ALLOWED_REQUESTS = ("hello", "upload", "live", "start", "identify", "trim", "keys", "stop")
 
@@ -205,8 +208,9 @@ class Classroom:
         self, hosting: Hosting, ports: list[str], turn_s: int | None = None,
         clock: Clock = monotonic, folder: Path | None = None,
     ) -> None:  # fmt: skip
-        """`turn_s` of None: as in the class from before a crash, else TURN_S. `folder`: for what is
-        kept of groups."""
+        """`turn_s` of None: as in the class before a crash, or TURN_S. `folder`: for the data of
+        groups.
+        """
         self._groups = Groups(clock, folder)
         self.code = _new_code()
         self._hosting = hosting
@@ -214,15 +218,16 @@ class Classroom:
         self._is_turn_given = turn_s is not None
         self._clock = clock
         self._lock = RLock()
-        self._pupil_by_token: dict[str, Pupil] = {}  # by token
+        self._pupil_by_token: dict[str, Pupil] = {}  # keyed by token
         self._robots = [ClassRobot(port, _name_of(port)) for port in ports]
         self._places_per_address = PLACES_PER_ADDRESS
         self._wrong_code_rate = Rate(*WRONG_CODE_RATE)
         self._request_rate = Rate(*REQUEST_RATE)
-        self._numbers = count(1)  # of pupils, of places in the queue and of hands
-        self._kept_work_by_key: dict[str, KeptWork] = {}  # by key
-        self._is_continued = False  # after a crash, and the teacher has not said otherwise
-        self._ending = ""  # or whether pupils' work is kept
+        self._numbers = count(1)  # numbers of pupils, queue places and raised hands
+        self._kept_work_by_key: dict[str, KeptWork] = {}  # keyed by the work's key
+        # Whether the class continues after a crash, without a decision by the teacher.
+        self._is_continued = False
+        self._ending = ""  # how the class ends, or whether works are kept
         self._ended_s = 0.0
 
     # -- pupils -----------------------------------------------------------------------------------
@@ -286,7 +291,7 @@ class Classroom:
         if isinstance(returning, Pupil):  # the page has been away
             returning.heard_s, returning.address = now_s, address
             return {"token": returning.token, "name": returning.name}
-        if returning is None:  # who comes back is not a second one
+        if returning is None:  # a returning pupil is not counted twice
             same_pupils = [
                 pupil
                 for pupil in self._pupils_at(address)
@@ -313,7 +318,7 @@ class Classroom:
         return {"token": returning.token, "name": returning.name}
 
     def _admit(self, work: KeptWork, address: str, now_s: float) -> None:
-        """Who has made this work is here from now on."""
+        """Admit the author of this work to the class."""
         self._kept_work_by_key.pop(work.key, None)
         self._pupil_by_token[work.token] = Pupil(
             next(self._numbers), work.token, work.name, work.typed_name, address, now_s, work.work
@@ -322,7 +327,7 @@ class Classroom:
     def _returning_pupil(
         self, token: object, typed_name: str, now_s: float
     ) -> Pupil | KeptWork | None:
-        """Return who comes back with the token of an earlier page, and the same name."""
+        """Return the pupil with the token of an earlier page and the same name."""
         for pupil in self._all_works():
             is_here = isinstance(pupil, Pupil) and now_s - pupil.heard_s <= PLACE_S
             if pupil.token and pupil.token == token and not is_here:
@@ -333,7 +338,7 @@ class Classroom:
         return [pupil for pupil in self._pupil_by_token.values() if pupil.address == address]
 
     def _work_count(self, address: str | None = None) -> int:
-        """Return how many works the class has, of an address or in all."""
+        """Return the number of works in the class, of an address or in all."""
         return sum(address is None or work.address == address for work in self._all_works())
 
     def _names(self) -> list[str]:
@@ -425,7 +430,7 @@ class Classroom:
         }
 
     def _hear_work(self, pupil: Pupil, request: Json) -> None:
-        """Take what a page says about its work; what it does not tell stays. Raises BadRequest."""
+        """Update a pupil's work from a page; omitted parts stay. Raises BadRequest."""
         new_fields = {name: request[name] for name in Work._fields if request.get(name) is not None}
         if "robot" in new_fields:
             robot_of(new_fields)
@@ -464,7 +469,7 @@ class Classroom:
             return {"failure": "turn_none"}
         if robot.pupil is not pupil:
             if _count(request.get("saw_stops", robot.stop_number)) < robot.stop_number:
-                return {"failure": "stopped_elsewhere"}  # it was pressed before that
+                return {"failure": "stopped_elsewhere"}  # the button was pressed before the stop
             robot.pass_to(pupil)
         # One that this page has left a moment ago is not the robot of this turn.
         answer = self._hosting.answer({**_own_request(pupil, request), "port": robot.port})
@@ -494,9 +499,10 @@ class Classroom:
         return self._hosting.answer(_own_request(pupil, request))
 
     def _stop(self, pupil: Pupil, request: Json) -> Json:
-        """Stop the own robot, or that of the group, and no other, whatever was asked. For others of
-        the group it latches: what was asked before it, and arrives later, is refused, whoever takes
-        the robot over meanwhile."""
+        """Stop the pupil's own robot, or that of the group, whatever was requested. For others of
+        the group it latches: earlier requests that arrive later are refused, whoever takes the
+        robot over meanwhile.
+        """
         robot = self._turn_of(self._mates(pupil))
         if robot is not None:
             stop_count = request.get("group_stops", 0)
@@ -520,7 +526,7 @@ class Classroom:
         answer = self._groups.join(pupil.token, pupil.name, request)
         mates = self._mates(pupil)
         queue_numbers = [mate.queue_number for mate in mates if mate.queue_number is not None]
-        for mate in mates:  # from now on they have one place, and one robot
+        for mate in mates:  # from here on they share one place and one robot
             mate.queue_number = None
         own_turn = self._turn(pupil)
         if own_turn is not None and self._turn_of(mates[1:]) is not None:
@@ -568,7 +574,8 @@ class Classroom:
         hosted_robot, pupil = robot.hosted_robot, robot.pupil
         assert pupil is not None
         if hosted_robot is None:
-            if now_s - pupil.heard_s > HERE_S:  # it was closed: who comes back keeps the place
+            # The page was closed, and a returning pupil keeps the place.
+            if now_s - pupil.heard_s > HERE_S:
                 pupil.queue_number = robot.queue_number
                 robot.end()
             elif now_s - robot.began_s > CONNECT_S:
@@ -577,7 +584,7 @@ class Classroom:
             robot.hosted_robot = None  # the page does not know of it: it may connect again
         elif hosted_robot.has_ended:
             robot.name = hosted_robot.name or robot.name
-            if not hosted_robot.name and not hosted_robot.was_left:  # another robot is better
+            if not hosted_robot.name and not hosted_robot.was_left:  # another robot may answer
                 robot.free_at_s = now_s + REST_S
             robot.end()
         elif self._waiting_pupils() and (
@@ -586,7 +593,7 @@ class Classroom:
             robot.take_back()
 
     def _begin_turn(self, robot: ClassRobot, now_s: float) -> None:
-        """Give a robot to who is next, or to who is here of the same group."""
+        """Assign a robot to the next pupil, or to a present one of the same group."""
         for pupil in self._waiting_pupils():
             present_mates = [mate for mate in self._mates(pupil) if now_s - mate.heard_s <= HERE_S]
             if present_mates and self._hosting.is_free(robot.port):
@@ -597,7 +604,7 @@ class Classroom:
                 return
 
     def tidy(self) -> None:
-        """Delete what is kept of groups that this class has not."""
+        """Delete the stored data of groups that this class does not have."""
         self._groups.tidy()
 
     def _waiting_pupils(self) -> list[Pupil]:
@@ -640,7 +647,7 @@ class Classroom:
                 return self._work_data(request)
             elif action in ("class_stop", "class_next", "class_remove", "class_hand"):
                 pupil = self._pupil(request)
-                if pupil is not None:  # who may have gone a moment ago
+                if pupil is not None:  # the pupil may have left a moment ago
                     self._teach(action, pupil)
             elif action == "class_run":
                 return self._requested_run(request)
@@ -660,7 +667,7 @@ class Classroom:
             return self._state()
 
     def _take_part(self, action: str, request: Json) -> Json:
-        """Let the teacher edit with a group. That is no turn, and no place in the queue."""
+        """Let the teacher edit with a group, without a turn or a place in the queue."""
         if action == "group":
             return self._groups.answer(TEACHER, request)
         if action == "group_leave":
@@ -683,8 +690,7 @@ class Classroom:
                 self._forget(pupil)
 
     def _work_data(self, request: Json) -> Json:
-        """Return the work of a pupil, or of a group, or kept work, of which the page names the
-        key."""
+        """Return the work of a pupil, or of a group, or kept work, by the key in the request."""
         group = self._groups.group_by_key(request.get("group"))
         if group is not None:
             return {"version": group.program.number, "history": self._groups.history_lines(group),
@@ -731,7 +737,7 @@ class Classroom:
         self._keep(KeptWork(work_name, work_name, work))
 
     def _give_back(self, request: Json) -> None:
-        """Give kept work to one pupil: their page puts it into the editor."""
+        """Return kept work to one pupil, whose page puts it into the editor."""
         kept_work, pupil = self._kept_work_by_key.get(str(request.get("key"))), self._pupil(request)
         if kept_work is not None:  # the page may have taken it a moment ago
             kept_work.recipient_token = pupil.token if pupil else ""
@@ -817,7 +823,7 @@ class Classroom:
             return len(self._pupil_by_token)
 
     def _set_in_class(self, class_robot: ClassRobot, is_in_class: bool) -> None:
-        """Give a robot to the class, or take it away."""
+        """Add a robot to the class, or remove it."""
         port = canonical_port(class_robot.port)
         same_robots = [robot for robot in self._robots if canonical_port(robot.port) == port]
         for same_robot in same_robots:
@@ -838,7 +844,7 @@ class Classroom:
 
     @property
     def has_ended(self) -> bool:
-        """Whether the class is over and all pages know it that can."""
+        """Return whether the class is over and all reachable pages know it."""
         with self._lock:
             now_s = self._clock()
             present_pupils = [
@@ -944,7 +950,7 @@ def _rows(state: Json, name: str) -> list[Json]:
 
 
 def _work_of_row(row: Json, work: Work | None) -> KeptWork | None:
-    """Return whose work it is in a row of a file; None if it is nobody's, or no work."""
+    """Return the work and its owner in a row of a file; None if either is missing."""
     name = row.get("name")
     work_name = plain_name(name) if isinstance(name, str) else ""
     if work is None or not work_name:

@@ -1,4 +1,4 @@
-"""What the page knows before Python runs in it: robots with their words, worlds, all their names.
+"""Data of the page before Python runs in it: robots with their words, worlds, and names.
 
 `tools.builds.studio` writes it as JSON. Knows no program.
 """
@@ -101,7 +101,7 @@ def _device(device: Device, role: str, labels: dict[str, str]) -> dict[str, Any]
 
 
 def _remote() -> list[dict[str, Any]]:
-    """Return what a remote control says, to every robot here."""
+    """Return the keys of a remote control, which all robots here share."""
     devices = []
     for device in REMOTE:
         key = "remote_key" if device.is_yes_no else "remote_pad"
@@ -114,7 +114,7 @@ def _remote() -> list[dict[str, Any]]:
 
 
 def _range(low: int, high: int, sample: str) -> dict[str, Any]:
-    """Return which plain numbers may stand somewhere; thousandths become what is written."""
+    """Return the range of plain numbers for a value, converted from thousandths to text."""
     return {"low": low / ONE, "high": high / ONE, "sample": sample}
 
 

@@ -1,4 +1,4 @@
-"""Who is the user that has started `tsc studio`: the token of the run, and codes that give it once.
+"""Authenticates the user of `tsc studio`: the token of the run, and single-use codes for it.
 
 An address on a command line, such as a browser's, is read by every user of the computer. So no
 address has the token. It has a code, for which a page gets the token the first time. Knows no HTTP.
@@ -17,7 +17,7 @@ from typing import NamedTuple
 from tiniscript.link.sharing import peers
 
 TOKEN_BYTES = 16
-OPEN_TIMEOUT_S = 120.0  # for a browser of this computer to open
+OPEN_TIMEOUT_S = 120.0  # time for this computer's browser to open
 
 
 class _Code(NamedTuple):
@@ -50,7 +50,7 @@ class Entrances:
     def token_for(self, code: str, peer: socket.socket) -> str:
         """Return the token, or nothing if this code gives none.
 
-        Where no system tells whose a connection is, another user may have been first: a code that
+        If no system tells whose a connection is, another user may have been first: a code that
         comes again ends what it has given.
         """
         if not may_be_owner(peer):
@@ -68,13 +68,13 @@ class Entrances:
             return self.token if self._clock() <= entry.until_s else ""
 
     def is_owner(self, token: str, peer: socket.socket) -> bool:
-        """Whether it is the token of this run, and nobody else of this computer shows it."""
+        """Return whether the token is that of this run, shown by this user or another computer."""
         is_token = hmac.compare_digest(token.encode("utf-8", "replace"), self.token.encode())
         return is_token and may_be_owner(peer)
 
 
 def may_be_owner(peer: socket.socket) -> bool:
-    """Whether a connection is of this user, or of another computer."""
+    """Return whether a connection belongs to this user, or to another computer."""
     return peers.is_of_this_user(peer) or not peers.is_on_this_computer(peer)
 
 

@@ -1,4 +1,4 @@
-"""What a group's robot tells while a program runs, for those of the group who do not drive it.
+"""Events of a group's robot during a run, for members who do not drive it.
 
 They look at it some times a second. Until then the newest place of the program waits, and values
 as far as there is room; how many were left out they can tell from the numbers of the others. What
@@ -17,14 +17,14 @@ from typing import NamedTuple
 from tiniscript.studio.entrances import new_token
 from tiniscript.studio.robot_link import Json
 
-MOST_BYTES = 2000  # that wait, as JSON
+MOST_BYTES = 2000  # most bytes of waiting events, as JSON
 _DROPPABLE_EVENTS = ("SHOW", "TEXT")
 _EVENTS_OF_RUN = (*_DROPPABLE_EVENTS, "PLACE", "MISSED")
 _ENDING_EVENTS = ("DONE", "FAULT", "STOPPED", "RESTARTED", "LOST")
 
 
 class _Row(NamedTuple):
-    driver: str  # whose page hears it from the robot
+    driver: str  # page that receives the robot's events
     news: Json
     size: int
 
@@ -38,11 +38,11 @@ class GroupRuns:
         self._lock = Lock()
         self._rows: list[_Row] = []
         self._news_count = 0
-        self._program_checksum = ""  # of what runs
-        self._is_driver_alone = False  # what runs is for the driver's page alone
-        self._first_number = 0  # of the news with which the run begins
+        self._program_checksum = ""  # checksum of the running program
+        self._is_driver_alone = False  # whether the run is for the driver's page only
+        self._first_number = 0  # number of the event that begins the run
         self._began_s = 0.0
-        self._value_count = 0  # of the run
+        self._value_count = 0  # number of values in the run
 
     def add_news(self, driver: str, news: list[Json]) -> None:
         """The robot that a pupil drives has told this."""
@@ -64,7 +64,7 @@ class GroupRuns:
             return self._news_count, [row.news for row in rows if row.news["number"] > number]
 
     def _events_of(self, news_item: Json) -> Iterator[Json]:
-        """Yield what is said about an event of the link, each once in the order of the runs."""
+        """Yield the messages about an event of the link, each once in the order of the runs."""
         event, program = news_item.get("event"), str(news_item.get("program", ""))
         if "connected" in news_item:
             yield {"event": "ROBOT", "robot": news_item["connected"]["robot"]}
@@ -81,7 +81,8 @@ class GroupRuns:
             yield from self._end_run(news_item)
         elif event in _EVENTS_OF_RUN and not self._is_driver_alone:
             if news_item.get("at", -1) >= 0 and program != self._program_checksum:
-                yield self._begin_run(program)  # by the robot's button: nothing has told of that
+                # The robot's button starts a run without an earlier event.
+                yield self._begin_run(program)
             if self._program_checksum:
                 yield news_item
 

@@ -50,13 +50,14 @@ from tiniscript.together.tree import Tree
 MOST_MEMBERS = 4
 MOST_GROUPS = 30
 MOST_FOUNDED = 3  # groups with a program, by one pupil
-MOST_HELD_S = 8.0  # of a request: a connection that asks nothing for longer is left
-LOOK_S = 0.2  # between two looks at what the robot tells
-GONE_S = 20.0  # a page that is silent for longer gives its place away
-MOST_CHANGES = 50  # of a request
-CHANGE_BYTES = 64_000  # as JSON: a whole program is less
+MOST_HELD_S = 8.0  # longest time that a request is held; slower connections are closed
+LOOK_S = 0.2  # interval between two looks at the robot's events
+GONE_S = 20.0  # a page silent for longer loses its place
+MOST_CHANGES = 50  # most changes in a request
+CHANGE_BYTES = 64_000  # most bytes of a change as JSON; a whole program is smaller
 BYTES_PER_COST = 2000  # a change costs one for each of these that it begins
-CHANGE_RATE = (80, 4)  # of a pupil: who is quick makes one a second; a large one takes 40 ms
+# Burst and rate of a pupil's changes: fast pupils make one a second, and a large one takes 40 ms.
+CHANGE_RATE = (80, 4)
 MARK_COUNT = 4  # colours of pupils; the next one is the teacher's
 TEACHER = "teacher"  # no pupil has this token
 MOST_HISTORY_LINES = 200  # changes that the teacher's page shows
@@ -84,7 +85,7 @@ class Member:
 
 @dataclass(eq=False)
 class Group:
-    """`version` counts what is new besides the program: who is here, and where carets are.
+    """`version` counts changes besides the program: the members, and their carets.
 
     No two pages have the same name, in all its time: `owner_of_page` has the newest.
     """
@@ -94,10 +95,11 @@ class Group:
     program: SharedProgram
     journal: Journal
     key: str
-    member_by_token: dict[str, Member] = field(default_factory=dict)  # by token
+    member_by_token: dict[str, Member] = field(default_factory=dict)  # keyed by token
     version: int = 0
     owner_of_page: dict[str, str] = field(default_factory=dict)  # tokens; the newest ones
-    name_of_page: dict[str, str] = field(default_factory=dict)  # of pupils, who may have gone
+    # Names of pupils, including those who have left.
+    name_of_page: dict[str, str] = field(default_factory=dict)
     condition: Condition = field(default_factory=Condition)
     runs: GroupRuns = field(default_factory=GroupRuns)
 
@@ -116,15 +118,15 @@ class Groups:
     def __init__(self, clock: Clock = monotonic, folder: Path | None = None) -> None:
         self._clock = clock
         self._folder = folder
-        self._lock = RLock()  # never asked for by who has that of a group
-        self._group_by_key: dict[str, Group] = {}  # by key
+        self._lock = RLock()  # never used by the holder of a group's token
+        self._group_by_key: dict[str, Group] = {}  # keyed by the group's key
         self._rate = Rate(*CHANGE_RATE)
         self._rate_lock = Lock()
 
     # -- pupils -----------------------------------------------------------------------------------
 
     def join(self, token: str, name: str, request: Json) -> Json:
-        """A pupil joins the group of a name; where there is none, it begins with the pupil's own
+        """A pupil joins the group of a name; if there is none, it begins with the pupil's own
         program. Raises BadRequest."""
         group_name, text, old_page = request.get("name"), request.get("text"), request.get("before")
         if not isinstance(group_name, str) or not isinstance(text, str):
@@ -167,7 +169,7 @@ class Groups:
         )
 
     def _create(self, token: str, name: str, text: str) -> Group | None:
-        """Return a new group; None where there are too many. Raises Unparsed, Refused."""
+        """Return a new group; None if there are too many. Raises Unparsed, Refused."""
         own_groups = [group for group in self._group_by_key.values() if group.founder == token]
         if len(self._group_by_key) >= MOST_GROUPS or len(own_groups) >= MOST_FOUNDED:
             return None
@@ -213,8 +215,9 @@ class Groups:
                     **group.program.news(member.page, -1, "")}  # fmt: skip
 
     def leave(self, token: str) -> None:
-        """Who has it leaves the group, if there is one. What nobody has changed goes with the last
-        pupil."""
+        """Remove the holder of a token from their group, if any. An unchanged program is deleted
+        with its last pupil.
+        """
         with self._lock:
             group = self.group_of(token)
             if group is None:
@@ -230,7 +233,7 @@ class Groups:
                 group.journal.forget()
 
     def answer(self, token: str, request: Json) -> Json:
-        """Take changes, and return what is new; where the page `waits`, once there is something.
+        """Apply changes, and return the news; if the page `waits`, once there is some.
 
         Raises BadRequest. To be called without any lock.
         """
@@ -272,7 +275,7 @@ class Groups:
             }
 
     def _drop_silent_teacher(self, group: Group) -> None:
-        """Nobody sees a teacher whose page is silent; one that comes back has left."""
+        """Remove a teacher whose page is silent; the page learns that when it returns."""
         teacher = group.member_by_token.get(TEACHER)
         if teacher is not None and self._clock() - teacher.heard_s > GONE_S:
             del group.member_by_token[TEACHER]
@@ -297,7 +300,7 @@ class Groups:
             and group.member_by_token.get(member.token) is member
             and not group.runs.news_after(run_position, member.token)[1]
             and (left_s := end_s - monotonic()) > 0
-        ):  # a robot's thread, which waits for nobody, wakes nobody
+        ):  # a robot's thread, which must not wait, wakes nobody
             group.condition.wait(min(left_s, LOOK_S))
 
     def _decide(self, group: Group, member: Member, changes: list[object]) -> bool:
@@ -352,12 +355,12 @@ class Groups:
         return [*group.member_by_token] if group is not None else [token]
 
     def runs_of(self, token: str) -> GroupRuns | None:
-        """Return where what a pupil's robot tells goes: to the pupil's group, if any."""
+        """Return the runs of a pupil's group, if any."""
         group = self.group_of(token)
         return group.runs if group is not None else None
 
     def is_new_stop(self, token: str, stops: int) -> bool:
-        """Whether a pupil has not pressed STOP so often before; of no count it always is."""
+        """Return whether a pupil's STOP count is new; a missing count always is."""
         group = self.group_of(token)
         if group is None or not stops:
             return True
@@ -366,7 +369,7 @@ class Groups:
         return is_new
 
     def overview(self) -> list[Json]:
-        """Return what a pupil sees of all groups."""
+        """Return the overview of all groups for a pupil."""
         with self._lock:
             return [{"name": group.name, "members": [member.name for member in group.pupils]}
                     for group in self._group_by_key.values()]  # fmt: skip
@@ -380,7 +383,7 @@ class Groups:
             return [*self._group_by_key.values()]
 
     def history(self, group: Group) -> list[Json]:
-        """Return what was done, and by whom as far as that is known."""
+        """Return the history of changes, with their authors if known."""
         with group.condition:
             return [
                 {**taken_change.data(), "who": group.name_of_page.get(_page_name(taken_change), "")}
@@ -400,7 +403,7 @@ class Groups:
         return [f"{who}: {did}" for who, did in deeds]
 
     def end(self) -> None:
-        """Forget all groups, and what is kept of them."""
+        """Forget all groups, and their stored data."""
         with self._lock:
             for group in self._group_by_key.values():
                 with group.condition:
@@ -410,7 +413,7 @@ class Groups:
             self._group_by_key.clear()
 
     def state_to_keep(self) -> list[Json]:
-        """Return what groups go on with after a crash, besides their journals."""
+        """Return the state with which groups resume after a crash, besides their journals."""
         with self._lock:
             return [
                 {
@@ -426,7 +429,7 @@ class Groups:
             ]  # fmt: skip
 
     def resume(self, rows: list[Json], is_here: Callable[[str], bool]) -> None:
-        """Go on with groups from before a crash; what is damaged of them is left out."""
+        """Resume groups after a crash; damaged parts are left out."""
         with self._lock:
             for row in rows:
                 key, name, founder = row.get("key"), row.get("name"), row.get("founder")
@@ -498,7 +501,7 @@ def _member_data(member: Member) -> Json:
 
 
 def _operation_text(operation: Operation) -> str:
-    """Return what an operation does, in signs that are the same in each language."""
+    """Return the text of an operation, in signs that are the same in each language."""
     if isinstance(operation, Insert):
         return "+ " + "; ".join(node.text for node in operation.nodes)
     if isinstance(operation, Delete):

@@ -24,7 +24,7 @@ from tiniscript.link.port_connection import PortConnection
 from tiniscript.studio.attending import LOOK_S, Attending
 from tiniscript.studio.robot_link import RobotLink, robot_data
 
-PARTING_TIMEOUT_S = 8.0  # for a stop to be confirmed, and a port to be closed
+PARTING_TIMEOUT_S = 8.0  # time to confirm a stop and close a port
 VERB = "studio"  # the name that other commands show for the process that holds the port
 
 
@@ -48,13 +48,13 @@ class HostedRobot:
         self.tab = tab
         self.connection = connection
         self.has_ended = self.is_unconfirmed = False
-        self.name = ""  # of the robot, once it has answered
+        self.name = ""  # name of the robot, once it has answered
         self.attending = Attending(stop_count=stop_count)
         self._earlier_robots = earlier_robots
         self._profile = robots.load(robot)
         self._language = language
         self._is_leaving = self._is_letting_go = False
-        self.is_holding_port = False  # for another command, which drives the robot through it
+        self.is_holding_port = False  # whether another command drives the robot through this port
         self._leave_reason = "left"
         self._link: RobotLink | None = None
         self._thread = Thread(target=self._run, name="studio robot", daemon=True)
@@ -69,12 +69,12 @@ class HostedRobot:
 
     @property
     def is_parting(self) -> bool:
-        """Whether a stop is still to be confirmed, or the port to be closed."""
+        """Return whether a stop has to be confirmed, or the port to be closed."""
         return (self.has_ended or self._is_leaving) and self._thread.is_alive()
 
     @property
     def was_left(self) -> bool:
-        """Whether the page has left it, whatever the robot does."""
+        """Return whether the page has left it, whatever the robot does."""
         return self._is_leaving or self.attending.has_left
 
     def join(self, limit_s: float) -> None:
@@ -109,7 +109,7 @@ class HostedRobot:
                 self._part_from_robot(link)
                 self._end(self._leave_reason if self._is_leaving else "unheard")
                 self.is_holding_port = client.holds_for_others
-                with suppress(RobotError):  # the port is gone, and the page is told already
+                with suppress(RobotError):  # the port is gone, and the page knows
                     client.hold_for_others(lambda: not self._is_letting_go)
         except ConnectionLost as connection_lost:
             error = client.robot_error_for_loss(connection_lost)
@@ -137,7 +137,7 @@ class HostedRobot:
         self._earlier_robots = ()
 
     def _ping_while_attended(self, client: Client, link: RobotLink) -> None:
-        """What another command has started is for that command to attend to."""
+        """Ping the robot unless another command attends to it."""
         if client.connection.holder_verb:
             return
         assert isinstance(client.connection, PortConnection)
@@ -154,7 +154,7 @@ class HostedRobot:
         except TiniScriptError as failure:
             if connection.has_ended:
                 raise
-            # for what is no status the page has a sentence of its own
+            # Failures that are no status have their own sentence on the page.
             self._end(failure.key, str(failure) if failure.key in STATUSES else "")
             return False
         opening.remember(self.port, robot.name)

@@ -1,4 +1,4 @@
-"""What a page may ask of the robots of this computer: which ports there are, and one robot a page.
+"""Requests of pages to the robots of this computer: the ports, and one robot for each page.
 
 A page is a random name that it has given itself; it drives one robot, and a port has one page. It
 counts its connections: whatever comes late from one before reaches nothing of the next one, and the
@@ -22,7 +22,7 @@ from tiniscript.studio.hosted_robot import PARTING_TIMEOUT_S, HostedRobot
 from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, robot_of, whole_number
 from tiniscript.virtual import directory
 
-NAME_CHARACTERS = 64  # of a page
+NAME_CHARACTERS = 64  # most characters of a page's name
 PORT_CHARACTERS = 300
 MOST_ROBOTS = 40
 MOST_REQUESTS = 8  # requests at a time
@@ -37,7 +37,7 @@ class Hosting:
         self._lock = Lock()
         self._robot_by_page: dict[str, HostedRobot] = {}
         self._parting_robots: list[HostedRobot] = []
-        self._stopped_robots: list[HostedRobot] = []  # those that the last STOP for all has reached
+        self._stopped_robots: list[HostedRobot] = []  # robots reached by the last STOP for all
         self._latched_until_s = 0.0
 
     def answer(self, request: Json) -> Json:
@@ -74,7 +74,7 @@ class Hosting:
         return {"news": robot.attending.on_beat(_requests(request), seen_number, stop_count)}
 
     def robot_of(self, page: str) -> HostedRobot | None:
-        """Return what a page drives, or has driven last."""
+        """Return the robot that a page drives, or has driven last."""
         with self._lock:
             return self._robot_by_page.get(page)
 
@@ -84,7 +84,7 @@ class Hosting:
             return not self._robots_at(port)
 
     def close(self) -> list[str]:
-        """Stop what pages have started, and close all ports; return those where no robot has
+        """Stop what pages have started, and close all ports; return those if no robot has
         confirmed that."""
         with self._lock:
             hosted_robots = [*self._robot_by_page.values(), *self._parting_robots]
@@ -104,7 +104,7 @@ class Hosting:
             own_robot = self._robot_by_page.get(page)
             is_same = own_robot is not None and own_robot.tab == tab
             if own_robot is not None and is_same and connection <= own_robot.connection:
-                own_robot.attending.connect_again()  # the answer was lost, or it comes late
+                own_robot.attending.connect_again()  # the answer was lost, or is late
                 return {}
             port_robots = self._robots_at(port)
             rivals = [
@@ -114,7 +114,7 @@ class Hosting:
             ]
             if not all(rival.tab == tab or rival.attending.is_half_made for rival in rivals):
                 return {"failure": "other_tab"}
-            for rival in rivals:  # nobody knows of it any more
+            for rival in rivals:  # no page refers to it any more
                 rival.leave()
             if sum(map(_is_driving, self._robot_by_page.values())) >= MOST_ROBOTS:
                 return {"failure": "too_many"}
@@ -129,8 +129,9 @@ class Hosting:
         return {}
 
     def _robots_at(self, port: str) -> list[HostedRobot]:
-        """Return who has a port, or is closing it. One that holds it for another command shares it
-        with whoever comes."""
+        """Return the robots that use a port, or are closing it. One that holds it for another
+        command shares it.
+        """
         wanted_port = canonical_port(port)
         all_robots = [*self._robot_by_page.values(), *self._parting_robots]
         open_robots = [
@@ -150,7 +151,7 @@ class Hosting:
                          if not (robot.has_ended and robot.attending.has_left)}  # fmt: skip
 
     def _stop_all(self) -> Json:
-        """Stop all robots, and refuse for a while what is on its way to them."""
+        """Stop all robots, and refuse requests under way for a while."""
         with self._lock:
             self._stopped_robots = [
                 robot for robot in self._robot_by_page.values() if _is_driving(robot)
@@ -161,7 +162,7 @@ class Hosting:
         return self._stop_states()
 
     def _stop_states(self) -> Json:
-        """Return what is known of the last STOP for all."""
+        """Return the state of the last STOP for all."""
         with self._lock:
             hosted_robots = self._stopped_robots
         return {"robots": [{"name": robot.name or robot.port, "stop": robot.attending.last_stop}
@@ -204,7 +205,7 @@ def _is_driving(robot: HostedRobot) -> bool:
 
 
 def _connection(page: str, request: Json) -> tuple[str, int]:
-    """Return whose connection it is, and which of these. Raises BadRequest."""
+    """Return the page of a connection, and its number. Raises BadRequest."""
     tab = _text(request, "tab", NAME_CHARACTERS) if "tab" in request else page
     return tab, whole_number(request, "connection", 0, MOST_COUNT, 0)
 

@@ -1,4 +1,4 @@
-"""Names of pupils: what is shown of one, and whether two are one to who reads them.
+"""Names of pupils: their visible form, and whether readers can distinguish two.
 
 `alike.txt` has Unicode's table of what looks alike.
 """
@@ -14,9 +14,9 @@ from unicodedata import category, normalize
 from tiniscript.base.source import printable
 
 NAME_CHARACTERS = 24
-# Letters and signs that show nothing, though they are of no category that says so.
+# Invisible letters and signs outside of the invisible categories.
 _BLANK = re.compile("[\u115f\u1160\u2800\u3164\uffa0\U00013441\U0001d159]")
-# What only changes how its neighbours look, or nothing.
+# Characters that only change their neighbours' look, or nothing.
 _UNSEEN = re.compile("[\u034f\u17b4\u17b5\u180b-\u180f\ufe00-\ufe0f\U000e0100-\U000e01ef]")
 _SHOWS_NOTHING = frozenset("CMZ")  # controls, marks without a letter, and spaces
 
@@ -30,7 +30,7 @@ def plain_name(typed_name: str) -> str:
 
 
 def are_alike(one: str, other: str) -> bool:
-    """Whether two names are one: they look alike, or only their capitals are others."""
+    """Return whether two names look alike, or differ only in capitals."""
     return not _looks(one).isdisjoint(_looks(other))
 
 
@@ -45,15 +45,15 @@ def free_name(wanted_name: str, taken_names: Iterable[str]) -> str:
 
 
 def _looks(name: str) -> set[str]:
-    """Return what a name looks like, as it is and in small letters."""
+    """Return the visual forms of a name, as it is and in small letters."""
     return {_case_folded(name), _case_folded(name.casefold())}
 
 
 def _case_folded(text: str) -> str:
-    """Return the same text for all that look the same, as Unicode's standard 39 folds it."""
+    """Return a common form of all texts that look alike, as in Unicode standard 39."""
     table = _table()
     text = _UNSEEN.sub("", text)
-    for form in ("NFD", "NFKD"):  # the table has what the normal forms leave
+    for form in ("NFD", "NFKD"):  # the table contains what the normal forms leave
         text = normalize(form, text).translate(table)
     return normalize("NFC", text)
 

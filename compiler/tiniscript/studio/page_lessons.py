@@ -37,11 +37,11 @@ from tiniscript.virtual.score import Score
 from tiniscript.virtual.world import World
 
 MISTAKES = "mistakes"
-STEPS, TASK = 2, 3  # of a page's headings, after what is needed
+STEPS, TASK = 2, 3  # indexes of headings, after the list of materials
 
 
 def titles(language: str) -> list[dict[str, Any]]:
-    """Return what each lesson is called, its robot, and how it looks; the first one is lesson 1."""
+    """Return the name, robot and look of each lesson; the first one is lesson 1."""
     return [
         {"name": lesson.name, "title": lesson.title(language),
          "block_title": lesson.title(language, BLOCKS), "robot": lesson.robot,
@@ -51,10 +51,10 @@ def titles(language: str) -> list[dict[str, Any]]:
 
 
 def steps(number: int, language: str, form: str = TEXT) -> list[dict[str, Any]]:
-    """Return what to do, one step after the other: its blocks, and a hint. The last is the task."""
+    """Return the steps with their blocks and hints. The last step is the task."""
     page = catalogue.whole_page(_folder(number), catalogue.PUPIL, language, form)
     blocks_and_hints: list[tuple[list[Block], list[str]]] = []
-    intro_blocks: list[Block] = []  # what the lesson is about stands at its first step
+    intro_blocks: list[Block] = []  # blocks that the lesson introduces, at its first step
     section = 0
     for block in blocks(studio_part(page)):
         if block.kind == "heading":
@@ -183,7 +183,7 @@ def world_form(number: int, seed: int) -> Form:
 
 
 def goal_shapes(number: int, seed: int) -> list[dict[str, Any]]:
-    """Return where the task leads: a circle with a flag, or the area around a place."""
+    """Return the goal of the task: a circle with a flag, or the area around a place."""
     lesson, drawn_world = _lesson(number), varied_world(number, seed)
     shapes = []
     for criterion in lesson.criteria:
@@ -221,7 +221,7 @@ class LessonCheck:
             self._marking = Marking(text, image_maker(profile), profile, lesson, seeds)
 
     def go(self, most_ms: int) -> dict[str, Any]:
-        """Let the robot's time go on, at most by `most_ms`.
+        """Advance the robot's time by at most `most_ms`.
 
         `verdict` is empty while it goes on. `seed` is that of the world where it is, or where the
         program failed: 0 for none. `run` is what to see of it then: in which world, and until when.
@@ -268,13 +268,13 @@ class JudgedRun(Simulation):
         self._begin_rows()
         self.marks = marks._replace(breakpoints=())
         self._score = Score(varied_world(number, seed))
-        self._owed_ms = 0  # that are less than a look of the judge's
+        self._owed_ms = 0  # time shorter than the judge's step, carried over
         assert self.robot.started_ms is not None, "the program does not begin"
         self._end_ms = self.robot.started_ms + min(until_ms, round(lesson.seconds * 1000))
         self.go(0)
 
     def go(self, duration_ms: int) -> None:
-        """Let time go on as it did for the judge, who looks where the robot is now and then."""
+        """Advance time in the judge's steps, which check the robot's place."""
         robot = self.robot
         self._owed_ms += duration_ms
         while robot.is_running and self._owed_ms >= STEP_MS and robot.now_ms < self._end_ms:
@@ -288,7 +288,7 @@ class JudgedRun(Simulation):
         self.go(STEP_MS)
 
     def press(self, keys: int, x: int, y: int) -> None:
-        """Nobody but the judge holds anything."""
+        """Ignore keys, which only the judge presses."""
 
     def stop(self) -> None:
         self.robot.rest()

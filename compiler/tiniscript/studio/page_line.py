@@ -1,4 +1,4 @@
-"""What the page asks of a real robot and of its keys, and the session with that robot.
+"""Requests of the page to a real robot and to its keys, and the session with that robot.
 
 Its bytes come and go by what a browser can open.
 The page's main thread owns the port, and calls `go`. So a page whose main thread stands still sends
@@ -58,7 +58,9 @@ class PageKeys(KeyRing):
         return self.keys
 
     def accepts(self, robot: int) -> bool:
-        """Any: the person has chosen its port, of which the page has no name that stays."""
+        """Accept any robot: the person has chosen its port, which has no permanent name on the
+        page.
+        """
         return True
 
     def _change_keys(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
@@ -119,7 +121,7 @@ class PageRobot:
         self._last_ms: int | None = None
 
     def go(self, data: bytes, now_ms: int, requests: list[Json]) -> Json:
-        """Let the session go on, with the bytes that have arrived and new requests.
+        """Advance the session with the received bytes and new requests.
 
         Returns the bytes to `send` as hexadecimal digits, the time at which to call again at the
         latest (`wakes_ms`, or None), and the news.

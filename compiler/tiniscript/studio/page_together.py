@@ -19,11 +19,11 @@ from tiniscript.together.page import Page
 from tiniscript.together.tree import ARM, NOTE, Tree, first_word
 
 Json = dict[str, Any]
-MOST_CHANGES = 50  # of a request to the class
+MOST_CHANGES = 50  # most changes in a request to the class
 
 
 class ShownBlocks(NamedTuple):
-    """What the blocks show: a page as it was then, and of which instruction each block is."""
+    """The state shown by the blocks: the page at that time, and the instruction of each block."""
 
     page: Page
     nodes: dict[str, str]
@@ -75,12 +75,12 @@ def step(fields: Json, data: bytes) -> Json:
     rows, loose = split_loose(text_rows)
     page.type(rows, caret, is_line_edited)
     page.flush()
-    printed: Printed | None = None
+    printed_form: Printed | None = None
     if "blocks" in fields and blocks is not None:
         form = from_data(fields["blocks"]["form"])
-        printed = format_blocks(form)
+        printed_form = format_blocks(form)
         blocks = _write_blocks(page, blocks, form, fields["blocks"]["ids"])
-        loose = split_loose(_rows(printed.text, None))[1]
+        loose = split_loose(_rows(printed_form.text, None))[1]
     for news in fields["news"]:
         page.receive(news)
     if "back" in fields:
@@ -89,12 +89,12 @@ def step(fields: Json, data: bytes) -> Json:
     carets = None
     if caret < len(rows):
         carets = caret, page.caret
-    elif loose:  # which end both texts
+    elif loose:  # loose blocks come after both texts
         carets = caret, caret - len(text_rows) + len(_all_rows(_newest))
     answer = _answer(_newest, text, carets)
-    if printed is not None:
-        is_shown = _text(_newest) == printed.text
-        answer |= {"places": printed.places, "is_shown": is_shown}
+    if printed_form is not None:
+        is_shown = _text(_newest) == printed_form.text
+        answer |= {"places": printed_form.places, "is_shown": is_shown}
     return answer
 
 
@@ -115,29 +115,29 @@ def show_blocks(fields: Json, data: bytes) -> Json:
 
 def _write_blocks(page: Page, shown_blocks: ShownBlocks, form: Form, ids: list[str]) -> ShownBlocks:
     """Do in a page what was done to the blocks since they were shown; return what they show."""
-    printed = format_blocks(form._replace(loose=()))
+    printed_form = format_blocks(form._replace(loose=()))
     blocks_page = shown_blocks.page.copy()
     blocks_page.id_count = page.id_count
-    rows = _rows(printed.text, None)
-    blocks_page.write(rows, _owners(rows, printed, form, ids, shown_blocks))
+    rows = _rows(printed_form.text, None)
+    blocks_page.write(rows, _owners(rows, printed_form, form, ids, shown_blocks))
     page.catch_up(blocks_page, shown_blocks.page)
     ids_of_lines = blocks_page.ids_of_lines()
     nodes = {
         block: ids_of_lines[lines[0]]
-        for block, lines in zip(ids, printed.lines, strict=True)
+        for block, lines in zip(ids, printed_form.lines, strict=True)
         if lines[0] < len(ids_of_lines)
     }
     return ShownBlocks(blocks_page, nodes)
 
 
 def _owners(
-    rows: list[str], printed: Printed, form: Form, ids: list[str], shown_blocks: ShownBlocks
+    rows: list[str], printed_form: Printed, form: Form, ids: list[str], shown_blocks: ShownBlocks
 ) -> list[str]:
-    """Return of which instruction each line of changed blocks is; a new one has none."""
+    """Return the instruction of each line of changed blocks; new lines have none."""
     tree = shown_blocks.page.view
     owners = [""] * len(rows)
     for id, block, (first_line, *other_lines) in zip(
-        ids, in_order(form.body), printed.lines, strict=True
+        ids, in_order(form.body), printed_form.lines, strict=True
     ):
         node = shown_blocks.nodes.get(id, "")
         if node not in tree or (block.is_behind and tree[node].kind != NOTE):
@@ -152,7 +152,7 @@ def _owners(
 
 
 def _pair_arms(arm_texts: list[str], tree: Tree, arms: list[str]) -> list[tuple[int, str]]:
-    """Return which arms of a block are which of before: those that say the same, then in order."""
+    """Return the old arms of a block's new arms: first those with the same text, then in order."""
     old_texts = [tree[arm].text for arm in arms]
     pairs = []
     for tag, i1, i2, j1, j2 in SequenceMatcher(
@@ -209,7 +209,7 @@ def _answer(state: State, text: str, carets: tuple[int, int] | None) -> Json:
 def changes(
     old_text: str, new_text: str, carets: tuple[int, int] | None = None
 ) -> list[tuple[int, int, str]]:
-    """Return what makes the new text of the old: from, to and what is put in, in units of UTF-16.
+    """Return the edits between two texts: start, end and replacement, in UTF-16 units.
 
     A line that has changed keeps what is the same in it, where its caret and its undo are.
     `carets`: the line that the caret is in, in both; where that is the same, it is not touched.
@@ -219,7 +219,7 @@ def changes(
         i, j = carets
         old_row, new_row = ("".join(rows[k : k + 1]).rstrip("\n")
                             for rows, k in ((old_rows, i), (new_rows, j)))  # fmt: skip
-        if old_row == new_row:  # its end is no part of it: lines may come below an open one
+        if old_row == new_row:  # its end is not part of the row: lines may follow below an open one
             start = sum(map(_utf16_length, old_rows[:i])) + _utf16_length(old_row)
             old_rest, new_rest = ("".join(rows[k:])[len(old_row) :]
                                   for rows, k in ((old_rows, i), (new_rows, j)))  # fmt: skip
@@ -232,7 +232,7 @@ def changes(
 def _line_changes(
     old_rows: list[str], new_rows: list[str], start: int
 ) -> list[tuple[int, int, str]]:
-    """Return the changes of lines of which the first begins at `start`."""
+    """Return the changes of lines, the first of which begins at `start`."""
     line_changes: list[tuple[int, int, str]] = []
     starts = [start]
     for row in old_rows:

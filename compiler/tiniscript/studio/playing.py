@@ -31,17 +31,17 @@ from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import Settings
 from tiniscript.virtual.world import World
 
-LEAST_TOLERANCE_MS, TOLERANCE = 250, 0.05  # how much later or earlier is the same time
+LEAST_TOLERANCE_MS, TOLERANCE = 250, 0.05  # tolerance in ms, and as a share of the time
 STEP_MS = 100
 NO_SENSOR = -1
 EARLY_MS = 10  # half of the time between two checks: no clock is more exact
 BEGINNING_MS = 1000  # limit for a program to begin after its button
 _WORD = re.compile(r"\w+")
-PROGRAM_EVENTS = ("SHOW", "DONE", "FAULT")  # what a real robot says of its program, too
+PROGRAM_EVENTS = ("SHOW", "DONE", "FAULT")  # program events that a real robot reports too
 
 
 class Divergence(NamedTuple):
-    """Where a recording and the virtual robot part.
+    """The place where a recording and the virtual robot diverge.
 
     `what` is again (a virtual robot has done all of it again), otherwise (not), same, missed (the
     same until values did not arrive), unread (the same until the program read what the recording
@@ -69,12 +69,12 @@ class PlayableRecording(NamedTuple):
     image: bytes
     program_map: SourceMap
     sensor_of_show: dict[int, int | None]  # the sensor that each SHOW alone shows, by its offset
-    read_offsets: tuple[int, ...]  # the offsets of what names a sensor
+    read_offsets: tuple[int, ...]  # the offsets of code that names a sensor
     robot: Robot
 
 
 def prepare(recording: Recording) -> PlayableRecording:
-    """Raises BadRecording where the program is another one for this version of tsc."""
+    """Raises BadRecording if the program is another one for this version of tsc."""
     profile = load(recording.robot)
     data = recording.text.encode("utf-8", "replace")
     compilation: Compilation = compile_source(data, profile, "", is_strict=True, is_chosen=True)
@@ -121,22 +121,24 @@ class PlayedRun(Simulation):
         recording = playable.recording
         self.playable, self.recording = playable, recording
         self.divergence: Divergence | None = None
-        self._next_input = 0  # of the rows that change what it does
+        self._next_input = 0  # index of the next input row
         self._inputs = recording.rows
         if not recording.is_virtual:
             self._inputs = tuple(row for row in recording.rows if row.is_reading)
         self._is_over = False
         self._held_at_end = False
         self._virtual_rows: list[Row] = []
-        self._virtual_lines: list[int] = []  # the line of each row that the virtual robot has told
+        # The line of each row that the virtual robot has reported.
+        self._virtual_lines: list[int] = []
         readings = recording.given_readings if recording.is_virtual else self._first_readings()
         self._known_sensors = set(readings)  # sensors whose readings the recording has
-        self._incomplete_sensors = set[int]()  # those of which the recording lacks some
-        self._shown_sensor: int | None = None  # the one whose reading the SHOW that begins has told
+        self._incomplete_sensors = set[int]()  # sensors with gaps in the recording
+        self._shown_sensor: int | None = None  # the reading reported by the SHOW that begins
         self._first_unread: tuple[str, Row, int] | None = None
         self._recorded_rows = self._compared_rows()
         self._compared_count = 0
-        self._program_offset: int | None = None  # as far as it names a sensor
+        # Offset of the program's place, if it names a sensor.
+        self._program_offset: int | None = None
         played_world = recording.world or world or worlds.load(worlds.DEFAULT)
         settings = Settings(seed=recording.seed, given_readings=readings)
         marks = (marks or Marks(()))._replace(is_held=False, breakpoints=())
@@ -153,7 +155,7 @@ class PlayedRun(Simulation):
         return self._is_over
 
     def go(self, duration_ms: int) -> None:
-        """Let time go on, to the end of the recording at most."""
+        """Advance time, at most to the end of the recording."""
         if self.recording.is_virtual:
             self._go_again(duration_ms)
         else:
@@ -163,7 +165,7 @@ class PlayedRun(Simulation):
         self.go(STEP_MS)
 
     def press(self, keys: int, x: int, y: int) -> None:
-        """Nobody but who is recorded holds anything."""
+        """Ignore keys, because only the recorded person presses them."""
 
     def push(self) -> None:
         """Nor pushes a button."""
@@ -181,7 +183,7 @@ class PlayedRun(Simulation):
             self.robot.rest()
 
     def state(self) -> dict[str, Any]:
-        """Return what is to be seen, too: whether it is over, and where the two part."""
+        """Return the visible state, including whether the run is over and where it diverges."""
         divergence = None
         if self.divergence is not None:
             recorded_row, virtual_row = (
@@ -190,7 +192,7 @@ class PlayedRun(Simulation):
             started_ms = (self.robot.started_ms or 0) if self.recording.is_virtual else 0
             rows = {"robot": recorded_row, "virtual": virtual_row, "began_ms": started_ms}
             divergence = {**self.divergence._asdict(), **rows}
-        state = {**super().state(), "is_held": False}  # nobody but this class holds it
+        state = {**super().state(), "is_held": False}  # only this class can pause the run
         return {**state, "is_over": self._is_over, "parting": divergence}
 
     # -- a virtual robot's run, again -------------------------------------------------------------
@@ -250,7 +252,7 @@ class PlayedRun(Simulation):
             self.divergence = Divergence("again", len(recorded_rows))
 
     def _compared_rows(self) -> tuple[Row, ...]:
-        """Return what the robot did up to where its program was held and stopped, or to the end."""
+        """Return the robot's actions until its program was held and stopped, or to the end."""
         rows = self.recording.rows
         count = next((k for k, row in enumerate(rows) if row.event == HELD), len(rows))
         self._last_ms = rows[count].ms if count < len(rows) else self.recording.end_ms
@@ -286,7 +288,7 @@ class PlayedRun(Simulation):
                 return self._end()
 
     def _replace_readings(self) -> None:
-        """At each SHOW the sensor that it shows has the reading that the robot has shown."""
+        """Set each shown sensor at its SHOW to the value that the robot showed."""
         self._read_events()
         while self.held_at is not None:
             self._program_offset = self.held_at
@@ -312,7 +314,7 @@ class PlayedRun(Simulation):
         self._virtual_lines.append(location.line if location is not None else 0)
 
     def _first_readings(self) -> dict[int, list[int]]:
-        """Return what each sensor reads first, whenever that is."""
+        """Return the first reading of each sensor, whenever it occurs."""
         readings: dict[int, list[int]] = {}
         incomplete_sensors = set[int]()
         for row in self._inputs:
@@ -381,7 +383,7 @@ class PlayedRun(Simulation):
         raise AssertionError("the program does not begin")
 
     def _until_ms(self) -> int:
-        """Return how long the virtual robot runs to be compared with the whole recording.
+        """Return the time that the virtual robot runs to be compared with the whole recording.
 
         By its button its first row is waited for, whose time the recording does not have.
         """
@@ -409,7 +411,7 @@ class PlayedRun(Simulation):
         started_ms = self.robot.started_ms or 0
         known_count = len(
             virtual_rows
-        )  # rows of the virtual robot before it read what nobody knows
+        )  # rows of the virtual robot before its first unknown reading
         if self._first_unread is not None:
             known_count = self._virtual_rows.index(self._first_unread[1])
         for count, recorded_row in enumerate(recorded_rows):
@@ -436,9 +438,7 @@ class PlayedRun(Simulation):
         if self._first_unread is not None:
             return self._unread_parting(count, started_ms)
         if cut_event in ("", "STOPPED") and len(virtual_rows) > count:
-            virtual_row = virtual_rows[
-                count
-            ]  # the robot has not said that, and had the time for it
+            virtual_row = virtual_rows[count]  # the robot did not report that, and had time to
             if virtual_row.ms + _tolerance_ms(end_ms) < end_ms:
                 line = self._virtual_lines[count] if count < len(self._virtual_lines) else 0
                 return Divergence(
@@ -461,12 +461,12 @@ def play(playable: PlayableRecording, world: World | None = None) -> PlayedRun:
 
 
 def _is_program_event(row: Row) -> bool:
-    """Whether a robot says that of its program, real or virtual."""
+    """Return whether robots report this event of a program, real or virtual."""
     return row.event.partition(" ")[0] in PROGRAM_EVENTS
 
 
 def _shown_sensors(program: ir.Program) -> dict[int, int | None]:
-    """Return where each SHOW begins, and the sensor that it shows, if it is one alone."""
+    """Return the offset of each SHOW, and the sensor it shows, if it shows a single one."""
     shown_sensors: dict[int, int | None] = {}
     for statement in ir.all_statements(program):
         if isinstance(statement, ir.Show):
@@ -476,7 +476,7 @@ def _shown_sensors(program: ir.Program) -> dict[int, int | None]:
 
 
 def _reading_value(text: str) -> int:
-    """Return what a row says, as a reading."""
+    """Return the reading in a row."""
     return int(text == "TRUE") if text in ("TRUE", "FALSE") else round(float(text) * ONE)
 
 

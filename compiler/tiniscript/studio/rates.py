@@ -1,18 +1,20 @@
-"""How much of something each of many may have: some at once, and then so much each second."""
+"""Rate limits by name: a burst at once, and then so much each second."""
 
 from __future__ import annotations
 
-MOST_NAMES = 1000  # who has not been seen for longest is forgotten
+MOST_NAMES = 1000  # most names kept; the least recent is forgotten first
 
 
 class Rate:
-    """`burst` at once, `per_s` come back each second; for each name apart. `cost` of what is more
-    than one."""
+    """A rate limit for each name: `burst` at once, and `per_s` more each second. `cost` is that of
+    several.
+    """
 
     def __init__(self, burst: float, per_s: float) -> None:
         self._burst = burst
         self._per_s = per_s
-        self._amounts_left: dict[str, tuple[float, float]] = {}  # what was left, and when
+        # Remaining amount, and the time it was measured.
+        self._amounts_left: dict[str, tuple[float, float]] = {}
 
     def has_left(self, name: str, now_s: float, cost: float = 1) -> bool:
         """Return whether so much is left."""

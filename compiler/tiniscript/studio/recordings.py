@@ -24,17 +24,18 @@ from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
 
 HEADER_KEY = "tiniscript_run"
-OLD_HEADER_KEY = "tiniscript_recording"  # of 0.3.0 and before: without the program
+# Key in the header of version 0.3.0 and earlier, without a program.
+OLD_HEADER_KEY = "tiniscript_recording"
 VERSION = 1
 MOST_BYTES = 1_000_000
-MOST_ROW_BYTES = 600_000  # of all rows; then the recording is over
+MOST_ROW_BYTES = 600_000  # most bytes of rows, after which the recording ends
 MOST_MS = 600_000
 MOST_TEXT = 200_000  # bytes of a program
 MOST_READINGS = 10_000
-MS_MODULUS = 1 << 16  # a robot tells the time of a reading modulo that
+MS_MODULUS = 1 << 16  # modulus of the time in a robot's readings
 
 VIRTUAL, REAL = "virtual", "real"
-# What somebody did: the robot did the rest. HALT is a stop over the link, or while it was held.
+# Actions of people: all others are the robot's. HALT is a stop over the link, or during a pause.
 KEYS, DOWN, UP, HALT, HELD = "KEYS", "BUTTON DOWN", "BUTTON UP", "HALT", "HALT HELD"
 READ, UNREAD = "READ", "UNREAD"  # a reading, and that some of its sensor are missing from then on
 END = "END"  # the recording reaches as far as this row, the last one
@@ -61,7 +62,7 @@ class BadRecording(Exception):
 
 
 class Row(NamedTuple):
-    """What happened at `ms`; `at` is where a SHOW is in the code, if it is known."""
+    """An event at `ms`; `at` is the place of a SHOW in the code, if known."""
 
     ms: int
     event: str
@@ -69,7 +70,7 @@ class Row(NamedTuple):
 
     @property
     def is_input(self) -> bool:
-        """Whether somebody did that to a virtual robot."""
+        """Return whether a person caused this event of a virtual robot."""
         return self.event in (DOWN, UP, HALT, HELD) or self.event.startswith("KEYS ")
 
     @property
@@ -78,12 +79,12 @@ class Row(NamedTuple):
 
     @property
     def cells(self) -> list[Any]:
-        """What the file has of it."""
+        """Return the cells in the file."""
         return [*self] if self.at >= 0 else [*self[:2]]
 
     @property
-    def pressed(self) -> RemoteState | None:
-        """What somebody holds from then on, if that is what the row says."""
+    def remote_state(self) -> RemoteState | None:
+        """The keys held from then on, if the row contains them."""
         match = _KEYS.fullmatch(self.event)
         return RemoteState(*map(int, match.groups())) if match else None
 
@@ -140,7 +141,7 @@ class Rows:
         if self.is_full:
             return False
         self.rows.append(row)
-        self.is_full = row.event == HELD  # what it would have done then, nobody knows
+        self.is_full = row.event == HELD  # after a halt, the rest of the run is unknown
         return True
 
 
@@ -152,13 +153,14 @@ class ReadingRows:
 
     def __init__(self, kit: Kit) -> None:
         self._devices = kit.readings
-        self._ms = 0  # of the last one, since the start
-        self._next_ms: dict[str, int] = {}  # after the last one of each sensor
+        self._ms = 0  # time of the last row, since the start
+        self._next_ms: dict[str, int] = {}  # earliest time of the next row, by sensor
         self.incomplete_names: list[str] = []
 
     def rows(self, event: ReadingEvent, since_ms: int) -> list[Row]:
-        """Return the rows of one that has come so long after the start of its run: they may be of
-        a time before the row that came last."""
+        """Return the rows of an event at a time since the start of its run, which may precede the
+        last row.
+        """
         number = event.sensor & ~UNTOLD
         device = self._devices[number] if number < len(self._devices) else None
         if device is None or not device.name:
@@ -226,7 +228,7 @@ def decode(data: bytes) -> Recording:
         if rows and rows[-1].event == END:
             raise BadRecording("unreadable", number)
         row = _row(line, number, recording.robot_kind)
-        is_late = not recording.is_virtual and row.is_reading  # it came later than it was
+        is_late = not recording.is_virtual and row.is_reading  # the row arrived after its time
         if row.ms < last_ms and not is_late:
             raise BadRecording("unreadable", number)
         last_ms = last_ms if is_late else row.ms
@@ -245,7 +247,7 @@ def decode(data: bytes) -> Recording:
 
 
 def _parse_header(fields: dict[str, Any]) -> Recording:
-    """Return what the first line says. Raises BadRecording."""
+    """Return the content of the first line. Raises BadRecording."""
     text, robot, robot_kind = fields.get("text"), fields.get("robot"), fields.get("of")
     seed = fields.get("seed", 1)
     if (
@@ -330,11 +332,13 @@ def _row(line: str, number: int, robot_kind: str) -> Row:
     is_event = isinstance(row.event, str) and (
         row.event == END or match_event(row.event) is not None
     )
-    if not is_event and not (isinstance(row.event, str) and robot_kind == VIRTUAL and row.pressed):
+    if not is_event and not (
+        isinstance(row.event, str) and robot_kind == VIRTUAL and row.remote_state
+    ):
         raise BadRecording("unreadable", number)
     if row.ms < 0 or not -1 <= row.at < 1 << 16:
         raise BadRecording("unreadable", number)
-    if row.event.startswith("KEYS") and (row.pressed is None or not row.pressed.is_sound):
+    if row.event.startswith("KEYS") and (row.remote_state is None or not row.remote_state.is_sound):
         raise BadRecording("unreadable", number)
     return row
 

@@ -1,4 +1,4 @@
-"""What the page asks of a robot, and what it is told about it: both as data for JSON.
+"""Requests of the page to a robot, and its events: both as data for JSON.
 
 The same code is in the page, over Web Serial and Web Bluetooth, and in `tsc studio`, over the ports
 of the computer; in both places it uses the session of `tiniscript.link`. So a request, a receipt
@@ -66,24 +66,24 @@ from tiniscript.studio.recordings import ReadingRows
 Json = dict[str, Any]
 T = TypeVar("T")
 
-LIMIT_MS = EXCHANGE_TIMEOUT_MS  # for a robot that is known: it is silent, or busy with saving
+LIMIT_MS = EXCHANGE_TIMEOUT_MS  # timeout of a known robot that is silent or busy saving
 LONGEST_LIMIT_MS = 20_000
 MOST_WAITING = 8  # requests at a time
 TEXT_CHARACTERS = 200
-MOST_EVENTS = 200  # at a time
+MOST_EVENTS = 200  # most events at a time
 MOST_COUNT = 2**31
 MOST_PLACE = 0xFFFF  # an offset in a program's code
 
 
 class BadRequest(Exception):
-    """What has come is no request: it is not of this page."""
+    """Raised for a request that is not from this page."""
 
 
 class _PageRequest(NamedTuple):
     number: int
     pending: PendingRequest[Any]
-    is_program: bool  # it sends or starts one, and no line
-    is_keys: bool  # of a remote control: the newest word alone waits, so few do
+    is_program: bool  # whether it sends or starts a program, not a line
+    is_keys: bool  # whether it is a state of the remote control; only the newest waits
 
 
 class _Run(NamedTuple):
@@ -109,7 +109,7 @@ class RobotLink:
         self._ended_run: _Run | None = None
         self._reading_rows: ReadingRows | None = None
         self._readings_run: tuple[_Run, int] | None = None  # theirs, and when it began
-        self._program_run: _Run | None = None  # of the newest program that the page has started
+        self._program_run: _Run | None = None  # the newest program that the page has started
 
     @property
     def has_run(self) -> bool:
@@ -140,7 +140,7 @@ class RobotLink:
 
         def make_pending(session: Requester) -> PendingRequest[Any]:
             pending = make(session)
-            if action != "claim":  # it waits for a hand on the button
+            if action != "claim":  # a claim waits for a hand on the button
                 pending.limit_ms = limit_ms
             return pending
 
@@ -152,7 +152,7 @@ class RobotLink:
         )
 
     def stop(self) -> None:
-        """Stop the robot, whoever has started what it does."""
+        """Stop the robot, whoever started its program."""
         self._connection.stop()
 
     def news(self, limit_s: float = 0) -> list[Json]:
@@ -218,7 +218,8 @@ class RobotLink:
         name = shipped_name_of_kit(robot.kit) if robot is not None else None
         if name is None:
             return []
-        if self._readings_run is None or self._readings_run[0] != run:  # its first one
+        # The first reading of this run.
+        if self._readings_run is None or self._readings_run[0] != run:
             self._reading_rows = ReadingRows(robots.load(name).kit)
             self._readings_run = run, time_ms - event.ms
         assert self._reading_rows is not None
@@ -303,16 +304,17 @@ class RobotLink:
             data["text"] = printable(event.text.decode("utf-8", "replace"), TEXT_CHARACTERS)
         elif event.name == "STARTED":
             data["program"] = f"{event.program:08x}"
-            # no line, and nobody else's
+            # A program, not a line, of this page.
             data["is_program"] = self._known_run(event.run) == self._program_run
         elif event.name not in ("DONE", "RESTARTED", "LOST"):
-            return []  # who else uses the port is no news for a page
+            return []  # other users of the port do not concern a page
         return [data]
 
 
 def robot_data(robot: DeviceInfo) -> Json:
-    """Return what a robot says of itself: `robot` is the name of its shipped profile or None,
-    `owner` is free, yours or other, `room` in bytes of code."""
+    """Return a robot's description: `robot` is the name of its shipped profile or None, `owner` is
+    free, yours or other, `room` in bytes of code.
+    """
     return {
         "name": printable(robot.name),
         "id": f"{robot.id:08x}",
@@ -360,7 +362,7 @@ def _trim(request: Json) -> _Make:
         return lambda session: session.trim()
     if not isinstance(fields, dict):
         raise BadRequest
-    trim = Trim(  # without a pace: the robot leaves what it has
+    trim = Trim(  # without a pace, the robot keeps its own
         fields.get("is_exchanged") is True,
         fields.get("is_left_reversed") is True,
         fields.get("is_right_reversed") is True,

@@ -32,7 +32,7 @@ from tiniscript.studio import building
 from tiniscript.studio.entrances import Entrances
 from tiniscript.studio.robot_link import BadRequest, Json
 
-# Nothing comes from elsewhere and nothing goes there. Python is WebAssembly, compiled here.
+# Nothing is loaded from elsewhere or sent there. Python is WebAssembly, compiled here.
 _DIRECTIVES = (
     "default-src 'none'",
     "script-src 'self' 'wasm-unsafe-eval'",
@@ -44,7 +44,7 @@ _DIRECTIVES = (
     "base-uri 'none'",
     "form-action 'none'",
 )
-POLICY = "; ".join(_DIRECTIVES)  # a page can say so of itself
+POLICY = "; ".join(_DIRECTIVES)  # a page can claim this itself
 HEADERS = {
     "Content-Security-Policy": f"{POLICY}; frame-ancestors 'none'",
     "Cross-Origin-Opener-Policy": "same-origin",
@@ -74,17 +74,17 @@ TYPES = {
 
 PAGE = building.PAGE
 WORKER_FILE = "service_worker.js"
-FIRMWARE_FILE = "firmware.json"  # which files of firmware there are
+FIRMWARE_FILE = "firmware.json"  # list of the firmware files
 HOST = "127.0.0.1"
-HOST_NAMES = (HOST, "localhost")  # by which a browser here may call it
+HOST_NAMES = (HOST, "localhost")  # names that a browser on this computer may use
 HTTP_PORT = 80
-SILENT_S = 10  # after which a client that asks nothing is left
-ROBOTS_PATH = "/robots"  # where a page asks for robots
-ENTER_PATH = "/enter"  # where it gets the token for its code
+SILENT_S = 10  # idle time after which a client is disconnected
+ROBOTS_PATH = "/robots"  # path of requests to robots
+ENTER_PATH = "/enter"  # path where a page exchanges its code for a token
 TOKEN_HEADER = "X-TiniScript-Token"
 CODE_PREFIX = "#code="
-ENTER_BYTES = 200  # of a request with a code
-HEAD_BYTES = 16_384  # of a request
+ENTER_BYTES = 200  # most bytes of a request with a code
+HEAD_BYTES = 16_384  # most bytes of a request's head
 REQUEST_BYTES = 200_000  # the largest program has 32,781 bytes, and two digits for each
 # At a time; one more, and one is closed, of the address that has most. A browser has six.
 MOST_CONNECTIONS = 64
@@ -95,10 +95,10 @@ Robots = Callable[[Json], Json]  # raises BadRequest
 
 
 class Pupils(Protocol):
-    """Who asks with a token that is not that of the run."""
+    """The users with a token other than that of the run."""
 
     def most_bytes(self, token: str) -> int:
-        """Return how large a request with this token may be; 0: nobody has it."""
+        """Return the largest request with this token; 0 for an unknown token."""
 
     def answer(self, token: str, address: str, request: Json) -> Json:
         """Return the answer; `address` is that of the asking computer. Raises BadRequest."""
@@ -114,7 +114,7 @@ class File(NamedTuple):
 
 
 def is_built() -> bool:
-    """Whether this installation has the page."""
+    """Return whether this installation has the page."""
     return building.has_page(PAGE)
 
 
@@ -155,19 +155,18 @@ def for_class(page: dict[str, File]) -> dict[str, File]:
         data = file.data
         if name == building.INDEX_FILE:
             data = data.replace(HTML_START, HTML_START + b" data-class", 1)
-        gzipped = gzip.compress(data, 6, mtime=0)
+        gzipped_bytes = gzip.compress(data, 6, mtime=0)
         class_page[name] = _with_etag(
-            data, file.content_type, gzipped if len(gzipped) < len(data) else b""
+            data, file.content_type, gzipped_bytes if len(gzipped_bytes) < len(data) else b""
         )
     return class_page
 
 
-def _with_etag(data: bytes, content_type: str, gzipped: bytes = b"") -> File:
-    return File(data, content_type, f'"{hashlib.sha256(data).hexdigest()[:32]}"', gzipped)
+def _with_etag(data: bytes, content_type: str, gzipped_bytes: bytes = b"") -> File:
+    return File(data, content_type, f'"{hashlib.sha256(data).hexdigest()[:32]}"', gzipped_bytes)
 
 
-# For a browser that asks for a worker which this server has not: it is of a server that had this
-# address before, and goes.
+# Replaces the worker of a server that had this address before, and removes it.
 _GONE_WORKER = File(
     b"addEventListener('install', () => skipWaiting());\n"
     b"addEventListener('activate', () => registration.unregister());\n",
@@ -180,7 +179,7 @@ _BAD_REQUEST_ANSWER = File(b"That is no request.\n", TYPES[".txt"])
 
 class _Client(NamedTuple):
     address: str
-    is_known: bool  # it has shown a token
+    is_known: bool  # whether it has shown a token
 
 
 class Server(ThreadingHTTPServer):
@@ -215,7 +214,7 @@ class Server(ThreadingHTTPServer):
         self.entrances = Entrances()
         self.most_connections = MOST_CONNECTIONS if pupils is None else MOST_CLASS_CONNECTIONS
         self._lock = Lock()
-        # Which has asked last is the last.
+        # The client with the latest request is last.
         self._connections: dict[socket.socket, _Client] = {}
 
     def entrance(self, is_for_this_computer: bool = False) -> str:
@@ -225,7 +224,7 @@ class Server(ThreadingHTTPServer):
         return f"{self.address}{CODE_PREFIX}{self.entrances.new_code(is_for_this_computer)}"
 
     def is_unused(self, entrance: str) -> bool:
-        """Whether nobody has opened such an address."""
+        """Return whether nobody has opened this address yet."""
         return self.entrances.is_unused(entrance.rpartition(CODE_PREFIX)[2])
 
     def enter(self, request: Json, peer: socket.socket) -> Json:
@@ -234,7 +233,7 @@ class Server(ThreadingHTTPServer):
         return {"token": token} if token else {"failure": "host_used"}
 
     def most_bytes(self, token: str, peer: socket.socket) -> int:
-        """Return how large a request with this token may be; 0: it is refused."""
+        """Return the largest request with this token; 0 if it is refused."""
         if self.entrances.is_owner(token, peer):
             return REQUEST_BYTES
         return self.pupils.most_bytes(token) if self.pupils else 0
@@ -262,7 +261,7 @@ class Server(ThreadingHTTPServer):
                 del self._connections[closed_connection]
             self._connections[request] = _Client(client_address[0], False)
         if closed_connection is not None:
-            with suppress(OSError):  # it has gone
+            with suppress(OSError):  # the client has gone
                 closed_connection.shutdown(socket.SHUT_RDWR)
         super().process_request(request, client_address)
 
@@ -294,7 +293,7 @@ class _HeadTooLarge(Exception):
 
 
 class _Reader:
-    """What a client sends; the lines of a head are no more than HEAD_BYTES in all."""
+    """A reader of a client's requests; the lines of a head have at most HEAD_BYTES in all."""
 
     def __init__(self, stream: BufferedIOBase) -> None:
         self._stream = stream
@@ -319,7 +318,7 @@ class _Handler(BaseHTTPRequestHandler):
     server_version = "tsc"
     sys_version = ""
     timeout = SILENT_S
-    disable_nagle_algorithm = True  # else the body of an answer waits 40 ms behind its head
+    disable_nagle_algorithm = True  # otherwise the body of an answer waits 40 ms after its head
 
     def setup(self) -> None:
         super().setup()
@@ -342,7 +341,7 @@ class _Handler(BaseHTTPRequestHandler):
         if server.robots is None or self.path not in (ROBOTS_PATH, ENTER_PATH):
             self._send(HTTPStatus.NOT_FOUND, _MISSING_ANSWER)
             return
-        # A browser says of each POST where it is from.
+        # A browser sends the origin of each POST.
         tokens = self.headers.get_all(TOKEN_HEADER, [])
         token = tokens[0] if len(tokens) == 1 else ""
         most_bytes = server.most_bytes(token, self.connection) if len(tokens) < 2 else 0
@@ -399,8 +398,9 @@ class _Handler(BaseHTTPRequestHandler):
         self.do_GET()  # sends all but the file
 
     def _is_own(self) -> bool:
-        """Whether the request is for a page of this address: a name that somebody else has made for
-        this computer is not (DNS rebinding), nor is a page from elsewhere."""
+        """Return whether the request is for a page of this address. Pages from elsewhere are
+        refused, and so are names that others point at this computer (DNS rebinding).
+        """
         if self.headers.get_all("Host", []) not in [[name] for name in self.server.own_hosts]:
             return False
         origins = self.headers.get_all("Origin", [])
@@ -429,4 +429,4 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(file.data)
 
     def log_message(self, format: str, *arguments: Any) -> None:
-        """What a browser fetches is no news."""
+        """Log nothing for a browser's requests."""

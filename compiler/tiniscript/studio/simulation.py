@@ -21,17 +21,17 @@ from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.score import Score
 from tiniscript.virtual.world import World
 
-LONGEST_ANSWER_MS = 10_000  # for a robot to answer
+LONGEST_ANSWER_MS = 10_000  # time for a robot to answer
 PUSH_MS = 60
-FAULT_MS = 500  # for a robot to report a fault
+FAULT_MS = 500  # time for a robot to report a fault
 NONCE = 1  # the same program makes the same run
 PART, BREAKPOINT = 1, 2  # marks in a program's code
 MOST_CODE = 1 << 16  # bytes
-REPEAT_GAP_MS = HOLD_MS // 10  # what is held already is said no sooner again
+REPEAT_GAP_MS = HOLD_MS // 10  # shortest time before held keys are sent again
 
 
 class Marks(NamedTuple):
-    """Where a program may be held, and what is looked at.
+    """The places where a program may pause, and whether anything is watched.
 
     `part_offsets` are where parts of its text begin, `variable_count` how many variables it has;
     `is_held`: in front of the first part, too.
@@ -56,7 +56,7 @@ class Simulation:
         self, robot: str, world: World, image: bytes, marks: Marks | None = None,
         settings: Settings | None = None,
     ) -> None:  # fmt: skip
-        """Raises WorldRefused where the robot does not fit into the world."""
+        """Raises WorldRefused if the robot does not fit into the world."""
         profile = profile_of(robot)
         self.robot = VirtualRobot(profile, world, settings or Settings())
         self._score = Score(world)
@@ -64,7 +64,7 @@ class Simulation:
         self._begin_rows()
         self.session = self._computer.session
         self.is_stopped = False
-        self.fault_at: int | None = None  # where the last fault was, as the robot has told
+        self.fault_at: int | None = None  # place of the last fault that the robot reported
         self.marks = marks or Marks(())
         self._mark_code()
         self._hold_before(is_stepping=self.marks.is_held)
@@ -76,7 +76,7 @@ class Simulation:
         self.go(0)
 
     def go(self, duration_ms: int) -> None:
-        """Let time go on, unless the program is held or until it is.
+        """Advance time, unless the program pauses.
 
         After a fault a little longer, until the robot has told where it was.
         """
@@ -95,11 +95,11 @@ class Simulation:
         self._hold_before(is_stepping=False)
 
     def go_on(self) -> None:
-        """Let a program that is held go on to the next breakpoint, as time goes on."""
+        """Let a paused program run to the next breakpoint as time advances."""
         self.robot.go_on()
 
     def step(self, limit_ms: int) -> None:
-        """Let time go on until another part of the text is next, or the program has ended."""
+        """Advance time until another part of the text is next, or the program has ended."""
         self._hold_before(is_stepping=True)
         self.robot.go_on()
         for _ in range(limit_ms):
@@ -110,7 +110,7 @@ class Simulation:
 
     @property
     def held_at(self) -> int | None:
-        """Return the offset in front of which the program is held, or None."""
+        """Return the offset before which the program is paused, or None."""
         return self.robot.firmware.held_at
 
     def _mark_code(self) -> None:
@@ -127,9 +127,9 @@ class Simulation:
 
     def _begin_rows(self) -> None:
         self._rows = Rows()
-        self._taken_count = 0  # rows that somebody has had
+        self._taken_count = 0  # rows already delivered
         self._events: list[Event] = []
-        self._waiting_inputs: list[str] = []  # by somebody, for the next whole millisecond
+        self._waiting_inputs: list[str] = []  # inputs of a person, for the next whole millisecond
         self._remote_state, self._pressed_ms = NOTHING_PRESSED, 0
         self._is_held_midway = False  # a millisecond: the program was held
 
@@ -145,7 +145,7 @@ class Simulation:
         self._take_events()
 
     def _let_in(self) -> None:
-        """What somebody has done meanwhile reaches the robot now."""
+        """Pass a person's waiting inputs to the robot."""
         inputs, self._waiting_inputs = self._waiting_inputs, []
         for event in inputs:
             self._replay_event(event)
@@ -157,7 +157,7 @@ class Simulation:
         elif event == UP:
             self.robot.let_go()
         else:
-            remote_state = Row(0, event).pressed
+            remote_state = Row(0, event).remote_state
             assert remote_state is not None, event
             self.session.press(*remote_state)
 
@@ -181,11 +181,11 @@ class Simulation:
 
     @property
     def is_full(self) -> bool:
-        """Whether the file of the run has no room for what comes now."""
+        """Return whether the run's file has no room for the next rows."""
         return self._rows.is_full
 
     def take_events(self) -> list[Event]:
-        """Return what the robot has done since the last time."""
+        """Return the robot's actions since the last call."""
         self._take_rows()
         events, self._events = self._events, []
         return events
@@ -228,7 +228,7 @@ class Simulation:
         self.robot.switch_off()
 
     def state(self) -> dict[str, Any]:
-        """Return what is to be seen, and what has happened since the last time."""
+        """Return the visible state, and the events since the last call."""
         robot = self.robot
         x_cm, y_cm, heading = robot.pose
         touch_point = robot.driving.touch_point(robot.pose)
@@ -269,7 +269,7 @@ class Simulation:
         }
 
     def _until(self, is_over: Callable[[], bool]) -> None:
-        """Let time go on, also for a program that is held."""
+        """Advance time, also for a paused program."""
         for _ in range(LONGEST_ANSWER_MS):
             if is_over():
                 return

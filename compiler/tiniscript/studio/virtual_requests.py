@@ -1,4 +1,6 @@
-"""What the page asks of its virtual robot, of worlds and of lessons; the worker loads it then."""
+"""Requests of the page about the virtual robot, worlds and lessons; the worker loads them on
+demand.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,7 @@ def _world(description: Any) -> World:
 
 def _begin(fields: Json, world: World, image: bytes, marks: Marks) -> Simulation:
     if pose := fields.get("pose"):
-        with suppress(WorldRefused):  # something stands there, or it has crashed
+        with suppress(WorldRefused):  # an obstacle is there, or it has crashed
             return Simulation(fields["robot"], world._replace(start=Pose(*pose)), image, marks)
     return Simulation(fields["robot"], world, image, marks)
 
@@ -76,8 +78,8 @@ def _power_on(fields: Json, data: bytes) -> Json:
             _simulation = _lessons().JudgedRun(*run_arguments, data, marks)
         else:
             _simulation = _begin(fields, _world(description), data, marks)
-    except WorldRefused as refused:
-        return {"refused": describe(refused, fields["language"])}
+    except WorldRefused as refusal:
+        return {"refused": describe(refusal, fields["language"])}
     assert _simulation is not None
     return _simulation.state()
 
@@ -85,9 +87,10 @@ def _power_on(fields: Json, data: bytes) -> Json:
 def _driving_request(
     act: Callable[[Simulation, Json], object],
 ) -> Callable[[Json, bytes], Json]:
-    """Return what does `act` with the virtual robot, and answers how it stands then.
+    """Return a handler that applies `act` to the virtual robot, and answers with its state.
 
-    `held` is what somebody holds of a remote control meanwhile."""
+    `held` is what somebody holds of a remote control meanwhile.
+    """
 
     def answer(fields: Json, data: bytes) -> Json:
         assert _simulation is not None, "nothing is switched on"
@@ -105,8 +108,8 @@ def _open_world(fields: Json, data: bytes) -> Json:
     try:
         world = read_world(decode_profile(data, name), name.removesuffix(".toml"))
         return {"world": form_of(world)}
-    except ProfileRefused as refused:
-        return {"refused": describe(WorldRefused(*refused.reasons), fields["language"])}
+    except ProfileRefused as refusal:
+        return {"refused": describe(WorldRefused(*refusal.reasons), fields["language"])}
 
 
 def _write_world(fields: Json, data: bytes) -> Json:
@@ -114,14 +117,14 @@ def _write_world(fields: Json, data: bytes) -> Json:
     text = toml_of(fields["form"])
     try:
         world = read_world(text, "")
-    except WorldRefused as refused:
-        return {"refused": describe(refused, fields["language"])}
+    except WorldRefused as refusal:
+        return {"refused": describe(refusal, fields["language"])}
     body = checking.profile_of(fields["robot"]).body
     return {"text": text, "is_blocked": driving_in(body, world).is_blocked()}
 
 
 def _open_run(fields: Json, data: bytes) -> Json:
-    """Return what the page needs to play the file of a run, `data`, or why it cannot be played."""
+    """Return the data for playing a run's file, `data`, or the reason why it cannot be played."""
     global _opened_run
     try:
         _opened_run = playing.prepare(recordings.decode(data))
@@ -164,7 +167,7 @@ def _write_run(fields: Json, data: bytes) -> Json:
     return {"file": recordings.encode(header, rows, fields["end_ms"])}
 
 
-_lesson_check_now: Any = None  # the one that goes on
+_lesson_check_now: Any = None  # the one that continues
 
 
 def _lessons() -> Any:

@@ -1,4 +1,4 @@
-"""What the page calls: requests and answers are JSON.
+"""The functions that the page calls, with requests and answers in JSON.
 
 Knows the form of both. Runs in Pyodide, in a worker; knows nothing of a browser.
 """
@@ -25,7 +25,7 @@ from tiniscript.studio.block_speech import blocks_of, codes_in, mark_code
 
 Json = dict[str, Any]
 TOGETHER = "tiniscript.studio.page_together"
-MOST_BLOCKS = 1500  # that a page can move about
+MOST_BLOCKS = 1500  # most blocks that a page can move around
 
 
 def answer(request: str, data: bytes = b"") -> str:
@@ -68,19 +68,19 @@ def _on_blocks(message: Message, kit: Kit) -> Json:
 
 
 def _speak(fields: Json, data: bytes) -> Json:
-    """Return which block a code of a program is, if it is one."""
+    """Return the block that a piece of code becomes, if it is one."""
     del data
     return blocks_of([fields["code"]], checking.profile_of(fields["robot"]).kit)
 
 
 def _repair(fields: Json, data: bytes) -> Json:
-    """Return what the button of the finding `which` does; nothing is no button."""
+    """Return the edits of the button of the finding `which`; none means no button."""
     changes = checking.repair(data, fields["robot"], fields["which"])
     return {"changes": [change._asdict() for change in changes]}
 
 
 def _loose(fields: Json, data: bytes) -> int:
-    """Return how many instructions and values of a program hang on nothing."""
+    """Return the number of unattached instructions and values in a program."""
     stacks = read_blocks(data.decode(), checking.profile_for(data, fields["robot"]).kit).loose
     return sum(len(in_order(stack.body)) or 1 for stack in stacks)
 
@@ -136,12 +136,12 @@ _HANDLERS: dict[str, Callable[[Json, bytes], Json]] = {
 
 
 def _request_handler(action: str) -> Callable[[Json, bytes], Json]:
-    """Return what answers a request. A page begins without its robots: they load when asked for."""
+    """Return the handler of a request. The page starts without its robots, which load on demand."""
     if action in _HANDLERS:
         return _HANDLERS[action]
     if action.startswith(
         "group_"
-    ):  # which the page has fetched meanwhile; its first archive lacks it
+    ):  # the page has loaded this module by now; its first archive lacks it
         sys.path_importer_cache.clear()
         handlers: dict[str, Callable[[Json, bytes], Json]] = import_module(TOGETHER).HANDLERS
         return handlers[action]

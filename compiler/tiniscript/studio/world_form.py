@@ -16,12 +16,12 @@ from tiniscript.virtual.world import World
 from tiniscript.virtual.worlds import LARGEST_CM, MOST_PARTS, MOST_POINTS, MOST_RIVALS, MOST_SECONDS
 
 KINDS = ("walls", "boxes", "lines", "lamps", "flags", "rings", "rivals")
-DECIMALS = 3  # that a world's file may have
+DECIMALS = 3  # most decimals in a world's file
 Form = dict[str, Any]
 
 
 def limits() -> dict[str, int]:
-    """Return how many parts of a kind a world may have, how many points a part, and its numbers."""
+    """Return the limits of a world: parts of each kind, points of a part, and numbers."""
     return {
         "parts": MOST_PARTS,
         "rivals": MOST_RIVALS,
@@ -67,7 +67,7 @@ def toml_of(form: Form) -> str:
     labels = form["labels"]
     if set(labels.values()) == {form["name"]}:
         labels = {}  # the name of a file, which the next one may have differently
-    elif SOURCE_LANGUAGE in labels:  # without what the catalogue of names says of it
+    elif SOURCE_LANGUAGE in labels:  # leaves out what the catalogue of names provides
         labels_by_language = ByLanguage({SOURCE_LANGUAGE: labels[SOURCE_LANGUAGE]})
         labels = {
             **labels_by_language,

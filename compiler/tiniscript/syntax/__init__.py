@@ -1,1 +1,1 @@
-"""Turns text into tokens and an AST: lexer, parser, formatter; says what is missing in a text."""
+"""Turns text into tokens and an AST: lexer, parser, formatter; reports missing parts of a text."""

@@ -12,7 +12,7 @@ from tiniscript.base.source import Span
 
 
 class Part(NamedTuple):
-    """`op` is NUMBER, NAME, TRUE, FALSE, TIME, FOREVER, or what is done to the parts before."""
+    """`op` is NUMBER, NAME, TRUE, FALSE, TIME, FOREVER, or an operation on the parts before."""
 
     op: str
     value: int | str
@@ -36,7 +36,7 @@ class Argument(NamedTuple):
 
 
 class Command(NamedTuple):
-    """`WORD(a, b) UNTIL(c)` or a word alone; `arguments` is None where no bracket is."""
+    """`WORD(a, b) UNTIL(c)` or a word alone; `arguments` is None if no bracket is."""
 
     word: str
     word_span: Span
@@ -46,7 +46,7 @@ class Command(NamedTuple):
 
 
 class Assign(NamedTuple):
-    """`value` is None where it could not be read."""
+    """`value` is None if it could not be read."""
 
     name: str
     name_span: Span
@@ -55,7 +55,7 @@ class Assign(NamedTuple):
 
 
 class Arm(NamedTuple):
-    """IF or ELSEIF: `condition` is None where it could not be read."""
+    """IF or ELSEIF: `condition` is None if it could not be read."""
 
     condition: Argument | None
     body: "tuple[Instruction, ...]"

@@ -26,7 +26,7 @@ from tiniscript.syntax.ast import (
 from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.reporter import Reporter
 
-HEADERS = frozenset(BLOCK_ENDS) - {"DEF", "TASK"}  # with brackets: IF, LOOP, WHILE, WHEN
+HEADERS = frozenset(BLOCK_ENDS) - {"DEF", "TASK"}  # words with brackets: IF, LOOP, WHILE, WHEN
 ENDS = {end: word for word, end in BLOCK_ENDS.items()}  # ENDIF: IF …
 ENDS |= {alias: ENDS[end] for alias, end in ALIASES.items()}
 
@@ -45,13 +45,13 @@ class Block:
         parameters: Sequence[Parameter],
     ) -> None:
         self.word = word  # IF, LOOP, WHILE, DEF, TASK or WHEN
-        self.span = span  # of the header: where a block that never ends is reported
+        self.span = span  # span of the header, where an endless block is reported
         self.argument = argument  # the condition or the count of the arm that is being read
-        self.name = name  # of a DEF
-        self.parameters = parameters  # of a DEF
+        self.name = name  # name of the DEF
+        self.parameters = parameters  # name of the DEF
         self.body: list[Instruction] = []
         self.arms: list[Arm] = []
-        self.else_body: list[Instruction] | None = None  # what follows ELSE, once it has come
+        self.else_body: list[Instruction] | None = None  # the body after ELSE, once it has begun
 
     @property
     def header(self) -> Span:
@@ -60,7 +60,7 @@ class Block:
 
     @property
     def current_body(self) -> list[Instruction]:
-        """Where the next instruction belongs."""
+        """Return the body for the next instruction."""
         return self.body if self.else_body is None else self.else_body
 
     def next_arm(self, argument: Argument | None, span: Span) -> None:
@@ -76,7 +76,7 @@ class Blocks:
         self.program: list[Instruction] = []
         self.open_blocks: list[Block] = []
         self.task_count = 0  # TASKs and WHENs that have begun at the top level
-        self._depth = 0  # open blocks, those that stand at the top level alone not counted
+        self._depth = 0  # open blocks, not counting those allowed only at the top level
 
     @property
     def innermost(self) -> Block | None:
@@ -84,7 +84,7 @@ class Blocks:
 
     @property
     def current_body(self) -> list[Instruction]:
-        """Where the next instruction belongs."""
+        """Return the body for the next instruction."""
         return self.open_blocks[-1].current_body if self.open_blocks else self.program
 
     def begin(

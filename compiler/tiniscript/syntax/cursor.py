@@ -8,8 +8,8 @@ from __future__ import annotations
 from tiniscript.base.source import Source, Span
 from tiniscript.syntax.lexer import END, NEWLINE, WORD, Token
 
-INSTRUCTION_ENDS = frozenset((";", NEWLINE, END))  # where an instruction ends
-VALUE_ENDS = frozenset((",", ")", *INSTRUCTION_ENDS))  # where a value does
+INSTRUCTION_ENDS = frozenset((";", NEWLINE, END))  # tokens that end an instruction
+VALUE_ENDS = frozenset((",", ")", *INSTRUCTION_ENDS))  # tokens that end a value
 
 
 class Cursor:
@@ -43,7 +43,7 @@ class Cursor:
     # -- looking over line ends, which are white space in brackets ------------------------------
 
     def peek_inner(self) -> Token:
-        """Return the next token that is no line end, without going there."""
+        """Return the next token other than a line end, without consuming it."""
         k = self.i
         while self.tokens[k].kind is NEWLINE:
             k += 1
@@ -54,7 +54,9 @@ class Cursor:
             self.i += 1
 
     def take_inner(self, kind: str) -> bool:
-        """Go past the next token that is no line end if it is a `kind`; return whether it is."""
+        """Consume the next token other than a line end if it is of this kind; return whether it
+        is.
+        """
         is_next = self.peek_inner().kind == kind
         if is_next:
             self.skip_newlines()
@@ -71,7 +73,7 @@ class Cursor:
         return sign == ")" or self.tokens[self.i].kind != "("
 
     def index_before(self, k: int) -> int:
-        """Return the place of the last token before `k` that is no line end."""
+        """Return the index of the last token before `k` other than a line end."""
         k -= 1
         while self.tokens[k].kind is NEWLINE:
             k -= 1

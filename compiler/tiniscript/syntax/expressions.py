@@ -51,7 +51,7 @@ class ExpressionParser:
             cursor.i += 1
             return Argument((Part("FOREVER", 0, *token.span),), token.span, False)
         argument = self.expression(is_in_brackets=True)
-        token = cursor.peek_inner()  # the CM or DEG that may stand after the whole of it
+        token = cursor.peek_inner()  # the CM or DEG after the whole expression
         if token.kind is not WORD or token.text not in EXTENTS:
             return argument
         cursor.take_inner(WORD)
@@ -243,7 +243,7 @@ class ExpressionParser:
         self.reporter.fail(codes.MISSING_VALUE, token.span or previous.span, **hints)
 
     def ends_above(self, token: Token) -> bool:
-        """Whether an instruction begins with this token below the line that breaks off.
+        """Return whether this token begins an instruction below an unfinished line.
 
         Then it goes back there: what is below is read for itself.
         """
@@ -321,7 +321,7 @@ class ExpressionParser:
         raise Failed
 
     def skip_after_name(self) -> Token | None:
-        """Return what follows a name of a DEF where a comma or the end belongs.
+        """Return the token after a name of a DEF, in the place of a comma or the end.
 
         A sign is passed, with all up to there: `= 5`; a name is the next one. None for a unit.
         """
@@ -351,7 +351,7 @@ class ExpressionParser:
         self.reporter.diagnostics.append(diagnostic)
 
     def report_missing_close(self, bracket: int) -> NoReturn:
-        """In brackets a comma or their end is expected."""
+        """Report that a comma or a closing bracket is missing."""
         token, previous = self.cursor.peek_inner(), self.cursor.last_token
         self.reject_semicolon(bracket)
         self.reject_unit(token if previous.text not in EXTENTS else previous)
@@ -365,6 +365,6 @@ class ExpressionParser:
 
 
 def _is_name(token: Token) -> bool:
-    """Whether a token may be a value with a name."""
+    """Return whether a token may be a named value."""
     word_row = WORDS.get(token.text) if token.kind is WORD else None
     return token.kind is WORD and (word_row is None or word_row.role.name == "value")

@@ -21,8 +21,8 @@ BEFORE_COMMENT = "  "
 _TIGHT_COMMENT = re.compile(r"\A//(?=[^/\s])")
 
 _ARMS = frozenset(("ELSE", "ELSEIF"))
-_INDENTING_WORDS = frozenset(BLOCK_ENDS) | _ARMS  # what follows stands further right
-_DEDENTING_WORDS = frozenset(BLOCK_ENDS.values()) | _ARMS  # stands further left than what is before
+_INDENTING_WORDS = frozenset(BLOCK_ENDS) | _ARMS  # words that indent the lines after them
+_DEDENTING_WORDS = frozenset(BLOCK_ENDS.values()) | _ARMS  # indented less than the text before it
 _WORD_OPERATORS = frozenset(("AND", "OR", "NOT"))
 _BEFORE_VALUE = _WORD_OPERATORS | SIGNS | {"(", ","}
 
@@ -39,16 +39,16 @@ def format_source(source: Source) -> str:
 
 
 class Piece:
-    """An instruction, SETUP with its bar, or, where it has no tokens, a line of comment."""
+    """An instruction, SETUP with its bar, or, if it has no tokens, a line of comment."""
 
     __slots__ = ("comments", "first_line", "follows_blank", "last_line", "tokens")
 
     def __init__(self, line: int, follows_blank: bool) -> None:
         self.tokens: list[Token] = []
-        self.comments: list[str] = []  # those inside it and the one after it
+        self.comments: list[str] = []  # comments inside the instruction and after it
         self.first_line = line
         self.last_line = line
-        self.follows_blank = follows_blank  # an empty line stands right before it
+        self.follows_blank = follows_blank  # whether an empty line precedes it
 
     @property
     def is_setup(self) -> bool:
@@ -103,7 +103,7 @@ def pieces_of(scan: Scan) -> list[Piece]:
 class Row(NamedTuple):
     """A line of the result without its indentation."""
 
-    word: str  # of an instruction that stands alone, the first word
+    word: str  # first word of an instruction without a block
     text: str
     follows_blank: bool
 
@@ -121,7 +121,7 @@ def _rows(pieces: list[Piece]) -> list[Row]:
 
 
 def is_one_line(pieces: list[Piece]) -> bool:
-    """Whether the instructions go on one line: they do already, or there is only one.
+    """Return whether the instructions go on one line: already there, or only one.
 
     A comment between SETUP and the first of them stands in the way.
     """
@@ -138,7 +138,7 @@ def is_one_line(pieces: list[Piece]) -> bool:
 
 
 def _continues_line(previous: Piece, piece: Piece, is_single_line: bool) -> bool:
-    """Whether a piece goes on the line of the one before it."""
+    """Return whether a piece continues the line of the previous one."""
     if not piece.is_instruction:
         return False
     if is_single_line:
@@ -177,7 +177,7 @@ def lines_of(rows: list[Row]) -> list[str]:
 
 
 def _depths(rows: list[Row]) -> list[int]:
-    """Return how many blocks are open around each row; a comment takes what follows."""
+    """Return the number of open blocks around each row; a comment has that of the next row."""
     depths: list[int] = []
     depth = 0
     for row in rows:
@@ -197,7 +197,7 @@ def instruction_text(tokens: list[Token]) -> str:
     """Return an instruction on one line, with spaces where they belong."""
     parts = [tokens[0].text]
     previous = tokens[0]
-    is_sign = False  # whether `previous` is a minus that belongs to what follows
+    is_sign = False  # whether `previous` is a minus that belongs to the next token
     for token in tokens[1:]:
         if _space_between(previous, is_sign, token):
             parts.append(" ")
@@ -209,7 +209,9 @@ def instruction_text(tokens: list[Token]) -> str:
 
 
 def _space_between(previous: Token, is_sign: bool, token: Token) -> bool:
-    """Whether a space stands between two tokens; `is_sign`: the first is the minus of -X."""
+    """Return whether two tokens are separated by a space; `is_sign`: the first is the minus of
+    -X.
+    """
     if is_sign or previous.kind in ("(", ";", "|") or token.kind in (")", ",", ";", "|"):
         return False
     if token.kind == "(":

@@ -70,7 +70,7 @@ def own_words(tokens: Sequence[Token]) -> dict[str, Token]:
 
 
 def _value_uses(name: str, tokens: Sequence[Token], k: int) -> bool:
-    """Whether the value that begins at a token uses a name."""
+    """Return whether the value that begins at a token uses a name."""
     depth = 0
     while tokens[k].kind not in (END, ";") and (depth or tokens[k].kind is not NEWLINE):
         if tokens[k].text == name:

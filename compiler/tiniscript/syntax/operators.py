@@ -25,7 +25,7 @@ COMPARISONS = frozenset(sign for _, sign in COMPARATORS)
 SIGNS = frozenset(sign for sign in BINARY if not sign.isalpha())
 SUMS = SIGNS - COMPARISONS  # + - * / %
 SIGN_OF: Final = {name: sign for sign, (_, name) in BINARY.items()}
-# What is TRUE where a comparison is not.
+# The comparison that is TRUE when another is not.
 OPPOSITES: Final = {
     SIGN_OF[one]: SIGN_OF[other]
     for pair in (("LT", "GE"), ("GT", "LE"), ("EQ", "NE"))
@@ -42,8 +42,8 @@ class Operator:
         self.precedence = precedence
         self.name = name
         self.token = token
-        self.index = index  # its place among the tokens; of a call, that of its bracket
-        self.ended_arguments = 0  # of a function call, that have ended
+        self.index = index  # index of its token; for a call, of its bracket
+        self.ended_arguments = 0  # completed arguments of the call
 
 
 class Postfix:

@@ -1,4 +1,4 @@
-"""What the grammar reads of one line, and where it cannot go on.
+"""The grammar of a single line, and the place if it fails.
 
 The parser itself: where it would report a mistake, reading ends. Knows no other line, and so no
 block: headers, arms and ends are items of their own.
@@ -144,7 +144,7 @@ class _Line(Parser):
         return argument
 
     def own_name(self, word: Token, following: Token) -> None:
-        is_called = following.kind == "("  # with how many values is looked at later
+        is_called = following.kind == "("  # the number of values is checked later
         names = (
             {name for name, _ in self._names_with_count}
             if is_called

@@ -41,7 +41,7 @@ from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, sca
 from tiniscript.syntax.operators import SUMS
 from tiniscript.syntax.reporter import Failed, Reporter
 
-# What is said of a word of the language that is no command, by its role.
+# Messages about a word of the language that is not a command, by its role.
 _NO_COMMANDS = {"until": codes.UNTIL_ALONE, "forever": codes.FOREVER_NOT_HERE,
                 "later": codes.LATER_WORD, "setup": codes.SETUP_TWICE}  # fmt: skip
 
@@ -66,9 +66,9 @@ class Parser:
         self.reporter = Reporter(scan.diagnostics)
         self.blocks = Blocks(self.reporter)
         self.expressions = ExpressionParser(self.cursor, self.reporter)
-        self.variables: set[str] = set()  # those that have been set so far
+        self.variables: set[str] = set()  # variables assigned so far
         self.defs: set[str] = set()  # the names of the DEFs that have begun
-        # The diagnostics of ends that come before those inside them, and how many blocks are open.
+        # The diagnostics of ends, and the number of open blocks: outer ends precede inner ones.
         self.early_ends: list[tuple[int, int]] = []
 
     # -- the program ------------------------------------------------------------------------
@@ -87,7 +87,7 @@ class Parser:
                 self.instruction()
             except Failed:
                 cursor.skip_instruction()
-        while self.blocks.open_blocks:  # that never end
+        while self.blocks.open_blocks:  # blocks without an end
             block = self.blocks.open_blocks[-1]
             end_word = BLOCK_ENDS[block.word]
             self.reporter.report(codes.NEVER_ENDS, block.header, word=block.word, right=end_word)
@@ -248,7 +248,7 @@ class Parser:
         while True:
             name = cursor.peek_inner()
             if name.kind is not WORD:
-                from tiniscript.syntax.unnamed import hints_of_use  # of a wrong program alone
+                from tiniscript.syntax.unnamed import hints_of_use  # only wrong programs need this
 
                 hints = hints_of_use(cursor.source, name) if name.kind is NUMBER else {}
                 self.reporter.fail(
@@ -314,7 +314,7 @@ class Parser:
             if self.merge_swapped_ends(word):
                 return
             hints = {}
-            if blocks.open_blocks:  # it may be the end of that
+            if blocks.open_blocks:  # the word may end the open block
                 inner = blocks.open_blocks[-1]
                 line = str(self.cursor.source.position(inner.header.start)[0])
                 hints = {"around": inner.word, "line": line, "ends": BLOCK_ENDS[inner.word]}
@@ -336,7 +336,7 @@ class Parser:
             )
             if last_instruction and not isinstance(
                 last_instruction, Break
-            ):  # nothing comes after one
+            ):  # nothing may follow it
                 values["several"] = self.cursor.source[last_instruction.span]
             self.early_ends.append((len(self.reporter.diagnostics), inner_index))
             self.reporter.report(codes.WRONG_END, word.span, **values)
@@ -344,7 +344,9 @@ class Parser:
         blocks.end(word.span)
 
     def merge_swapped_ends(self, late_end: Token) -> bool:
-        """Whether an end is that of a block that another end has closed: these two are swapped."""
+        """Return whether an end belongs to a block that another end closed, so that the two are
+        swapped.
+        """
         diagnostics, depth = self.reporter.diagnostics, len(self.blocks.open_blocks)
         ends_with_depth = (
             each_entry

@@ -1,4 +1,4 @@
-"""Where a DEF uses a number that stands in its brackets in place of a name: `DEF SIDE(40)`.
+"""Numbers in the brackets of a DEF instead of names, and their uses: `DEF SIDE(40)`.
 
 Its instructions have the same number, and the name that it gets belongs there, too.
 """
@@ -11,7 +11,7 @@ from tiniscript.base.source import Source
 from tiniscript.syntax.lexer import Token
 
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
-_PLACEHOLDER_NAME = "SIZE"  # which a message translates
+_PLACEHOLDER_NAME = "SIZE"  # name that a message translates
 _MOST_CHARACTERS = 60  # characters of an instruction that a message shows
 
 

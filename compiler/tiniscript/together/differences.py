@@ -1,4 +1,4 @@
-"""From a text to operations: what makes of a tree the program of a new text.
+"""The operations that turn a tree into the program of a new text.
 
 An id stays where a person would say "the same instruction". First the rows of both are laid beside
 each other in their order, whatever block they are in (so a LOOP typed around lines changes none of
@@ -43,8 +43,9 @@ EQUAL, OTHER_NOTE, OTHER_START, SAME_VALUES, OTHER_BLOCK, FEW_WORDS, NO_WORDS = 
 
 
 class Clipboard(NamedTuple):
-    """What a page has deleted, `ids_by_text`. What is pasted gets its id back, also where it is
-    there again since its delete was refused: then it is one of `restored_ids`, and moved."""
+    """Deleted nodes of a page, `ids_by_text`. A pasted node gets its id back, even if a refused
+    deletion has restored it: such a node is one of `restored_ids`, and is moved.
+    """
 
     ids_by_text: Mapping[str, list[str]]
     restored_ids: Collection[str]
@@ -59,7 +60,7 @@ def find_operations(
 ) -> list[Operation]:  # fmt: skip
     """Return operations that make of `old_tree` the program of a text. Raises Unparsed, Refused.
 
-    `owners`: whose each line is, where that is known; what has none is new.
+    `owners`: whose each line is, if that is known; what has none is new.
     """
     if owners is None:
         new_tree = parse_tree(text)
@@ -174,7 +175,8 @@ def _align(
             i += 1
         else:
             j += 1
-    # Two that differ, and one of which has an equal one elsewhere, are none: one was moved.
+    # Two different rows are no pair if one of them has an equal one elsewhere, because it was
+    # moved.
     old_texts, new_texts = {old_tree[x].text for x in old_ids}, {new_tree[y].text for y in new_ids}
     unmatched_old_texts = old_texts - {old_tree[x].text for x, _ in pairs}
     unmatched_new_texts = new_texts - {new_tree[y].text for _, y in pairs}
@@ -188,7 +190,7 @@ def _align(
 def _add_moved(
     old_tree: Tree, new_tree: Tree, old_ids: list[str], new_ids: list[str], matches: dict[str, str]
 ) -> None:
-    """Add equal rows out of order: the longest runs first; then blocks by what is in them."""
+    """Add equal rows out of order: the longest runs first; then blocks by their content."""
     while old_ids and new_ids:
         rows = [old_tree[x].text for x in old_ids], [new_tree[y].text for y in new_ids]
         i, j, size = SequenceMatcher(None, *rows, autojunk=False).find_longest_match()
@@ -224,10 +226,10 @@ class _Script:
     ) -> None:
         self._old_tree, self._new_tree = old_tree, new_tree
         self._work = old_tree.copy()
-        self._work_ids = dict(matches)  # in the tree that is made, by the id in the new one
+        self._work_ids = dict(matches)  # id in the working tree, by id in the new tree
         self._make_id = make_id
         self._clipboard = clipboard
-        self._pasted_ids: set[str] = set()  # ids of what is still there, and was pasted
+        self._pasted_ids: set[str] = set()  # ids of existing nodes that were pasted
         self._removed_ids: set[str] = set()
         self._operations: list[Operation] = []
 
@@ -295,7 +297,7 @@ class _Script:
         return all(map(self._is_new, self._new_tree.subtree_ids(new_id)))
 
     def _arrange(self, new_id: str) -> None:
-        """Give a block what is in it, in its order; then each block in it."""
+        """Arrange the children of a block in order, and recursively theirs."""
         container = self._work_ids[new_id]
         wanted_ids = self._new_tree[new_id].children
         index_of_id = {id: k for k, id in enumerate(self._work[container].children)}
@@ -358,7 +360,7 @@ class _Script:
             self._apply(Move((self._work_ids[new_id],), place))
 
     def _goes_with(self, run: list[str], new_id: str, staying_ids: set[str]) -> bool:
-        """Whether the next one is moved, too, and is in none of a run, nor the other way round."""
+        """Return whether the next node moves along, without nesting in the run or containing it."""
         if self._is_new(new_id) or new_id in staying_ids:
             return False
         id, work = self._work_ids[new_id], self._work

@@ -37,11 +37,11 @@ from tiniscript.together.tree import (
 IS_GONE, HAS_NEW, CIRCLE, CHANGED, UNPARSED, TOO_LONG, BAD = (
     "gone", "has_new", "circle", "changed", "unparsed", "too_long", "bad")  # fmt: skip
 
-MOST_OPERATIONS = 200  # of a change
-MOST_IDS = 2000  # of an operation: what a delete of a whole program lists
-MOST_CHARACTERS = 2000  # of an instruction or a comment
+MOST_OPERATIONS = 200  # most operations in a change
+MOST_IDS = 2000  # most ids in an operation, such as deleting a whole program
+MOST_CHARACTERS = 2000  # most characters of an instruction or a comment
 MOST_DEPTH = 40
-_ID = re.compile(r"[a-z0-9]{1,12}[.:][0-9]{1,9}|root|start")  # of a node, and of a change
+_ID = re.compile(r"[a-z0-9]{1,12}[.:][0-9]{1,9}|root|start")  # id of a node or a change
 
 
 class Refused(Exception):
@@ -70,7 +70,7 @@ class Delete(NamedTuple):
 
 
 class Move(NamedTuple):
-    """`marks`: what an undo gives back, of which change the place was."""
+    """`marks`: marks that an undo restores, with the change of the place."""
 
     ids: tuple[str, ...]
     place: Place
@@ -115,7 +115,7 @@ class Change(NamedTuple):
 
 
 class TakenChange(NamedTuple):
-    """What a change has done exactly, and its number."""
+    """The exact operations of a change, and its number."""
 
     number: int
     uid: str
@@ -310,7 +310,7 @@ def _checked_place(data: object) -> Place:
 
 
 def _checked_mark(data: object) -> str:
-    """Return of which change something is: nothing is what was there at the beginning."""
+    """Return the change that a mark refers to; none for the initial content."""
     if data != "" and not is_uid(data):
         raise Refused(BAD)
     return str(data)

@@ -18,7 +18,7 @@ from tiniscript.together.form import Refused
 from tiniscript.together.ordering import SharedProgram, program_of
 from tiniscript.together.tree import Json, Tree
 
-MOST_BYTES = 4_000_000  # then it begins anew, and the one before is kept beside it
+MOST_BYTES = 4_000_000  # most bytes before a new file begins; the previous one is kept
 OLD_ENDING = ".before"
 _FLAGS = os.O_WRONLY | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 
@@ -29,7 +29,7 @@ class Journal:
     def __init__(self, path: Path | None) -> None:
         self.path = path
         self.is_incomplete = False
-        self._is_damaged = False  # the file, while the one before it can be read
+        self._is_damaged = False  # the file, while the previous one can be read
         self._file: int | None = None
         self._size = 0
 
@@ -41,7 +41,7 @@ class Journal:
         return program
 
     def resume(self, epoch: str) -> SharedProgram | None:
-        """Return the program that the file has, and go on with it; None where it has none. Where a
+        """Return the program that the file has, and go on with it; None if it has none. Where a
         crash or a full disk has kept the file from beginning anew, the one before has it."""
         for path in (self.path, self._old_path) if self.path is not None else ():
             try:
@@ -71,7 +71,7 @@ class Journal:
             self._file = None
 
     def forget(self) -> None:
-        """Delete the file, and the one before it."""
+        """Delete the file, and the previous one."""
         self.close()
         for path in (self.path, self._old_path) if self.path is not None else ():
             with suppress(OSError):
@@ -83,7 +83,7 @@ class Journal:
         return self.path.with_name(self.path.name + OLD_ENDING)
 
     def _begin(self, program: SharedProgram) -> None:
-        """Give the file the program as it is now; what there was is kept beside it."""
+        """Write the current program to a new file; the old one is kept beside it."""
         if self.path is None:
             return
         self.close()

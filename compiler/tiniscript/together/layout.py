@@ -75,7 +75,7 @@ def parse_tree(
     bad_lines = mistaken_lines(text)
     if bad_lines:
         raise Unparsed(bad_lines)
-    first_lines: list[int] = []  # before the formatter lays it out
+    first_lines: list[int] = []  # line numbers before formatting
     if line_by_id is not None:
         first_lines = [piece.first_line for piece in pieces_of(scan(text))]
     if not is_laid_out:
@@ -133,7 +133,7 @@ def _entries(tree: Tree, container: str = ROOT) -> Iterable[_Entry]:
 
 
 def tree_lines(tree: Tree) -> list[Line]:
-    """Return the lines of a program. A start and what is after it share one."""
+    """Return the lines of a program. A start shares a line with the text after it."""
     entries = list(_entries(tree))
     is_alone = _has_one_instruction(entries)
     rows: list[Row] = []
@@ -165,7 +165,9 @@ def tree_lines(tree: Tree) -> list[Line]:
 
 
 def _has_one_instruction(entries: list[_Entry]) -> bool:
-    """Whether there is one instruction and nothing between it and the start: it has no end sign."""
+    """Return whether there is a single instruction after the start, so that it needs no end
+    sign.
+    """
     instruction_indexes = [k for k, entry in enumerate(entries) if entry.word]
     if len(instruction_indexes) != 1:
         return False

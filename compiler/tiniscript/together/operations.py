@@ -1,4 +1,4 @@
-"""What an operation does to a tree, where what it names may have moved or gone meanwhile.
+"""The effect of an operation on a tree in which its nodes may have moved or gone.
 
 A place whose neighbour has gone is where that stood. A delete lists all that it deletes, so it
 deletes nothing that its author has not seen. What is inserted and is still there is moved, never
@@ -45,13 +45,14 @@ from tiniscript.together.tree import (
     kind_of,
 )
 
-MOST_CHARACTERS = 20_000  # of a program
+MOST_CHARACTERS = 20_000  # most characters of a program
 
-_Effect = tuple[list[Operation], list[Operation]]  # what was done exactly, and what takes it back
+# The operations applied, and those that undo them.
+_Effect = tuple[list[Operation], list[Operation]]
 
 
 class ChangeResult(NamedTuple):
-    """The tree after a change, what was done exactly, and what takes it back."""
+    """The tree after a change, the operations applied, and those that undo it."""
 
     tree: Tree
     operations: tuple[Operation, ...]
@@ -59,7 +60,7 @@ class ChangeResult(NamedTuple):
 
 
 def apply_change(tree: Tree, change: Change, is_sure: bool = False) -> ChangeResult:
-    """Return what comes of a change. Raises Refused.
+    """Return the effect of a change. Raises Refused.
 
     `is_sure`: it was taken elsewhere, after the same changes, and is not parsed again.
     """
@@ -98,7 +99,7 @@ def conditions_hold(tree: Tree, conditions: tuple[Condition, ...]) -> bool:
 
 
 def inverse_conditions(tree: Tree, inverse: tuple[Operation, ...]) -> tuple[Condition, ...]:
-    """Return what must still be so that `inverse` takes back the change that has made this tree."""
+    """Return the conditions under which `inverse` undoes the change that led to this tree."""
     found_conditions: list[Condition] = []
     for operation in inverse:
         if isinstance(operation, Replace):
@@ -131,7 +132,7 @@ def _check_text(tree: Tree) -> None:
 
 
 def _depth(tree: Tree) -> int:
-    """Return how many nodes are around the one that most are around."""
+    """Return the depth of the most deeply nested node."""
     depth, level = 0, [ROOT]
     while level := [child for id in level for child in tree[id].children]:
         depth += 1
@@ -146,7 +147,7 @@ def _current_place(tree: Tree, place: Place, moving_ids: frozenset[str] = frozen
             container, previous = tree[previous].parent, tree.previous_sibling(previous)
         elif previous and previous in tree:
             return Place(tree[previous].parent, previous)
-        elif previous:  # has gone: where it was
+        elif previous:  # it has been removed: use its old place
             if previous not in tree.former_place_by_id:
                 raise Refused(IS_GONE)
             container, previous, _ = tree.former_place_by_id[previous]
@@ -155,7 +156,7 @@ def _current_place(tree: Tree, place: Place, moving_ids: frozenset[str] = frozen
         elif (
             container in tree.former_place_by_id
             and not tree.former_place_by_id[container].is_deleted
-        ):  # where it began
+        ):  # its original place
             container, previous, _ = tree.former_place_by_id[container]
         else:
             break
@@ -188,7 +189,7 @@ def _insert(tree: Tree, operation: Insert, uid: str) -> _Effect:
 
 
 def _is_sound(subtree: Subtree) -> bool:
-    """Whether a node says something, and only a block has others in it."""
+    """Return whether a node has content, and only blocks have children."""
     is_block = kind_of(subtree.text) == BLOCK
     return (
         bool(subtree.text)
@@ -221,7 +222,7 @@ def _insert_again(tree: Tree, operation: Insert, uid: str) -> _Effect:
 def _delete(tree: Tree, operation: Delete) -> _Effect:
     listed_ids = set(operation.ids) - {ROOT, START}
     present_ids = [id for id in operation.ids if id in tree and id in listed_ids]
-    if not present_ids:  # somebody was faster, with the same wish
+    if not present_ids:  # another member had the same idea earlier
         return [], []
     if any(child not in listed_ids for id in present_ids for child in tree[id].children):
         raise Refused(HAS_NEW)
@@ -233,7 +234,7 @@ def _delete(tree: Tree, operation: Delete) -> _Effect:
         ):
             raise Refused(HAS_NEW)
     top_ids = {id for id in present_ids if tree[id].parent not in listed_ids}
-    runs: list[list[str]] = []  # of neighbours: they come back together
+    runs: list[list[str]] = []  # neighbours that return together
     for id in tree.subtree_ids():
         if id not in top_ids:
             continue
@@ -307,7 +308,7 @@ def _wrap(tree: Tree, operation: Wrap, uid: str) -> _Effect:
     siblings = tree[container].children
     indexes = [siblings.index(id) for id in present_ids if tree[id].parent == container]
     first_index, last_index = min(indexes), max(indexes)
-    ids = siblings[first_index : last_index + 1]  # what somebody has put between comes in, too
+    ids = siblings[first_index : last_index + 1]  # includes what others have inserted between them
     if START in ids:
         raise Refused(UNPARSED)
     block = tree.add(node, container, uid)

@@ -21,9 +21,9 @@ from tiniscript.together.form import (
 from tiniscript.together.operations import apply_change
 from tiniscript.together.tree import Json, Tree
 
-MOST_KEPT_CHANGES = 2000  # changes in memory, for pages that come back
-MOST_REFUSED = 100  # of a page: what it is told
-MOST_PAGES = 200  # of which it is known what was decided
+MOST_KEPT_CHANGES = 2000  # changes kept in memory, for returning pages
+MOST_REFUSED = 100  # most refusals that a page is told
+MOST_PAGES = 200  # most pages whose last change is remembered
 
 
 class SharedProgram:
@@ -36,13 +36,12 @@ class SharedProgram:
         self.tree, self.epoch = tree, epoch
         self.number = 0
         self.taken_changes: list[TakenChange] = []
-        self.last_count_by_page: dict[
-            str, int
-        ] = {}  # by page, the last of its changes that is decided
-        self.refusals_by_page: dict[str, list[tuple[str, str]]] = {}  # by page: which, and why
+        self.last_count_by_page: dict[str, int] = {}  # count of the last decided change, by page
+        # Id of the change and reason of its refusal, by page.
+        self.refusals_by_page: dict[str, list[tuple[str, str]]] = {}
         self.keep = keep
         self._most_kept = most_kept
-        self._checksum: tuple[int, int] | None = None  # of which number, and which
+        self._checksum: tuple[int, int] | None = None  # number of the change, and its checksum
 
     def submit(self, changes: list[Change]) -> bool:
         """Decide on the changes of a page, in their order; return whether one was taken."""
@@ -51,13 +50,13 @@ class SharedProgram:
             page, count = page_and_count(change.uid)
             last_count = self.last_count_by_page.get(page, 0)
             if count > last_count + 1:
-                break  # one is missing: the page sends it again
+                break  # a change is missing; the page will send it again
             if count == last_count + 1:
                 self._decide(change)
         return self.number > old_number
 
     def refuse(self, uid: str, reason: str) -> None:
-        """Refuse what is no change, if its turn has come."""
+        """Refuse an invalid change when its turn comes."""
         page, count = page_and_count(uid)
         if count == self.last_count_by_page.get(page, 0) + 1:
             self._refuse(uid, reason)
@@ -99,7 +98,7 @@ class SharedProgram:
             self.refusals_by_page.pop(oldest, None)
 
     def news(self, page: str, since: int, epoch: str) -> Json:
-        """Return what a page has not got yet: changes, or the whole."""
+        """Return the changes that a page lacks, or the whole program."""
         refusals = [list(taken_change) for taken_change in self.refusals_by_page.get(page, ())]
         news: Json = {"last": self.last_count_by_page.get(page, 0), "refused": refusals,
                       "n": self.number, "sum": self.checksum()}  # fmt: skip

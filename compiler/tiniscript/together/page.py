@@ -1,4 +1,4 @@
-"""A pupil's page of a shared program: what it shows, and what becomes of what is typed there.
+"""A pupil's page of a shared program: the visible lines, and the effect of typing.
 
 It applies its own changes at once, over what has arrived; what is refused is not there any more. A
 line that does not parse yet, or in which a key was just pressed, is a draft: text in the place of
@@ -47,12 +47,12 @@ from tiniscript.together.operations import apply_change, conditions_hold, invers
 from tiniscript.together.tree import INSTRUCTION, ROOT, START, TEXT, Json, Tree, kind_of
 
 MOST_UNDONE = 200  # own changes that can be taken back
-MOST_STEPS = 1000  # from what has gone to what is there
+MOST_STEPS = 1000  # most steps from a removed node to an existing one
 
 
 @dataclass(eq=False)
 class Draft:
-    """`rows` in the place of the lines of `covered_keys`, or behind that of `key_above`.
+    """`rows` that replace the lines of `covered_keys`, or follow that of `key_above`.
 
     `stays`: it waits until its pupil goes on with it: somebody has deleted the instruction, or the
     page was loaded again.
@@ -100,29 +100,32 @@ class Page:
     epoch: str = ""
     lines: list[str] = field(default_factory=list)
     caret: int = 0
-    is_line_edited: bool = False  # that of the caret, since the caret came there
+    is_line_edited: bool = False  # whether the caret's line was edited since the caret entered it
     pending_changes: list[Change] = field(default_factory=list)
     drafts: list[Draft] = field(default_factory=list)
-    refusals: list[tuple[str, str]] = field(default_factory=list)  # what was refused, and why
-    change_count: int = 0  # of own changes
+    # Id of each refused change, and the reason.
+    refusals: list[tuple[str, str]] = field(default_factory=list)
+    change_count: int = 0  # number of own changes
     id_count: int = 0
-    is_astray: bool = False  # its tree is another than the computer's: it needs the whole
+    # Whether its tree differs from the computer's, so that it needs a full copy.
+    is_astray: bool = False
 
     def __post_init__(self) -> None:
         self.view = self.base
         self._undos: list[Undo] = []
-        self._undo_uids: set[str] = set()  # uids of what takes something back
+        self._undo_uids: set[str] = set()  # uids of changes that undo something
         self._cut_ids_by_text: dict[str, list[str]] = {}
-        self._restored_ids: set[str] = set()  # what is there again, since its delete was refused
+        self._restored_ids: set[str] = set()  # nodes restored because their deletion was refused
         self._shown_lines: list[ShownLine] = []
         self._redos: list[Undo] = []
         self._redo_uids: set[str] = set()
-        self._owners: list[str] | None = None  # of the lines of the text, where blocks say so
+        # Owners of the text's lines, as the blocks define them.
+        self._owners: list[str] | None = None
         self._show()
 
     def copy(self) -> Page:
-        """Return one that goes on from here: what happens to either is not seen by the other."""
-        copied = Page(
+        """Return an independent copy."""
+        copied_page = Page(
             self.name,
             self.base,
             self.number,
@@ -137,20 +140,20 @@ class Page:
             self.id_count,
             self.is_astray,
         )
-        copied.view, copied.lines, copied.caret, copied._shown_lines = (
+        copied_page.view, copied_page.lines, copied_page.caret, copied_page._shown_lines = (
             self.view,
             self.lines,
             self.caret,
             self._shown_lines,
         )
-        copied._undos, copied._undo_uids, copied._restored_ids = (
+        copied_page._undos, copied_page._undo_uids, copied_page._restored_ids = (
             self._undos[:],
             {*self._undo_uids},
             {*self._restored_ids},
         )
-        copied._redos, copied._redo_uids = self._redos[:], {*self._redo_uids}
-        copied._cut_ids_by_text = {text: ids[:] for text, ids in self._cut_ids_by_text.items()}
-        return copied
+        copied_page._redos, copied_page._redo_uids = self._redos[:], {*self._redo_uids}
+        copied_page._cut_ids_by_text = {text: ids[:] for text, ids in self._cut_ids_by_text.items()}
+        return copied_page
 
     # -- the storage of the browser: a reload goes on from it -------------------------------------
 
@@ -169,8 +172,8 @@ class Page:
 
     @classmethod
     def of(cls, name: str, news: Json, store: Json | None = None) -> Page:
-        """Return the page that begins with the whole; one that was loaded again, with what it has
-        kept, whatever its name was: a draft stays until its pupil goes on with it.
+        """Return a page with the whole program; a reloaded page gets its stored data, whatever its
+        name was: a draft stays until its pupil continues it.
 
         Raises Refused, and what a damaged store raises: KeyError, TypeError, ValueError.
         """
@@ -181,7 +184,7 @@ class Page:
             if store["name"] == name:
                 page.change_count, page.id_count = int(store["count"]), int(store["ids"])
                 page._undo_uids = set(store["undoing"])
-            else:  # what is there already is not put in again
+            else:  # existing nodes are not inserted again
                 page.pending_changes = [change._replace(uid=f"{name}:{k}")
                                 for k, change in enumerate(page.pending_changes, 1)]  # fmt: skip
                 page.change_count = len(page.pending_changes)
@@ -193,7 +196,7 @@ class Page:
                     True,
                 )
                 for rows, covered_keys, key_above in store["drafts"]
-                if rows  # what was only taken out is there again
+                if rows  # rows that were only removed are back
             ]
             refused_changes = page._decide(news)
         page._rebase()
@@ -210,7 +213,7 @@ class Page:
         return f"{self.name}.{self.id_count}"
 
     def apply(self, operations: Iterable[Operation], undo: Undo | None = None) -> bool:
-        """Apply own operations at once; what is not possible here is not sent."""
+        """Apply own operations at once; impossible ones are not sent."""
         made_operations = tuple(operations)
         change = Change(
             f"{self.name}:{self.change_count + 1}",
@@ -234,7 +237,7 @@ class Page:
         return True
 
     def write(self, lines: list[str], owners: list[str]) -> None:
-        """Blocks have become this text, of which `owners` says whose each line is."""
+        """Replace the text by that of the blocks; `owners` names the owner of each line."""
         self.type(lines, self.caret)
         self._owners = owners
         self.leave()
@@ -259,7 +262,7 @@ class Page:
         return self._take_back(self._undos, self._undo_uids)
 
     def redo(self) -> bool:
-        """Take back the newest undo, where no own change came after it."""
+        """Take back the newest undo, if no own change came after it."""
         return self._take_back(self._redos, self._redo_uids)
 
     def _take_back(self, undos: list[Undo], uids: set[str]) -> bool:
@@ -285,7 +288,7 @@ class Page:
         self.flush()
 
     def flush(self) -> None:
-        """Make operations of what is finished, and drafts of the rest, and of a hot line."""
+        """Turn finished text into operations, and the rest, and a hot line, into drafts."""
         if (
             self.lines == [shown_line.text for shown_line in self._visible_lines()]
             and not self.drafts
@@ -321,7 +324,7 @@ class Page:
         self._show()
 
     def _make_changes(self, hunks: list[Hunk], held_hunks: list[Hunk]) -> bool:
-        """Make changes of all but what is held; return whether that was possible."""
+        """Turn everything except held parts into changes; return whether that was possible."""
         try:
             self._revive(hunk for hunk in hunks if hunk not in held_hunks)
             operations = differences.find_operations(
@@ -333,7 +336,7 @@ class Page:
             )
         except (Unparsed, Refused):
             return False
-        # New values are changes of their own: one that is refused takes no other with it.
+        # New values are changes of their own: a refused one does not affect the others.
         shape_operations = [
             operation for operation in operations if not isinstance(operation, Replace)
         ]
@@ -348,10 +351,10 @@ class Page:
         return [item for item in self._shown_lines if item.text is not None]
 
     def _hunks(self) -> list[Hunk]:
-        """Return what was changed, and every draft."""
+        """Return the changed parts, and every draft."""
         visible_indexes = [k for k, item in enumerate(self._shown_lines) if item.text is not None]
         old_lines = [item.text for item in self._visible_lines()]
-        ranges: list[list[int]] = []  # among what is visible: first, last; among lines: first, last
+        ranges: list[list[int]] = []  # first and last visible one; first and last line
         line_of: dict[int, int] = {}
         matcher = SequenceMatcher(None, old_lines, self.lines, autojunk=False)
         for tag, i1, i2, j1, j2 in matcher.get_opcodes():
@@ -393,9 +396,10 @@ class Page:
     def _split_at_caret(
         self, i1: int, i2: int, j1: int, j2: int
     ) -> list[tuple[int, int, int, int]]:
-        """Return the parts of a hunk before a hot line, of that, and after it: what is finished in
-        the lines around goes on without it. A draft stays whole: nobody knows which of its lines
-        hide which."""
+        """Return the parts of a hunk before a hot line, the line, and those after it, so that
+        finished lines are sent without it. A draft stays whole, because it is unknown which of its
+        lines hide which.
+        """
         k = self.caret
         if not self.is_line_edited or not j1 <= k < j2:
             return [(i1, i2, j1, j2)]
@@ -423,7 +427,7 @@ class Page:
         return self._shown_lines[first_line:last_line]
 
     def _waits(self, hunk: Hunk) -> bool:
-        """Whether it is a draft that stays, as it was."""
+        """Return whether it is an unchanged draft."""
         rows = self.lines[hunk.first_line : hunk.end_line]
         return (
             bool(hunk.shown_lines)
@@ -432,8 +436,9 @@ class Page:
         )
 
     def _splits(self, hunks: list[Hunk], held_hunks: list[Hunk]) -> bool:
-        """Whether a row that is hidden by what is held is put in elsewhere: it would be there twice
-        if the draft was given up."""
+        """Return whether a row hidden by a held draft is inserted elsewhere, so that giving up the
+        draft would double it.
+        """
         hidden_keys = {key for hunk in held_hunks for key in hunk.covered_keys}
         rows = {
             line.text.strip()
@@ -450,7 +455,7 @@ class Page:
         )
 
     def _drafts_of(self, held_hunks: list[Hunk]) -> list[Draft]:
-        """Return what is held as drafts, each after the line above it, which may be a new one."""
+        """Return the held parts as drafts, each after the line above it, which may be new."""
         keys = [key for line in tree_lines(self.view) for key in line.keys]
         drafts = []
         for k, hunk in enumerate(held_hunks):
@@ -463,8 +468,7 @@ class Page:
         return drafts
 
     def _text_without(self, held_hunks: list[Hunk], end: int | None = None) -> str:
-        """Return the text, up to a line, with the lines of the program in the place of what is
-        held."""
+        """Return the text up to a line, with the program's lines instead of held parts."""
         lines, line_index = [], 0
         for hunk in held_hunks:
             lines += self.lines[line_index : hunk.first_line]
@@ -473,7 +477,7 @@ class Page:
         return "\n".join([*lines, *self.lines[line_index:end]])
 
     def _owners_without(self, held_hunks: list[Hunk]) -> list[str]:
-        """Return whose each line of that text is."""
+        """Return the owner of each line of that text."""
         assert self._owners is not None
         owners, line_index = [], 0
         for hunk in held_hunks:
@@ -489,7 +493,7 @@ class Page:
                 if line.keys and covered_keys.issuperset(line.keys)]  # fmt: skip
 
     def _revive(self, hunks: Iterable[Hunk]) -> None:
-        """A line that was finished in the place of one that somebody has deleted is that one."""
+        """Give a finished line the id of the deleted line that it replaces."""
         for hunk in hunks:
             rows = [row for row in self.lines[hunk.first_line : hunk.end_line] if row.strip()]
             gone_ids = [id for id, role in hunk.covered_keys if role == OWN and id not in self.view]
@@ -508,7 +512,7 @@ class Page:
     def receive(self, news: Json) -> None:
         """Take what the computer tells. What was typed meanwhile is made a change or a draft first.
 
-        Raises Refused, KeyError or TypeError where it is no news.
+        Raises Refused, KeyError or TypeError if it is no news.
         """
         taken_changes = [taken_change_of(taken_change) for taken_change in news.get("changes", ())]
         is_whole = "whole" in news and (
@@ -557,7 +561,7 @@ class Page:
             self.is_astray = newest_number > self.number or self.base.checksum() != news["sum"]
 
     def _decide(self, news: Json) -> list[Change]:
-        """Forget what is decided; return what was refused."""
+        """Forget the decided changes; return the refused ones."""
         reason_of_uid = {str(uid): str(reason) for uid, reason in news["refused"]}
         taken_uids = {str(row["uid"]) for row in news.get("changes", ())}
         last_count = int(news["last"])
@@ -579,7 +583,7 @@ class Page:
         return refused_changes
 
     def _keep_refused_text(self, refused_changes: list[Change]) -> None:
-        """What was typed into an instruction that somebody has deleted is not lost: a draft."""
+        """Turn text typed into an instruction deleted by others into a draft."""
         for change in refused_changes:
             [first, *more] = change.operations
             if more or not isinstance(first, Replace) or change.uid in self._undo_uids:
@@ -592,7 +596,7 @@ class Page:
     def _rebase(self) -> None:
         self.view = self.base
         for change in self.pending_changes:
-            with suppress(Refused):  # the computer says the same, soon
+            with suppress(Refused):  # the computer soon confirms this
                 self.view = apply_change(self.view, change).tree
 
     # -- what is shown ----------------------------------------------------------------------------
@@ -649,7 +653,7 @@ class Page:
         return (visible_lines[caret].keys, 0) if visible_lines[caret].keys else None
 
     def ids_of_lines(self) -> list[str]:
-        """Return whose each line is that is shown: the id of an instruction, or nothing."""
+        """Return the instruction id of each visible line, or ""."""
         ids = []
         for item in self._visible_lines():
             keys = item.draft.covered_keys if item.draft else item.keys
@@ -673,7 +677,7 @@ class Page:
 
 
 def _covered_keys(shown_lines: list[ShownLine]) -> Iterator[Key]:
-    """Return whose lines these are, or take the place of."""
+    """Yield the keys of these lines, including those of replaced lines."""
     for item in shown_lines:
         yield from item.draft.covered_keys if item.draft else item.keys
 

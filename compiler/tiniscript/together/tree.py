@@ -17,14 +17,14 @@ from zlib import crc32
 from tiniscript.base.words import BLOCK_ENDS
 
 Json = dict[str, Any]
-Shape = tuple[str, str, str, tuple[Any, ...]]  # text, note, note of the end, what is inside
+Shape = tuple[str, str, str, tuple[Any, ...]]  # text, note, note of the end, children
 
 ROOT, START = "root", "start"
 ARMS = frozenset(("ELSE", "ELSEIF"))
 INSTRUCTION, BLOCK, ARM, NOTE = "do", "block", "arm", "note"
 TEXT, COMMENT, APART, END = FIELDS = ("text", "note", "apart", "end")
-PLACE = "place"  # what has a mark besides fields
-MOST_FORMER_PLACES = 2000  # ids of which it is known where they were; the oldest are forgotten
+PLACE = "place"  # kind of mark beside those of fields
+MOST_FORMER_PLACES = 2000  # ids with known former places; the oldest are forgotten
 
 
 def first_word(text: str) -> str:
@@ -63,7 +63,7 @@ class Subtree(NamedTuple):
             yield from child.ids()
 
     def data(self) -> Json:
-        """Return it for JSON, without what is usual."""
+        """Return it for JSON, without default values."""
         data: Json = {"id": self.id}
         for name in FIELDS:
             if getattr(self, name):
@@ -78,7 +78,7 @@ class Subtree(NamedTuple):
 
 
 class FormerPlace(NamedTuple):
-    """Where what is no more was; `is_deleted`: with all that was in it."""
+    """The former place of a removed node; `is_deleted`: with its children."""
 
     container: str
     previous: str
@@ -87,9 +87,9 @@ class FormerPlace(NamedTuple):
 
 @dataclass(slots=True)
 class Node:
-    """`note` is behind the instruction, `end` behind the end of its block; `apart`: an empty line
-    is before it. `creator_uid` is the change that made it; `marks` says of each field and of the
-    place which change was the last, where another one was.
+    """`note` follows the instruction, `end` the end of its block; `apart`: an empty line precedes
+    it. `creator_uid` is the change that made it; `marks` name the last change of each field and of
+    the place, if it is another one.
     """
 
     id: str
@@ -113,7 +113,7 @@ class Node:
 
 
 class Tree:
-    """Whoever changes one makes a copy first: a tree that was given to somebody stays."""
+    """A tree that is copied before a change, so that shared trees stay unchanged."""
 
     def __init__(self) -> None:
         self.node_by_id: dict[str, Node] = {
@@ -123,10 +123,10 @@ class Tree:
         self.former_place_by_id: dict[str, FormerPlace] = {}
 
     def copy(self) -> Tree:
-        copied = Tree.__new__(Tree)
-        copied.node_by_id = {id: node.copy() for id, node in self.node_by_id.items()}
-        copied.former_place_by_id = dict(self.former_place_by_id)
-        return copied
+        copied_tree = Tree.__new__(Tree)
+        copied_tree.node_by_id = {id: node.copy() for id, node in self.node_by_id.items()}
+        copied_tree.former_place_by_id = dict(self.former_place_by_id)
+        return copied_tree
 
     def __getitem__(self, id: str) -> Node:
         return self.node_by_id[id]
@@ -148,13 +148,13 @@ class Tree:
         return ids
 
     def is_in(self, id: str, other: str) -> bool:
-        """Whether a node is another one, or in it."""
+        """Return whether a node is another one, or inside it."""
         while id and id != other:
             id = self.node_by_id[id].parent
         return id == other
 
     def ids_of_arm(self, arm: str) -> list[str]:
-        """Return what belongs to an arm: up to the next one."""
+        """Return the ids of an arm, up to the next arm."""
         siblings = self.node_by_id[self.node_by_id[arm].parent].children
         ids = []
         for sibling in siblings[siblings.index(arm) + 1 :]:
@@ -164,7 +164,7 @@ class Tree:
         return ids
 
     def add(self, subtree: Subtree, parent: str, uid: str) -> Node:
-        """Add a node and what is in it; it has no place among its siblings yet."""
+        """Add a node with its children, without a place among its siblings."""
         node = Node(
             subtree.id,
             kind_of(subtree.text),
@@ -183,7 +183,7 @@ class Tree:
         return node
 
     def put(self, ids: list[str], container: str, previous: str) -> None:
-        """Give nodes their place."""
+        """Put nodes in a place."""
         siblings = self.node_by_id[container].children
         k = siblings.index(previous) + 1 if previous else 0
         siblings[k:k] = ids
@@ -234,11 +234,11 @@ class Tree:
 
     def checksum(self) -> int:
         """Return a number that two trees share only where they are the same."""
-        encoded = json.dumps(self.subtree(ROOT).data(), sort_keys=True, separators=(",", ":"))
-        return crc32(encoded.encode())
+        encoded_text = json.dumps(self.subtree(ROOT).data(), sort_keys=True, separators=(",", ":"))
+        return crc32(encoded_text.encode())
 
     def shape(self) -> Shape:
-        """Return what a page shows of it, without ids. A start that is not said is the first."""
+        """Return the visible content without ids. An omitted start counts as the first."""
         children = self.node_by_id[ROOT].children
         if not self.node_by_id[START].text:
             children = [START, *(id for id in children if id != START)]

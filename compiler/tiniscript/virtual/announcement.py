@@ -15,7 +15,7 @@ from tiniscript.link.transports.network import MOST_NAME_BYTES, SERVICE, query_s
 from tiniscript.virtual.directory import LOCAL_HOST
 
 ASK_TIMEOUT_MS = (
-    2500  # timeout for a robot that has the name: for a second it may say nothing twice
+    2500  # timeout for the owner of the name, which may not repeat itself within a second
 )
 
 

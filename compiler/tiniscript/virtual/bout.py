@@ -6,7 +6,7 @@ moves a body aside, whose wheels slip then. All happens on a grid of millisecond
 depends on when it is asked.
 
 A rival begins when the robot first moves. It drives at the robot that is before it, looks around
-where none is, and turns back at the edge of a ring.
+if none is, and turns back at the edge of a ring.
 """
 
 from __future__ import annotations
@@ -31,16 +31,17 @@ from tiniscript.virtual.world import Ring, Rival, World
 
 TICK_MS = 1.0
 CORNER_INTERVAL_MS = 20.0  # between two corners of the way
-MOST_SWEEPS = 4  # over all contacts, until no two bodies come nearer to each other
-GRIP = 0.7  # how much of a push holds the bodies together where they touch, so that none slides off
-SLIP_RATIO = 0.5  # how far a push from the side moves a body, of what it would do from behind
-DECISION_INTERVAL_MS = 10.0  # of a rival: between two looks
-SIGHT_CM, SIGHT_RADIANS = 100.0, math.radians(25)  # how far a rival sees, and to both sides
+MOST_SWEEPS = 4  # rounds over all contacts, until no bodies come nearer to each other
+GRIP = 0.7  # share of a push that acts as friction between touching bodies
+SLIP_RATIO = 0.5  # motion from a sideways push, as a share of that from behind
+DECISION_INTERVAL_MS = 10.0  # time between two decisions of a rival
+# Range of a rival's sight, and its angle to each side.
+SIGHT_CM, SIGHT_RADIANS = 100.0, math.radians(25)
 BACK_MS, AROUND_DEGREES = (
     300.0,
     150.0,
-)  # at an edge: it goes back so long, and turns by so many degrees
-OUTLINE_CORNERS = 16  # of what a distance sensor sees of a rival
+)  # at an edge it backs up for this time, and turns by this angle
+OUTLINE_CORNERS = 16  # corners of a rival's outline, as distance sensors see it
 STANDSTILL: tuple[float, float] = (0.0, 0.0)
 
 
@@ -52,7 +53,7 @@ class Mover:
         self.hull = Hull(body)
         self.pose = pose
         self.wanted_speeds = STANDSTILL  # percent of each wheel, as its motors are set
-        self.left = self.right = 0.0  # and as it goes
+        self.left = self.right = 0.0  # current speeds of its wheels
         self.aside_cm_s = 0.0  # cm in a second, to its left
         self._turn = math.radians(body.turn_s)
         self._spine: Segment | None = None
@@ -62,7 +63,7 @@ class Mover:
         (self.left, self.right), self.aside_cm_s = self.wanted_speeds, 0.0
 
     def _push_parts(self, point: Point, direction: Point) -> tuple[float, float, float]:
-        """Return how much of a push is along it, aside, and turns it: its lever in cm."""
+        """Return the parts of a push along the body, aside, and its lever in cm."""
         heading = math.radians(self.pose.heading)
         cos, sin = math.cos(heading), math.sin(heading)
         x, y = point.x - self.pose.x_cm, point.y - self.pose.y_cm
@@ -73,7 +74,7 @@ class Mover:
         )
 
     def speed_along(self, point: Point, direction: Point) -> float:
-        """Return how fast its `point` goes in a direction, in cm/s."""
+        """Return the speed of `point` in a direction, in cm/s."""
         ahead, aside, lever = self._push_parts(point, direction)
         percent_cm_s = self.body.speed_cm_s / 100
         turning = (self.right - self.left) / 200 * self._turn
@@ -84,7 +85,7 @@ class Mover:
         )
 
     def ease(self, point: Point, direction: Point) -> float:
-        """Return by how much that grows with a push of one percent of what stalls it."""
+        """Return the increase of that speed for a push of one percent of the stall force."""
         ahead, aside, lever = self._push_parts(point, direction)
         full_cm_s = self.body.speed_cm_s
         straight = (ahead * ahead + SLIP_RATIO * aside * aside) * full_cm_s
@@ -129,7 +130,7 @@ class Mover:
         self.move_to(Pose(x_cm + direction.x * cm, y_cm + direction.y * cm, heading))
 
     def nearest_contact(self, obstacles: Sequence[Segment]) -> Contact | None:
-        """Return the nearest obstacle, or None where none is near."""
+        """Return the nearest obstacle, or None if none is near."""
         if self._free_cm > TOUCH_CM or not obstacles:
             return None
         contact = self.hull.contact(self.pose, obstacles)
@@ -156,9 +157,10 @@ class Opponent(Mover):
         super().__init__(rival_body(rival), rival.start)
         self._power = rival.power_percent
         self._rings = rings
-        self._manoeuvres: list[tuple[float, tuple[float, float]]] = []  # ms, and what its wheels do
+        # Time in ms, and powers of its wheels.
+        self._manoeuvres: list[tuple[float, tuple[float, float]]] = []
         self.is_out = False
-        self.has_stopped = False  # for ever: the bout is over
+        self.has_stopped = False  # whether the bout is over
 
     def decide(self, target: Segment) -> None:
         power = self._power
@@ -204,7 +206,7 @@ class Bout(Driving):
         super().__init__(body, world.obstacles(), world.start)
         self._robot = Mover(body, world.start)
         self._movers: list[Mover] = [self._robot, *self._rivals]
-        self._ticks = 0  # since the robot has begun to move
+        self._ticks = 0  # ticks since the robot began to move
         self._has_begun = False
         self._is_at_wall = False
 
@@ -273,14 +275,14 @@ class Bout(Driving):
         self._record(old_poses[0])
 
     def _push_all(self) -> None:
-        """Have the bodies push each other, so that no two come nearer where they touch."""
+        """Apply pushes between the bodies, so that touching bodies come no nearer."""
         wall_contacts = [(mover, mover.nearest_contact(self.obstacles)) for mover in self._movers]
         pairs = [
             (first, second, *self._gap(first, second))
             for first, second in combinations(self._movers, 2)
         ]
         touching_pairs = [pair for pair in pairs if pair[2] < PUSHING_CM]
-        # where one contact is all, only its two pushes change each other
+        # A single contact depends on its own two pushes only.
         sweeps = (
             MOST_SWEEPS
             if len(touching_pairs) > 1 or any(contact for _, contact in wall_contacts)
@@ -333,7 +335,7 @@ class Bout(Driving):
 
     @staticmethod
     def _gap(first: Mover, second: Mover) -> tuple[float, Point, Point]:
-        """Return how far two bodies are apart, and the nearest points of their spines."""
+        """Return the distance of two bodies, and the nearest points of their spines."""
         distance_cm, ours, theirs = gap_between(first.spine(), second.spine())
         return distance_cm - first.hull.radius_cm - second.hull.radius_cm, ours, theirs
 
@@ -392,5 +394,5 @@ def _direction(start: Point, end: Point) -> Point:
 
 
 def driving_in(body: Body, world: World) -> Driving:
-    """Return how a body drives in a world, alone or among rivals."""
+    """Return the driving of a body in a world, alone or among rivals."""
     return Bout(body, world) if world.rivals else Driving(body, world.obstacles(), world.start)

@@ -12,7 +12,7 @@ from tiniscript.virtual.robot import VirtualRobot
 
 T = TypeVar("T")
 
-ANSWER_TIMEOUT_MS = 60_000  # for a robot to answer
+ANSWER_TIMEOUT_MS = 60_000  # time for a robot to answer
 
 
 class Computer:
@@ -20,11 +20,11 @@ class Computer:
         profile = robot.profile
         self.robot = robot
         self.session = Session(nonce, profile.board.baud, profile.kit.fingerprint, keys=keys)
-        self._until_ms: int | None = None  # of the millisecond in which its program was held
-        self._sent = bytearray()  # by the robot, in that
+        self._until_ms: int | None = None  # the millisecond in which its program was paused
+        self._sent = bytearray()  # bytes that the robot sent in that millisecond
 
     def wait(self, milliseconds: int) -> None:
-        """Let the robot's time go on.
+        """Advance the robot's time.
 
         A millisecond that a held program has cut goes on where it was, once the program does:
         the session hears and says as much as if nothing had been held.
@@ -43,11 +43,11 @@ class Computer:
                 self._receive()
 
     def _receive(self) -> None:
-        sent, self._sent = bytes(self._sent), bytearray()
-        self.session.receive(sent, self.robot.now_ms)
+        sent_bytes, self._sent = bytes(self._sent), bytearray()
+        self.session.receive(sent_bytes, self.robot.now_ms)
 
     def wait_for(self, request: PendingRequest[T], limit_ms: int = ANSWER_TIMEOUT_MS) -> Reply[T]:
-        """Let time go on until a request has its outcome."""
+        """Advance time until a request has its outcome."""
         end_ms = self.robot.now_ms + limit_ms
         while request.outcome is None:
             assert self.robot.now_ms < end_ms, "the robot does not answer"

@@ -37,9 +37,9 @@ class RunningRobot(NamedTuple):
 
 
 def announce(running_robot: RunningRobot) -> Path | None:
-    """Let others find a robot. Return the file, or None where it cannot be written."""
+    """Publish a robot. Return the file, or None if it cannot be written."""
     path = _path(running_robot.address)
-    with contextlib.suppress(OSError):  # there may be no folder yet
+    with contextlib.suppress(OSError):  # the folder may not exist yet
         files.remove_abandoned(path.parent, [entry.name for entry in path.parent.iterdir()])
     return path if files.keep(path, json.dumps(running_robot._asdict()).encode()) else None
 
@@ -88,7 +88,7 @@ def is_virtual(port: str) -> bool:
 
 
 def is_gone(port: str) -> bool:
-    """Return whether a port is an address on this computer where nothing listens."""
+    """Return whether a port is an address on this computer if nothing listens."""
     number = port.lower().removeprefix(PREFIX)
     return number != port.lower() and number.isdecimal() and not _is_listening(PREFIX + number)
 

@@ -2,7 +2,7 @@
 
 What it touches pushes against the body, and so slows its motors down, one more than the other.
 Knows the geometry of bodies and walls. Knows no clock, no sensors and no friction. The results
-depend on when the motors were set, not on how often they are queried.
+depend on when the motors were set, not on how many times they are queried.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Contact(NamedTuple):
     """The nearest obstacle: its distance, and the nearest points of body and obstacle."""
 
     gap_cm: float
-    body_point: Point  # on the middle line of the body
+    body_point: Point  # point on the body's middle line
     obstacle_point: Point
 
 
@@ -58,7 +58,7 @@ class Hull:
         )
 
     def contact(self, pose: Pose, obstacles: Sequence[Segment]) -> Contact | None:
-        """Return the nearest obstacle, or None where there is none at all."""
+        """Return the nearest obstacle, or None if there is none at all."""
         spine = self.spine(pose)
         middle_x, middle_y = (spine.a.x + spine.b.x) / 2, (spine.a.y + spine.b.y) / 2
         reach = (self.front_cm - self.back_cm) / 2 + self.radius_cm
@@ -106,35 +106,35 @@ class Driving:
         self.obstacles = obstacles
         self.left = self.right = 0.0  # actual speed of the wheels, in percent
         self.corners = [start]  # straight lines join them; they show the way
-        self.bumps = 0  # how many contacts have begun
+        self.bumps = 0  # number of contacts so far
         self.has_fallen = False  # out of a ring
         self.driven_cm = 0.0
         self._pose = start
-        self._near_obstacles: Sequence[Segment] = obstacles  # all that may come near,
-        self._near_pose: Pose | None = None  # to a robot that is here
-        self._kept_ms = 0.0  # when it was there
+        self._near_obstacles: Sequence[Segment] = obstacles  # everything that may come near
+        self._near_pose: Pose | None = None  # last pose near an obstacle of a robot that is present
+        self._kept_ms = 0.0  # time of that pose
         self._free_cm = 0.0  # no point of the body touches anything before it has gone so far
         self._is_touching = self.touch_point(start) is not None
 
     @property
     def rivals(self) -> list[Pose]:
-        """Return where other bodies are, in the order of the world."""
+        """Return the poses of other bodies, in the order of the world."""
         return []
 
     @property
     def pushed_out_count(self) -> int:
-        """Return how many of them have left the ring."""
+        """Return the number of rivals that have left the ring."""
         return 0
 
     def other_outlines(self) -> list[Segment]:
-        """Return their outlines: what a sensor sees besides what stands."""
+        """Return the outlines of other bodies, which sensors see besides fixed objects."""
         return []
 
     def rest(self) -> None:
-        """Nothing moves any more: the robot's time is over."""
+        """Stop everything, because the robot's time is over."""
 
     def is_blocked(self) -> bool:
-        """Whether the robot is inside an obstacle."""
+        """Return whether the robot is inside an obstacle."""
         contact = self.hull.contact(self._pose, self.obstacles)
         return contact is not None and contact.gap_cm < 0
 
@@ -144,7 +144,7 @@ class Driving:
         return contact.obstacle_point if contact is not None and contact.gap_cm < TOUCH_CM else None
 
     def _contact(self, pose: Pose) -> Contact | None:
-        """Return the nearest obstacle, or None where each is further away than NEAR_CM."""
+        """Return the nearest obstacle, or None if each is further away than NEAR_CM."""
         centre = self._near_pose
         if centre is None or math.dist(centre[:2], pose[:2]) > NEAR_CM:
             least_cm = self.hull.reach_cm + 2 * NEAR_CM
@@ -205,13 +205,13 @@ class Driving:
         return abs(ax * by - ay * bx) < 1e-6 and ax * bx + ay * by >= 0
 
     def _drive_free(self, pose: Pose, free_cm: float, duration_ms: float) -> Drive:
-        """Return the way from a pose on, of which `free_cm` are known to be free."""
+        """Return the path from a pose, of which `free_cm` are known to be free."""
         if (not self.left and not self.right) or duration_ms <= 0:
             return Drive([pose], free_cm)
         speed = self._fastest_cm_ms()
         path: list[Pose] = []
         left_ms = duration_ms
-        is_gap_known = False  # how much is free, exactly
+        is_gap_known = False  # whether the free distance is exact
         while left_ms > 0:
             if free_cm < speed * left_ms and not is_gap_known:
                 contact = self._contact(pose)
@@ -231,14 +231,14 @@ class Driving:
         return Drive(path, free_cm)
 
     def _fastest_cm_ms(self) -> float:
-        """Return how fast the fastest point of the body can be."""
+        """Return the highest possible speed of a point of the body."""
         percent_cm_ms = self.body.speed_cm_s / 100 / 1000
         ahead = abs(self.left + self.right) / 2 * percent_cm_ms
         turning = abs(self.right - self.left) / 200 * math.radians(self.body.turn_s) / 1000
         return ahead + turning * self.hull.reach_cm
 
     def _pushed_wheel_speeds(self, pose: Pose) -> tuple[float, float]:
-        """Return how fast the wheels are, in percent, where an obstacle pushes against the body.
+        """Return the wheel speeds in percent while an obstacle pushes against the body.
 
         It pushes as much as keeps the body out. Each motor is slower by what pushes against it,
         and no wheel slips aside: so the side that has touched something stays behind.
@@ -260,7 +260,7 @@ class Driving:
             contact.body_point.y - pose.y_cm
         ) * sin
         lever = lever_cm * math.radians(self.body.turn_s) / self.body.speed_cm_s
-        turning = aside * lever  # and the one that turns it
+        turning = aside * lever  # the torque that turns it
         closing_speed = (left + right) / 2 * ahead + (right - left) / 2 * turning
         if closing_speed >= 0:
             return left, right
@@ -268,7 +268,7 @@ class Driving:
         return left - push * (ahead - turning), right - push * (ahead + turning)
 
     def _slide_along(self, old_pose: Pose, pose: Pose) -> tuple[Pose, float]:
-        """Return where a robot ends up on its way to `pose`, and the free distance there.
+        """Return the end of a robot's way to `pose`, and the free distance there.
 
         It is pushed out of every obstacle; if that is not possible it stays where it was.
         """

@@ -1,4 +1,4 @@
-"""Straight lines on a floor: how far they are from each other, and what is seen of them.
+"""Line segments on a floor: their distances, and their visibility.
 
 All lengths are centimetres, all angles radians. Knows no robots and no worlds.
 """
@@ -55,10 +55,10 @@ def distance(segment: Segment, x: float, y: float) -> float:
 
 
 def crosses(segment: Segment, other: Segment) -> bool:
-    """Whether two segments have a point in common, where neither only touches the other's end."""
+    """Return whether two segments cross, other than by touching an end."""
     (ax, ay), (bx, by) = segment
     (cx, cy), (dx, dy) = other
-    # on which side of one line the ends of the other are
+    # The sides of one line on which the other's ends are.
     ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
     if (ux * (cy - ay) - uy * (cx - ax)) * (ux * (dy - ay) - uy * (dx - ax)) >= 0:
         return False
@@ -66,7 +66,7 @@ def crosses(segment: Segment, other: Segment) -> bool:
 
 
 def gap_between(segment: Segment, other: Segment) -> tuple[float, Point, Point]:
-    """Return how far two segments are apart, and the two points that are nearest.
+    """Return the distance between two segments, and their nearest points.
 
     Where they cross, the distance is 0 and the points are any.
     """
@@ -88,7 +88,7 @@ def gap_between(segment: Segment, other: Segment) -> tuple[float, Point, Point]:
 def nearest_seen(
     segments: Iterable[Segment], eye: Point, heading: float, half_angle: float
 ) -> float | None:
-    """Return how near segments come to an eye inside its cone, or None where none is in it.
+    """Return the distance of the nearest segment inside an eye's cone, or None.
 
     The cone is `half_angle` (less than a quarter turn) to both sides of `heading`. The nearest
     of all segments hides nothing and is hidden by nothing, so it is what an echo tells.
@@ -98,7 +98,7 @@ def nearest_seen(
     nearest_distance: float | None = None
     for (ax, ay), (bx, by) in segments:
         ax, ay, bx, by = ax - eye.x, ay - eye.y, bx - eye.x, by - eye.y
-        # on which side of each border of the cone each end is; 0 or more is inside
+        # The side of each border of the cone for both ends; 0 or more is inside.
         right_a, right_b = right_cos * ay - right_sin * ax, right_cos * by - right_sin * bx
         left_a, left_b = left_sin * ax - left_cos * ay, left_sin * bx - left_cos * by
         if (right_a < 0 and right_b < 0) or (left_a < 0 and left_b < 0):

@@ -29,7 +29,7 @@ class NoWebAssembly(Exception):
 
 
 class Board(Protocol):
-    """What the firmware does; `now_ms` is since its power-on. Numbers are thousandths."""
+    """The outputs of the firmware; `now_ms` counts from power-on. Numbers are thousandths."""
 
     def motors(self, now_ms: int, left: int, right: int) -> None: ...
     def read(self, now_ms: int, sensor: int, remote: int) -> int: ...
@@ -39,18 +39,18 @@ class Board(Protocol):
     def stop(self, now_ms: int) -> None: ...
     def release(self, now_ms: int) -> None: ...
     def light(self, now_ms: int, is_on: int) -> None: ...
-    def finished(self, now_ms: int) -> None: ...
-    def faulted(self, now_ms: int) -> None: ...
+    def on_finish(self, now_ms: int) -> None: ...
+    def on_fault(self, now_ms: int) -> None: ...
     def actuators_off(self, now_ms: int) -> None: ...
     def steer(self, now_ms: int, left: int, right: int) -> None: ...
     def edges(self, now_ms: int) -> int: ...
 
 
-# What a note says, from 1 on, and with how many numbers. As `What` in `robot.cpp`.
+# Kinds of notes, from 1 on, with their number of values. Like `What` in `robot.cpp`.
 _NOTE_KINDS = (("motors", 2), ("read", 2), ("beep", 2), ("show", 3), ("set", 2), ("stop", 0),
-         ("release", 0), ("light", 1), ("finished", 0), ("faulted", 0),
+         ("release", 0), ("light", 1), ("on_finish", 0), ("on_fault", 0),
          ("actuators_off", 0), ("steer", 2), ("edges", 0))  # fmt: skip
-_ASKING_KINDS = (2, 13)  # for a number
+_ASKING_KINDS = (2, 13)  # kinds of questions that expect a number
 _CLOCK = 1 << 32
 _NOTE_NUMBERS = 5  # numbers of 32 bits
 
@@ -98,13 +98,13 @@ class Firmware:
     ) -> None:
         """Raises NoWebAssembly."""
         try:
-            if sys.platform == "emscripten":  # in a page
+            if sys.platform == "emscripten":  # inside a page
                 from tiniscript.vm.page_wasm import Instance
             else:
                 from tiniscript.vm.wasm_store import Instance
         except (ImportError, OSError, RuntimeError) as error:
             raise NoWebAssembly(str(error)) from None
-        weak_handler = WeakMethod(self._handle_notes)  # `wasm_store` says why
+        weak_handler = WeakMethod(self._handle_notes)  # see `wasm_store` for the reason
 
         def on_look() -> None:
             handler = weak_handler()
@@ -121,13 +121,14 @@ class Firmware:
         self._waiting = bytearray()  # bytes after those in the inbox
         self._notes_index, self._note_count_index = self.call("notes") // 4, self.call("noted") // 4
         self._reading_index = self.call("reading") // 4
-        self.is_watched = False  # its program may be held
+        self.is_watched = False  # whether its program may be paused
         self._handlers = [(getattr(board, name), count) for name, count in _NOTE_KINDS]
         full_memory = ((memory or b"") + bytes(size).replace(b"\0", b"\xff"))[:size]
         self._instance.write(full_memory, self._eeprom)
         hashes = pack(f"<{len(settings.hashes)}H", *settings.hashes)
         self._instance.write(hashes, self.call("hashes"))
-        if len(settings.kit_words) <= self.call("word_bytes"):  # else it knows none of them
+        # Otherwise it knows none of the words.
+        if len(settings.kit_words) <= self.call("word_bytes"):
             self._instance.write(settings.kit_words, self.call("words"))
         self.call("begin", *map(int, settings[2:]))
         self._handle_notes()
@@ -138,7 +139,7 @@ class Firmware:
         Returns earlier where the program is held.
         """
         self._waiting += data
-        sent = bytearray()
+        sent_bytes = bytearray()
         while True:
             if self._waiting and not self.call("unheard"):
                 chunk = bytes(self._waiting[: self._box_bytes])
@@ -149,11 +150,12 @@ class Firmware:
             count = self.call("run", until_us, int(has_more))
             self._handle_notes()
             if count:
-                sent += self._instance.read(self._outbox, self._outbox + count)
-            if self.is_watched or has_more or count == self._box_bytes:  # it may have ended earlier
+                sent_bytes += self._instance.read(self._outbox, self._outbox + count)
+            # The program may have ended earlier.
+            if self.is_watched or has_more or count == self._box_bytes:
                 if self.call("now_us") < until_us and self.held_at is None:
                     continue
-            return bytes(sent)
+            return bytes(sent_bytes)
 
     # -- to look at its program -------------------------------------------------------------------
 
@@ -170,7 +172,7 @@ class Firmware:
 
     @property
     def held_at(self) -> int | None:
-        """Return the offset in front of which the program is held, or None."""
+        """Return the offset before which the program is paused, or None."""
         if not self.is_watched:
             return None
         offset = self.call("held_at") % _CLOCK
@@ -181,12 +183,12 @@ class Firmware:
         return self.call("now_us")
 
     def go_on(self) -> None:
-        """Let the held program go on, in the tick in which it was held."""
+        """Resume the paused program, in the tick in which it paused."""
         self.call("go_on")
         self._handle_notes()
 
     def tasks(self) -> list[int]:
-        """Return where the program's tasks are that have not ended; none of one without tasks."""
+        """Return the places of the program's running tasks; empty without tasks."""
         start = self.call("tasks") // 4
         count = int(self._numbers[start])
         return [int(number) for number in self._numbers[start + 1 : start + 1 + count]]
@@ -220,7 +222,7 @@ class Firmware:
         self._handle_notes()
 
     def _handle_notes(self) -> None:
-        """Tell the board what the firmware has noted."""
+        """Pass the firmware's notes to the board."""
         numbers = self._numbers
         count = numbers[self._note_count_index]
         numbers[self._note_count_index] = 0

@@ -110,7 +110,7 @@ class _Sheet:
         )
         file = BytesIO()
         metadata = PngInfo()
-        metadata.add_text("Software", "TiniScript")  # by which tsc knows its own pictures
+        metadata.add_text("Software", "TiniScript")  # key by which tsc recognizes its own pictures
         small_image.save(file, "PNG", pnginfo=metadata)
         return file.getvalue()
 

@@ -11,7 +11,7 @@ import re
 
 MOST_LINE_BYTES = 2048  # bytes of a first line that is still open
 
-_TOKEN = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"  # of RFC 9110: any method
+_TOKEN = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"  # a token of RFC 9110: any method
 _METHOD = re.compile(_TOKEN)
 # a whole first line
 _REQUEST = re.compile(_TOKEN + rb"[ \t]+[^\x00-\x20]+[ \t]+HTTP/", re.IGNORECASE)
@@ -21,7 +21,7 @@ _HTTP_METHOD_AND_TARGET = re.compile(
     re.IGNORECASE,
 )
 _LINE_END = re.compile(rb"[\r\n\0]")
-_TEXT_START = re.compile(rb"[ -~]{2}")  # how a line begins, and no frame
+_TEXT_START = re.compile(rb"[ -~]{2}")  # start of a line, which no frame has
 
 
 def sniff_robot_client(data: bytes) -> bool | None:
@@ -34,7 +34,7 @@ def sniff_robot_client(data: bytes) -> bool | None:
         return True  # the stop sequence: zeros alone do nothing else
     if data[:1] < b" ":
         if 0 in data[1:3] or data[:2] in (b"\0\1", b"\x16\x03"):
-            return False  # STUN, whose length may come first, and TLS
+            return False  # STUN, which may begin with its length, and TLS
         if len(data) < 3:
             return None
     is_framed = data[0] == 0

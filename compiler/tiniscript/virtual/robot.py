@@ -36,9 +36,9 @@ from tiniscript.virtual.world import World, WorldRefused
 
 __all__ = ("POWER_ON", "RESET_BUTTON", "Settings", "VirtualRobot")
 
-LEVELS_PER_PERCENT = 2.55  # of a motor's power
-BITS_PER_BYTE = 10  # of a byte on the line
-MOST_EVENTS = 100_000  # that are kept until somebody takes them
+LEVELS_PER_PERCENT = 2.55  # PWM levels per percent of power
+BITS_PER_BYTE = 10  # bits per byte on the line
+MOST_EVENTS = 100_000  # most events that are kept until they are fetched
 
 
 class Settings(NamedTuple):
@@ -61,18 +61,18 @@ class Settings(NamedTuple):
 
 
 PLAIN_SETTINGS = Settings()
-EEPROM_US = 3400  # of an AVR, for a byte
+EEPROM_US = 3400  # time for an AVR to write a byte of EEPROM
 MODULE_BY_BOARD = {
     "mega": PATH_MEGA,
     **dict.fromkeys(ESP32S, PATH_ESP32),
-}  # of chips, beside an Uno's
-FLASH_US = 10  # of an ESP32, whose NVS writes a whole program at once
+}  # other chips than an Uno's
+FLASH_US = 10  # an ESP32's NVS writes a whole program at once
 
 
 class VirtualRobot:
     """A robot that is switched on, and stands at the start of its world.
 
-    Raises WorldRefused where it does not fit there, and NoWebAssembly.
+    Raises WorldRefused if it does not fit there, and NoWebAssembly.
     """
 
     def __init__(
@@ -111,17 +111,17 @@ class VirtualRobot:
             self.driving.other_outlines,
         )
         self.is_running = False
-        self.started_ms: int | None = None  # when its first program began
-        self.ended_ms: int | None = None  # when its newest program ended
+        self.started_ms: int | None = None  # start of its first program
+        self.ended_ms: int | None = None  # end of its newest program
         self.is_at_rest = False
         self._event_count_at_rest = 0  # number of events from before the robot was at rest
         self.is_lit = False  # the light is on: the button would start a program
         self.fault = ""  # the fault that has ended the last program
         self.actuators: dict[int, int] = {}  # the current value of each
         self._traced = TracedRobot(profile.kit, self._sensor_reading)
-        self._end_event = ""  # how the program has ended, as far as it is known
-        self._remote_reading = 0  # what the firmware has heard, of the reading that it takes
-        self._power_on_ms = 0  # when it was switched on
+        self._end_event = ""  # how the program ended, as far as known
+        self._remote_reading = 0  # state of the remote control that the current reading uses
+        self._power_on_ms = 0  # time of the last power-on
         self._firmware = self._power_up(POWER_ON, memory)
 
     # -- what happens to it -----------------------------------------------------------------------
@@ -131,7 +131,7 @@ class VirtualRobot:
 
         Where the program is held, time goes on no further.
         """
-        sent = self._firmware.run((now_ms - self._power_on_ms) * 1000, data)
+        sent_bytes = self._firmware.run((now_ms - self._power_on_ms) * 1000, data)
         self.now_ms = now_ms
         if self._firmware.is_watched:
             self.now_ms = min(now_ms, self._power_on_ms + self._firmware.now_us // 1000)
@@ -139,7 +139,7 @@ class VirtualRobot:
         if self.is_at_rest:
             del self._traced.events[self._event_count_at_rest :]
         del self._traced.events[:-MOST_EVENTS]
-        return sent
+        return sent_bytes
 
     def press(self) -> None:
         """The start button goes down."""
@@ -210,7 +210,7 @@ class VirtualRobot:
     # -- what it does -----------------------------------------------------------------------------
 
     def take_events(self) -> list[Event]:
-        """Return what it has done since the last time.
+        """Return the actions since the last call.
 
         These are a run's events, START, STOP, RELEASE of an actuator, and OFF.
         """
@@ -225,12 +225,12 @@ class VirtualRobot:
 
     @property
     def unread_bytes(self) -> int:
-        """Return how many received bytes the firmware has not read yet."""
+        """Return the number of received bytes that the firmware has not read."""
         return self._firmware.unread_bytes
 
     @property
     def memory(self) -> bytes:
-        """What its EEPROM holds."""
+        """Return the content of its EEPROM."""
         return self._firmware.memory()
 
     def motors(self, now_ms: int, left: int, right: int) -> None:
@@ -244,7 +244,7 @@ class VirtualRobot:
         self._set_motors(now_ms, left / LEVELS_PER_PERCENT, right / LEVELS_PER_PERCENT)
 
     def edges(self, now_ms: int) -> int:
-        """Return how many edges of both discs have passed."""
+        """Return the number of edges passed by both discs."""
         self._advance_to(now_ms)
         return self.wheels.edges(self.now_ms) if self.wheels else 0
 
@@ -305,10 +305,10 @@ class VirtualRobot:
     def light(self, now_ms: int, is_on: int) -> None:
         self.is_lit = bool(is_on)
 
-    def finished(self, now_ms: int) -> None:
+    def on_finish(self, now_ms: int) -> None:
         self._end_event = "DONE"
 
-    def faulted(self, now_ms: int) -> None:
+    def on_fault(self, now_ms: int) -> None:
         self._end_event = "FAULT"
 
     # ---------------------------------------------------------------------------------------------
@@ -366,7 +366,7 @@ class VirtualRobot:
 
     @property
     def offset(self) -> int | None:
-        """Return where the instruction that runs begins, or None while no program runs."""
+        """Return the start of the current instruction, or None if no program runs."""
         code_offset = self._firmware.call("at") % (1 << 32)
         return None if code_offset == NO_OFFSET else code_offset
 
@@ -378,7 +378,7 @@ class VirtualRobot:
 
     @property
     def driving_task_offset(self) -> int | None:
-        """Return where the task is that has the motors, while they are on; None of no tasks."""
+        """Return the place of the task that controls running motors; None without tasks."""
         code_offset = self._firmware.call("driver")
         return None if code_offset == NO_OFFSET else code_offset
 
@@ -388,11 +388,11 @@ class VirtualRobot:
         return self._firmware
 
     def go_on(self) -> None:
-        """Let a held program go on."""
+        """Resume a paused program."""
         self._firmware.go_on()
         self._settle()
 
     @property
     def saved_state(self) -> str:
-        """Return where its program is held: NOTHING, MEMORY, SAVING or STORED."""
+        """Return the storage state of its program: NOTHING, MEMORY, SAVING or STORED."""
         return saved_name(self._firmware.call("saved"))

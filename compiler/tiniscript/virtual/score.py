@@ -1,4 +1,4 @@
-"""How far a robot has come with the flags and the rivals of its world, and what that is worth.
+"""The robot's progress with its world's flags and rivals, and its score.
 
 Knows robots, flags and rivals. The same run has the same score, however often it is looked at.
 """
@@ -16,7 +16,7 @@ LOOK_INTERVAL_MS = 5  # between two looks
 
 
 class Score:
-    """What a robot has done with the flags and the rivals of a world since its program began.
+    """The results of a robot with the flags and rivals since the start of its program.
 
     Where it stands once the program has ended counts, too.
     """
@@ -33,7 +33,7 @@ class Score:
 
     @property
     def _rival_count(self) -> int:
-        """Return how many are to be pushed out: none where there is nothing to fall from."""
+        """Return the number of rivals to push out; none in a world without a ring."""
         return len(self._world.rivals) if self._world.rings else 0
 
     def update(self, robot: VirtualRobot) -> None:
@@ -57,7 +57,7 @@ class Score:
             self._flag_count += is_standing or not flag.needs_rest
 
     def state(self) -> dict[str, Any] | None:
-        """Return what is to be shown, or None where there is nothing to do."""
+        """Return the state to show, or None if there is no task."""
         world = self._world
         if not world.flags and not self._rival_count:
             return None

@@ -19,9 +19,9 @@ from tiniscript.virtual.driving import TOUCH_CM, Hull
 from tiniscript.virtual.geometry import Point, Segment, crosses, distance, join_points, nearest_seen
 from tiniscript.virtual.world import World
 
-NEAREST_CM, FARTHEST_CM = 2.0, 400.0  # of an HC-SR04
-CONE_RADIANS = math.radians(15)  # to both sides
-BUMPER_RADIANS = math.radians(60)  # to both sides
+NEAREST_CM, FARTHEST_CM = 2.0, 400.0  # range of an HC-SR04
+CONE_RADIANS = math.radians(15)  # half angle of the cone
+BUMPER_RADIANS = math.radians(60)  # half angle of the cone
 ROOM_CELSIUS = 20_000
 MOST_FINE_STEPS = 50  # a range of more steps than these has whole numbers
 
@@ -45,7 +45,7 @@ class Sensing:
     ) -> None:
         self.robot = robot
         self.world = world
-        self._other_outlines = other_outlines  # outlines of what moves besides the robot
+        self._other_outlines = other_outlines  # outlines of moving bodies other than the robot
         self.noise = noise
         self.obstacles = world.obstacles()
         self.lines = [
@@ -55,13 +55,13 @@ class Sensing:
         ]
         self.hull = Hull(robot.body)
         self._random_source = random_source or Random(1)
-        # how far what carries a sensor has turned to the left, by the name of the actuator
+        # Angle to the left of each servo that carries a sensor, by the actuator's name.
         self.turn_of_actuator: dict[str, float] = {}
         self._given_readings = {
             number: list(values) for number, values in (given_readings or {}).items()
         }
         self._near_obstacles: tuple[Pose, list[Segment]] | None = (
-            None  # what a robot might touch there
+            None  # obstacles that a robot may touch there
         )
 
     def read(self, number: int, pose: Pose, remote: int = 0) -> int:
@@ -74,7 +74,7 @@ class Sensing:
         return self._sense(number, pose, self.noise)
 
     def set_reading(self, number: int, reading: int) -> None:
-        """Have a sensor read that from now on, as far as it can; in thousandths, or 0 and 1."""
+        """Set a sensor's reading from now on, within its range; in thousandths, or 0 and 1."""
         self._given_readings[number] = [_clamp_to_range(self.robot.kit.readings[number], reading)]
 
     def turn(self, actuator: int, value: int) -> None:
@@ -167,7 +167,7 @@ class Sensing:
 
 
 def _sensor_pose(place: Place, pose: Pose) -> tuple[Point, float]:
-    """Return where a sensor is on the floor, and where it looks."""
+    """Return the position of a sensor on the floor, and its direction."""
     heading = math.radians(pose.heading)
     cos, sin = math.cos(heading), math.sin(heading)
     eye = Point(

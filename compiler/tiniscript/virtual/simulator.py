@@ -16,7 +16,7 @@ from tiniscript.virtual import directory
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.transports import BadLine, Transports
 
-HEARTBEAT_MS = 300  # of the robot's time
+HEARTBEAT_MS = 300  # interval in the robot's time
 SILENCE_S = 1.0
 MOST_FRAME_BYTES = 100  # bytes of a frame on the wire, and some
 
@@ -24,7 +24,7 @@ MOST_FRAME_BYTES = 100  # bytes of a frame on the wire, and some
 class Heartbeat:
     def __init__(self) -> None:
         self._frame = b""  # the last one
-        self._unfinished = b""  # what has begun
+        self._unfinished = b""  # start of an unfinished packet
         self._received_s = 0.0
         self._heartbeat_ms = 0
 
@@ -35,7 +35,7 @@ class Heartbeat:
         self._unfinished = self._unfinished[:MOST_FRAME_BYTES]
         for frame in frames:
             if frame and len(frame) < MOST_FRAME_BYTES:
-                self._frame = b"\0" + frame + b"\0"  # it is repeated
+                self._frame = b"\0" + frame + b"\0"  # the frame sent for each heartbeat
 
     def forget(self) -> None:
         """Forget the last frame, because another client connects."""
@@ -52,14 +52,14 @@ class Heartbeat:
 
 MOST_DELAY_S = 0.25  # a larger delay slows the robot's clock down
 BUSY_S = 0.002  # between two polls while bytes are in transit,
-NEAR_S = 0.02  # while a client is connected or a program runs,
-IDLE_S = 0.25  # and otherwise
-TRAFFIC_S = 0.05  # after a byte, more bytes are expected for this time
+NEAR_S = 0.02  # pause while a client is connected or a program runs
+IDLE_S = 0.25  # pause otherwise
+TRAFFIC_S = 0.05  # time after a byte in which more bytes are expected
 STRIDE_MS = 100  # robot time between two polls of the line while it runs faster
 TURN_S = 0.01  # real time that a fast run may take before the caller gets its turn
 MOST_WAITING_BYTES = 512  # limit of bytes waiting for the robot; then the line is not read
-PUSH_MS = 60  # how long a push holds the button down
-HOLD_MS = 2300  # and a long one, which confirms a claim
+PUSH_MS = 60  # duration of a button press
+HOLD_MS = 2300  # duration of a long press, which confirms a claim
 
 
 class Simulator:
@@ -74,8 +74,8 @@ class Simulator:
         self.robot = robot
         self.transports = transports
         self.hurry = hurry
-        self.end_ms: int | None = None  # of the robot's time: then it is over
-        self.duration_ms: int | None = None  # or so long after its first program has begun
+        self.end_ms: int | None = None  # end of the simulation in the robot's time
+        self.duration_ms: int | None = None  # duration after the start of its first program
         random_source = Random(robot.settings.seed ^ 0x5A5A)
         self.to_robot, self.from_robot = (
             BadLine(faults, random_source),
@@ -83,16 +83,16 @@ class Simulator:
         )
         self._heartbeat = Heartbeat()
         self._wall_s = self._traffic_s = monotonic()
-        self._owed_ms = 0.0  # of the robot's time, less than one
+        self._owed_ms = 0.0  # robot's time of less than one millisecond, carried over
         self._visits = 0
         self._last_byte = b""  # byte of the client
         self._release_ms: int | None = None
-        self._waiting_push_ms = 0  # how long a push lasts that has to wait
-        self._up_until_ms = 0  # a button that was let go stays up so long
+        self._waiting_push_ms = 0  # duration of a press that has to wait
+        self._up_until_ms = 0  # time for which a released button stays up
 
     @property
     def over_ms(self) -> int | None:
-        """When the robot's time is over, if that is known."""
+        """Return the end of the robot's time, if known."""
         started_ms = self.robot.started_ms
         if self.duration_ms is not None and started_ms is not None:
             return started_ms + self.duration_ms
@@ -115,7 +115,7 @@ class Simulator:
 
     @property
     def waiting_bytes(self) -> int:
-        """How many bytes the robot has still to hear."""
+        """Return the number of bytes that the robot has yet to receive."""
         return self.robot.unread_bytes + self.to_robot.byte_count
 
     def turn(self, limit_s: float = IDLE_S) -> None:
@@ -129,7 +129,7 @@ class Simulator:
         if self.transports.visit_count != self._visits:
             self._visits = self.transports.visit_count
             self._heartbeat.forget()
-            if self._last_byte not in b"\0\r\n":  # ends what the one before has begun
+            if self._last_byte not in b"\0\r\n":  # ends an unfinished line of the previous client
                 self.to_robot.send_bytes(b"\0", self.robot.now_ms)
             self._last_byte = b""
             self.from_robot.clear()
@@ -181,7 +181,7 @@ class Simulator:
                 break
 
     def _limit_step(self, step_ms: int) -> int:
-        """Return how far a step may go: a program ends with the robot's time, to the ms."""
+        """Return the length of a step, so that a program ends exactly with the robot's time."""
         if self.duration_ms is not None and self.is_over and self.robot.is_running:
             self.robot.rest()
         over_ms = self.over_ms
@@ -201,10 +201,10 @@ class Simulator:
         data = self.to_robot.take_arrived(now_ms)
         if is_hurrying and self.transports.is_connected and not data:
             data = self._heartbeat.bytes_due(now_ms, self._wall_s)
-        sent = self.robot.step(now_ms + step_ms, data)
-        if sent:
+        sent_bytes = self.robot.step(now_ms + step_ms, data)
+        if sent_bytes:
             self._traffic_s = self._wall_s
-            self.from_robot.send_bytes(sent, self.robot.now_ms)
+            self.from_robot.send_bytes(sent_bytes, self.robot.now_ms)
         self.transports.send(self.from_robot.take_arrived(self.robot.now_ms))
 
 
@@ -235,7 +235,7 @@ class SimulatorThread:
         self._thread = Thread(target=self._run, name="virtual robot", daemon=True)
 
     def push(self) -> None:
-        """Have the thread push the start button, and let it go."""
+        """Ask the thread to press and release the start button."""
         self._is_pushed = True
 
     def on_turn(self) -> None:

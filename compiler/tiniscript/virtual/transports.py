@@ -28,18 +28,18 @@ MOST_UNSENT_BYTES = (
     65_536  # buffer for a client that does not read; more is lost, as on a serial line
 )
 PORT_TAKEN = b"Port already in use: another program is talking to this robot.\r\n"
-REFUSAL_DELAY_S = 0.3  # a second caller waits this long before it is told
-FAREWELL_S = 2.5  # and has this long to read the message
-MOST_CALLERS = 64  # at a time: file descriptors are few (macOS: 256)
+REFUSAL_DELAY_S = 0.3  # time before a second caller gets a message
+FAREWELL_S = 2.5  # time to read the farewell message
+MOST_CALLERS = 64  # most clients at a time; macOS allows 256 open files
 PROTECTION_S = 0.25  # a caller is not dropped for a newer one within this time
 SILENCE_TIMEOUT_S = 60.0  # timeout of a caller that sends nothing,
-OPENING_TIMEOUT_S = 10.0  # and of one whose first bytes or line are incomplete
+OPENING_TIMEOUT_S = 10.0  # timeout of a client whose first bytes or line are incomplete
 IDLE_TIMEOUT_S = 10.0  # a client that is silent for this time is replaced by a caller that sends
 BACKLOG = 128
 
 
 class Transports:
-    """A port on this computer. Raises OSError where it cannot be had."""
+    """A port on this computer. Raises OSError if it cannot be had."""
 
     def __init__(self, port: int = 0, has_terminal: bool = False) -> None:
         self._server = socket.create_server((LOCAL_HOST, port), backlog=BACKLOG)
@@ -47,7 +47,7 @@ class Transports:
         self.port: int = self._server.getsockname()[1]
         self.address = f"socket://{LOCAL_HOST}:{self.port}"
         self.terminal = ""  # the path of the pseudo-terminal
-        self.visit_count = 0  # how many have come to stay
+        self.visit_count = 0  # number of clients that stayed
         self._own_end, self._other_end = -1, -1
         if has_terminal:
             try:
@@ -56,14 +56,14 @@ class Transports:
                 self._server.close()
                 raise
         self._client: socket.socket | None = None
-        self._received_s = 0.0  # when the client has said something
+        self._received_s = 0.0  # time of the client's last data
         self._callers: list[_Caller] = []  # the oldest first
-        self._full_s = 0.0  # when there was no room for one more open file
+        self._full_s = 0.0  # time when no more files could be opened
         self._unsent = bytearray()
 
     @property
     def is_connected(self) -> bool:
-        """Whether somebody is there. Of a pseudo-terminal nobody knows."""
+        """Return whether a client is connected; unknown for a pseudo-terminal."""
         return self._client is not None
 
     def wait(self, limit_s: float, is_full: bool = False) -> None:
@@ -86,7 +86,7 @@ class Transports:
             sleep(limit_s)
 
     def receive(self) -> bytes:
-        """Return what has come. Lets clients in and out."""
+        """Return received bytes. Also accepts and removes clients."""
         data = self._receive_from_port()
         first_bytes = self._let_in()
         return data if first_bytes is None else first_bytes
@@ -109,15 +109,15 @@ class Transports:
             self._received_s = monotonic()
             return data
         if self._own_end >= 0:
-            with contextlib.suppress(OSError):  # nothing there
+            with contextlib.suppress(OSError):  # the file may not exist
                 return os.read(self._own_end, READ_BYTES)
         return b""
 
     def send(self, data: bytes) -> None:
-        """Send bytes to whoever is there; nobody, and they are lost."""
+        """Send bytes to the client; without one they are lost."""
         if self._client is None:
             if self._own_end >= 0 and data:
-                with contextlib.suppress(OSError):  # nobody reads, and its buffer is full
+                with contextlib.suppress(OSError):  # nobody reads, and the buffer is full
                     os.write(self._own_end, data)
             return
         self._unsent += data[: MOST_UNSENT_BYTES - len(self._unsent)]
@@ -188,7 +188,7 @@ class Transports:
                 peer = self._server.accept()[0]
             except BlockingIOError:
                 return
-            except ConnectionError:  # it has gone already
+            except ConnectionError:  # the client has gone
                 continue
             except OSError:  # this process has too many files open
                 self._drop_oldest()
@@ -227,18 +227,16 @@ class _Caller:
 
     def __init__(self, peer: socket.socket, arrival_s: float) -> None:
         peer.setblocking(False)
-        with contextlib.suppress(OSError):  # it has gone already
+        with contextlib.suppress(OSError):  # the client has gone
             peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.peer = peer
         self.arrival_s = arrival_s
-        self.first_bytes = b""  # what it has said
+        self.first_bytes = b""  # first bytes of the client
         self.may_enter = False
         self.is_refused = False
         self._limit_s = arrival_s + SILENCE_TIMEOUT_S
         self._received_s = arrival_s
-        self._line_start = (
-            0  # where the bytes begin that have come since the last second of silence
-        )
+        self._line_start = 0  # start of the bytes received since the last second of silence
 
     @property
     def is_next(self) -> bool:
@@ -261,7 +259,7 @@ class _Caller:
         return False
 
     def _receive(self, now_s: float) -> bool:
-        """Take what has come; return whether more may come."""
+        """Receive waiting bytes; return whether more may come."""
         data = self.peer.recv(READ_BYTES)
         if not data or self.is_refused:
             return bool(data)
@@ -285,30 +283,30 @@ class _Caller:
             return
         self.is_refused = True
         self._limit_s = now_s + FAREWELL_S
-        with contextlib.suppress(OSError):  # it has gone already
+        with contextlib.suppress(OSError):  # the client has gone
             self.peer.send(PORT_TAKEN)
             self.peer.shutdown(socket.SHUT_WR)
 
 
 def can_have_terminal() -> bool:
-    """Whether this system has pseudo-terminals."""
+    """Return whether this system has pseudo-terminals."""
     return hasattr(os, "openpty")
 
 
-RADIO_TEXT = b"OK+LOST\r\n"  # what HC-06 and HM-10 modules write into the stream
+RADIO_TEXT = b"OK+LOST\r\n"  # text that HC-06 and HM-10 modules insert into the stream
 MOST_LOST_BYTES = 4  # bytes in a row
 MOST_DELAY_MS = 300
 
 
 class BadLine:
-    """One direction of a line. Of 1000 bytes about `rate` meet a fault."""
+    """One direction of a line. About `rate` of 1000 bytes are faulty."""
 
     def __init__(self, rate: float, random_source: Random) -> None:
         self.rate = rate
         self.fault_count = 0  # count of faults so far
         self._random_source = random_source
         self._in_transit: deque[tuple[int, int]] = deque()  # arrival time and byte
-        self._loss_count = 0  # how many of the next bytes get lost
+        self._loss_count = 0  # number of further bytes to lose
 
     def send_bytes(self, data: bytes, now_ms: int) -> None:
         """Send bytes."""
@@ -326,7 +324,8 @@ class BadLine:
             self.fault_count += 1
             kind = self._random_source.randrange(4)
             if kind == 0:
-                self._loss_count = self._random_source.randrange(MOST_LOST_BYTES)  # and this one
+                # This byte is lost as well.
+                self._loss_count = self._random_source.randrange(MOST_LOST_BYTES)
             elif kind == 1:
                 self._in_transit.append((due_ms, byte ^ 1 << self._random_source.randrange(8)))
             elif kind == 2:
@@ -338,14 +337,14 @@ class BadLine:
 
     def take_arrived(self, now_ms: int) -> bytes:
         """Return the bytes that have arrived."""
-        arrived = bytearray()
+        arrived_bytes = bytearray()
         while self._in_transit and self._in_transit[0][0] <= now_ms:
-            arrived.append(self._in_transit.popleft()[1])
-        return bytes(arrived)
+            arrived_bytes.append(self._in_transit.popleft()[1])
+        return bytes(arrived_bytes)
 
     @property
     def byte_count(self) -> int:
-        """Return how many bytes are in transit."""
+        """Return the number of bytes in transit."""
         return len(self._in_transit)
 
     def clear(self) -> None:

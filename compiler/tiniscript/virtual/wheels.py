@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 from tiniscript.robots.profile import Body, Wiring
 
-LAG_MS = 60.0  # in which a motor comes 1 - 1/e nearer to its speed: on average
-LAG_RANGE = (0.75, 1.25)  # of that, from motor to motor
-STEADY_PERCENT = 0.05  # percent of speed: a smaller change is none
+LAG_MS = 60.0  # average time in which a motor gets within 1/e of its speed
+LAG_RANGE = (0.75, 1.25)  # range of that time's factor between motors
+STEADY_PERCENT = 0.05  # smallest change of speed in percent
 SLIP_CM = 5.0  # a wheel slips as much for so far
 CLOCK = 1 << 16
 ANSWER_FLAG = 1 << 31
@@ -45,17 +45,17 @@ class Wheel:
         ]
         self.turned_cm = random_source.uniform(
             0, self.edge_cm * edge_count
-        )  # as it stands when switched on
+        )  # angle of the disc when switched on
         self._lag_ms = LAG_MS * random_source.uniform(*LAG_RANGE)
         self._slip_start_cm = 0.0
         self._slip = 0.0
         self._edge_number = self._edges()
         self.wanted_speed = self.speed = 0.0  # percent
         self.counted_edges = 0
-        self.has_working_sensor = True  # its sensor tells something
+        self.has_working_sensor = True  # whether its sensor works
 
     def _edges(self) -> int:
-        """Return how many edges have passed since the disc was at its first one."""
+        """Return the number of edges since the disc was at its first one."""
         edge_position = self.turned_cm / self.edge_cm
         nearest = round(edge_position)
         return (
@@ -84,7 +84,7 @@ class Wheel:
 
 
 class Wheels:
-    """Both wheels; `drive` is told each change of their speed over the floor."""
+    """Both wheels; `drive` is called for each change of their speed over the floor."""
 
     def __init__(
         self, body: Body, discs: Wiring, has_two_channels: bool, roughness: Roughness, seed: int,
@@ -124,7 +124,7 @@ class Wheels:
         return (right * CLOCK + left + ANSWER_FLAG) % (2 * ANSWER_FLAG) - ANSWER_FLAG
 
     def brake(self) -> None:
-        """They stand at once, as where somebody lifts the robot or switches it off."""
+        """Stop the wheels at once, as when the robot is lifted or switched off."""
         for wheel in self.wheels:
             wheel.speed = wheel.wanted_speed = 0.0
         self._floor_speeds = (0.0, 0.0)

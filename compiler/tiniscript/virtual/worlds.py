@@ -21,8 +21,8 @@ from tiniscript.virtual.world import Flag, Lamp, Line, Ring, Rival, World, World
 LARGEST_CM = 2000 * ONE
 MOST_PARTS = 100  # walls, and as many boxes, lines, lamps, flags and rings
 MOST_RIVALS = 3
-MOST_SECONDS = 600 * ONE  # for its flags
-MOST_POINTS = 200  # of a wall or a line
+MOST_SECONDS = 600 * ONE  # most seconds for its flags
+MOST_POINTS = 200  # most points of a wall or a line
 MOST_LABEL_CHARACTERS = 60
 T = TypeVar("T")
 
@@ -176,7 +176,7 @@ def _rival(table: Table) -> Rival:
 
 
 def _labels(table: Table, name: str) -> dict[str, str]:
-    """Return the world's name by language, or `name` in each where it has none."""
+    """Return the world's name by language, or `name` in each if it has none."""
     label_of_language: ByLanguage[str] = ByLanguage()
     for language in languages():
         label = table.label(language, MOST_LABEL_CHARACTERS)

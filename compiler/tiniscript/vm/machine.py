@@ -66,7 +66,7 @@ class Machine(Drive):
         """`code` must be verified for a kit with so many sensors; `seed` is 1 to 4294967295."""
         super().__init__(robot, Task(seed, sensor_count, now_ms), now_ms)
         self.fault = ""
-        self.at = 0  # where the instruction that runs, or has faulted, begins
+        self.at = 0  # start of the instruction that runs or has faulted
         self.steps = 0  # instructions that have run
         self._code = code
         self._steps = bind_steps(self, code)

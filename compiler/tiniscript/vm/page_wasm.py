@@ -34,7 +34,7 @@ class Instance:
         self.numbers = MemoryNumbers(buffer)
 
     def call(self, name: str, *values: Any) -> int:
-        if name == "run":  # until a time of 64 bits: JavaScript has a type of its own for those
+        if name == "run":  # for 64-bit times, JavaScript has its own integer type
             values = (js.BigInt(values[0]), *values[1:])
         return int(self.functions[name](*values) or 0)
 
@@ -46,7 +46,7 @@ class Instance:
         return bytes(self._bytes.subarray(start, end).to_bytes())
 
     def close(self) -> None:
-        """Let go of what it has had from Python."""
+        """Release the references to Python."""
         self.functions = {}
         for proxy in self._proxies:
             proxy.destroy()

@@ -15,11 +15,11 @@ from tiniscript.vm.state import DONE, FAULT, WAITING, Robot
 from tiniscript.vm.tasks import machine_of as python_machine
 
 SLICE_INSTRUCTIONS = 10_000  # instructions between two looks at the limit
-MAX_STEPS = 10_000_000  # instructions, where no other limit is asked for
+MAX_STEPS = 10_000_000  # instructions, if no other limit is asked for
 
 
 class AnyMachine(Protocol):
-    """What a run asks of a machine: `vm.Machine` and the one in C++ both answer."""
+    """The interface of a machine for a run: that of `vm.Machine` and the one in C++."""
 
     @property
     def wake_ms(self) -> int: ...

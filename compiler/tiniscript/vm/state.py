@@ -11,20 +11,20 @@ from typing import Protocol
 from tiniscript.base.limits import CHECK_MS, VARIABLES
 from tiniscript.vm.handlers import STAY, Step, mark_stop
 
-CLOCK_MS = 2**32  # where a machine's clock wraps around
+CLOCK_MS = 2**32  # value at which a machine's clock wraps around
 LATE_MS = 20  # later than this, a program's own clock no longer catches up
-SHOW_BYTES = 1  # of its instruction
+SHOW_BYTES = 1  # bytes of a SHOW instruction
 FOREVER = -1  # the time of a move that only its UNTIL ends
 
 Powers = tuple[int, int]  # left and right, in percent
 
-# What `tick` returns
+# Results of `tick`.
 RUNNING = "running"  # there is more to do now
-WAITING = "waiting"  # nothing to do before `task.wake_ms`
+WAITING = "waiting"  # there is nothing to do before `task.wake_ms`
 DONE = "done"
 FAULT = "fault"
 
-# What a task waits for
+# Reasons why a task waits.
 NOTHING = ""
 PAUSE = "pause"  # the end of a wait or a beep, or the next check of an UNTIL
 MOVE = "move"  # the end of a move: then motors off
@@ -43,7 +43,7 @@ class Robot(Protocol):
         """Return a reading, or None if it is not ready: the machine asks again."""
 
     def go_ms(self, extent: int, power: int, is_turn: bool) -> int:
-        """Return how long it drives or `is_turn` for that way at 0 to 100 %. Raises Fault."""
+        """Return the duration of a move, or a turn if `is_turn`, at 0 to 100 %. Raises Fault."""
 
     def beep(self, hertz: int, duration_ms: int) -> None:
         """Start a sound; it ends by itself."""
@@ -79,9 +79,9 @@ class Task:
         self.wake_ms = now_ms
         # the move that an UNTIL watches
         self.powers: Powers | None = None  # None: a wait, the motors stay as they are
-        self.move_ms = 0  # how long it may last from the clock on, or FOREVER
-        self.check_pc = 0  # where its check begins
-        self.is_watching = False  # it has begun
+        self.move_ms = 0  # remaining time of the move by the clock, or FOREVER
+        self.check_pc = 0  # start of the check
+        self.is_watching = False  # whether the watch has begun
 
 
 class Drive:
@@ -96,7 +96,7 @@ class Drive:
         self.task = task
         self.now_ms = now_ms
         self.status = RUNNING
-        self.shown_at = 0  # where the SHOW is whose value the robot gets
+        self.shown_at = 0  # place of the SHOW whose value the robot gets
 
     @property
     def wake_ms(self) -> int:

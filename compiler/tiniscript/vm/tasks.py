@@ -29,12 +29,12 @@ from tiniscript.vm.state import (
     Robot,
 )
 
-NEVER_MS = 2**31 - 1  # from now: nothing happens by itself
+NEVER_MS = 2**31 - 1  # longest delay: nothing happens by itself
 MOTORS_OFF = 0, 0
 
 
 class TaskRecord:
-    """What one task has for itself.
+    """The state of one task.
 
     A move of its own **drives**, or it is **blocked**: it waits for the motors, or stands still
     since a higher task has taken them.
@@ -46,29 +46,29 @@ class TaskRecord:
                  "pc_after_move", "powers", "rank", "start_pc", "unsent_value")  # fmt: skip
 
     def __init__(self, pc: int, is_when: bool, rank: int, now_ms: int) -> None:
-        self.start_pc = pc  # where it begins; a WHEN with its check
-        self.pc = pc  # where its next turn begins
+        self.start_pc = pc  # start of the task; a WHEN starts with its check
+        self.pc = pc  # start of its next turn
         self.is_when = is_when
         self.rank = rank  # 0 is the highest
         self.counters: list[int] = []
         self.calls: list[int] = []
-        self.clock_ms = now_ms  # its own clock; its next turn is due then
+        self.clock_ms = now_ms  # its own clock, at which its next turn is due
         self.has_ended = False
-        self.has_waited = False  # since it last went back to the start of a loop
+        self.has_waited = False  # whether it has waited since its loop last restarted
         self.unsent_value: tuple[int, bool] | None = None  # the value of a SHOW that found no room
-        # its move, or the wait that an UNTIL watches
+        # The task's move, or the wait that an UNTIL watches.
         self.powers: Powers | None = None  # None: a wait, the motors stay as they are
-        self.move_ms = 0  # how long it may last from its clock on, or FOREVER
-        self.has_begun = True  # it drives, or waits, or is over
-        self.check_pc = 0  # where that of its UNTIL begins, or where it goes on after it
-        self.pc_after_move = 0  # after the move
-        self.is_moving = False  # its move drives or is blocked
+        self.move_ms = 0  # remaining time of the move by its clock, or FOREVER
+        self.has_begun = True  # whether it drives, waits or is over
+        self.check_pc = 0  # start of its UNTIL's check, or of the code after it
+        self.pc_after_move = 0  # start of the code after the move
+        self.is_moving = False  # whether its move drives or is blocked
         self.is_blocked = False
         self.drives = False
         self.ends_at_clock = False  # the clock is the end of the move
-        # what it has of the motors beside its move
-        self.own_powers = MOTORS_OFF  # by its M,
-        self.has_own_powers = False  # which is in force
+        # The task's motor settings apart from its move.
+        self.own_powers = MOTORS_OFF  # powers set by its M
+        self.has_own_powers = False  # whether these powers are in force
         self.keeps_motors = False  # a WHEN has wanted the motors, and has not found FALSE since
 
     @property
@@ -106,21 +106,21 @@ class TaskMachine(Machine):
         """`code` must be verified for a kit with so many sensors; `seed` is 1 to 4294967295."""
         super().__init__(code, robot, sensor_count, seed, now_ms)
         starts = [*sorted(find_tasks(code), key=lambda task: not task.is_when), Start(0, False)]
-        # in the order of rank, the main task last
+        # The tasks in order of rank, the main task last.
         self.tasks = [TaskRecord(*start, rank, now_ms) for rank, start in enumerate(starts)]
-        self.current_task = self.tasks[-1]  # whose turn it is, or was last
+        self.current_task = self.tasks[-1]  # the task whose turn it is, or was last
         self.is_in_turn = True  # a turn has begun and is not over
-        self.is_first_turn = True  # it is the first one of the main task, before all others
+        self.is_first_turn = True  # whether it is the main task's first turn, before all others
         self.is_first_round = True  # the main task has had its turn in it
-        self.next_rank = 0  # in this round
-        self.holder: TaskRecord | None = None  # who has the motors
-        self.powers = MOTORS_OFF  # that the motors were set to last
+        self.next_rank = 0  # next rank in this round
+        self.holder: TaskRecord | None = None  # the task that controls the motors
+        self.powers = MOTORS_OFF  # powers last given to the motors
 
     # -- turns --------------------------------------------------------------------------------
 
     @property
     def wake_ms(self) -> int:
-        """Return when the next task is due: it may be at once, or was."""
+        """Return when the next task is due, possibly now or earlier."""
         due_times_ms = (task.clock_ms for task in self.tasks if self._waits_for_clock(task))
         return min(due_times_ms, default=self.now_ms + NEVER_MS)
 
@@ -145,7 +145,7 @@ class TaskMachine(Machine):
                     break
                 if pc < 0 and not (pc == STAY and self.is_first_turn):
                     self._end_turn()
-                elif pc < 0:  # before all others it waits for a reading, too
+                elif pc < 0:  # the first turn waits for readings too
                     break
         except Fault as fault:
             self.robot.off()
@@ -192,7 +192,7 @@ class TaskMachine(Machine):
         elif task.ends_at_clock:
             self._end_move()
         elif not task.has_begun and self._blocks():
-            self._go_to(mark_stop(task.check_pc))  # they have been taken since its check began
+            self._go_to(mark_stop(task.check_pc))  # the motors were lost during its check
 
     def _go_to(self, pc: int) -> None:
         """Go on where a step says."""
@@ -258,7 +258,7 @@ class TaskMachine(Machine):
         return self.wait(CHECK_MS, PAUSE, self.current_task.start_pc)
 
     def show(self, value: int, is_yes_no: bool, next_pc: int) -> int:
-        if self.is_first_turn:  # before all others it waits for room
+        if self.is_first_turn:  # the first turn waits for room too
             return super().show(value, is_yes_no, next_pc)
         self.task.stack.pop()
         self.shown_at = next_pc - SHOW_BYTES
@@ -291,7 +291,7 @@ class TaskMachine(Machine):
                 task.clock_ms = self.now_ms
             if task.drives:
                 self._end_move()
-            elif task.is_moving:  # it waited for the motors, or stood still
+            elif task.is_moving:  # the task waited for the motors, or stood still
                 task.leave_move()
             task.has_begun = True
             return next_pc
@@ -370,11 +370,11 @@ class TaskMachine(Machine):
                 holder.clock_ms = self.now_ms
 
     def _is_below(self) -> bool:
-        """Whether a higher task has the motors."""
+        """Return whether a higher task has the motors."""
         return self.holder is not None and self.holder.rank < self.current_task.rank
 
     def _take_motors(self) -> None:
-        """Give the motors to the task whose turn it is; no higher one has them."""
+        """Assign the motors to the current task; no higher one has them."""
         if self.holder is not None and self.holder is not self.current_task and self.holder.drives:
             self.holder.stand_still(self.now_ms)
         self.holder = self.current_task
@@ -408,7 +408,7 @@ def machine_of(
 
 
 class Start(NamedTuple):
-    """Where a task begins."""
+    """The start of a task."""
 
     pc: int
     is_when: bool

@@ -86,12 +86,12 @@ class WasmImage:
 
     def close(self) -> None:
         """Free its memory. It cannot be used again."""
-        self.exchange.release()  # its memory is about to be freed
+        self.exchange.release()  # the memory is about to be freed
         self._instance.close()
 
     def _robot_functions(self) -> dict[str, Callable[[], None]]:
-        """Return what the module imports: `robot.h`, under the names of `state.Robot`."""
-        image_of = ref(self)  # no more: else it would live for ever, `wasm_store` says why
+        """Return the module's imports: `robot.h`, under the names of `state.Robot`."""
+        image_of = ref(self)  # released, because otherwise it would live forever: see `wasm_store`
 
         def robot_function(call: Callable[[Robot, memoryview[int]], object]) -> Callable[[], None]:
             def function() -> None:
@@ -126,7 +126,7 @@ class WasmImage:
 
 
 class WasmMachine:
-    """The same as `vm.Machine` from outside."""
+    """A machine with the interface of `vm.Machine`."""
 
     def __init__(self, image: WasmImage, now_ms: int) -> None:
         self.status = RUNNING
@@ -154,10 +154,10 @@ class WasmMachine:
 
     @property
     def at(self) -> int:
-        """Where the instruction that runs, or has faulted, begins."""
+        """Return the start of the current or faulty instruction."""
         return self._image.call("at")
 
     @property
     def shown_at(self) -> int:
-        """Where the SHOW is whose value the robot gets."""
+        """Return the place of the SHOW whose value the robot gets."""
         return self._image.call("shown_at")

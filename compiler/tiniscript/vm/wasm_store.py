@@ -21,7 +21,7 @@ from typing import Any
 import wasmtime
 from wasmtime import Config, Engine, Func, FuncType, Memory, Module, Store, ValType, WasmtimeError
 
-# Of one instance's memory, which does not grow: the modules have three pages and fewer.
+# Memory of one instance. It does not grow: the modules have at most three pages.
 MOST_BYTES = 1 << 20
 # wasmtime keeps 4 GB of addresses for each memory otherwise: an address space with a limit
 # (ulimit -v, a container) has no room for that, and any has only for 16,000 of them.
@@ -67,7 +67,7 @@ class Instance:
 
     def close(self) -> None:
         self.functions = {}
-        self.numbers.release()  # its memory is about to be freed
+        self.numbers.release()  # the memory is about to be freed
         self._store.close()
 
 
@@ -110,7 +110,8 @@ def _bound_function(store: Store, function: Func) -> Callable[..., Any]:
             store._context(), byref(raw_function), raw_values, len(raw_values), byref(trap)
         )
         if error or trap:
-            with enter_wasm(store) as raised:  # what a function of Python has raised comes first
+            # An exception raised in a Python callback comes first.
+            with enter_wasm(store) as raised:
                 if error:
                     raise WasmtimeError._from_ptr(error)
                 raised._obj.contents = trap.contents

@@ -16,8 +16,8 @@ from pathlib import Path
 
 STICK = Path(__file__).resolve().parent
 IS_WINDOWS = os.name == "nt"
-LANGUAGES = ("en", "es", "pt")  # of the sentences, in this order
-LANGUAGE_CODES = {"spanish": "es", "portuguese": "pt"}  # as Windows says it
+LANGUAGES = ("en", "es", "pt")  # the order of languages in SENTENCES
+LANGUAGE_CODES = {"spanish": "es", "portuguese": "pt"}  # names of languages in Windows
 PAGES = ("index.html", "index.es.html", "index.pt.html")
 TEXTS = {
     "old": ("This Python is {version}; tsc needs 3.10 or newer.",
@@ -44,7 +44,7 @@ TEXTS = {
 def main(arguments: list[str]) -> int:
     folder = Path(arguments[0]).absolute() if arguments else Path.home() / "TiniScript"
     version = ".".join(map(str, sys.version_info[:2]))
-    if sys.version_info < (3, 10):  # noqa: UP036 - whoever has an older one reads this
+    if sys.version_info < (3, 10):  # noqa: UP036 - anyone who has an older one reads this
         return _fail("old", version=version)
     _say("where", folder=folder)
     if subprocess.run([sys.executable, "-m", "venv", str(folder / "tsc")]).returncode:

@@ -55,33 +55,40 @@ def run(options: Namespace, language: str) -> int:
 def _repair(
     options: Namespace, program_input: Input, robot: Robot, language: str
 ) -> tuple[Compilation, bool]:
-    """Make or show the sure repairs; return what is left, and whether the program is right now."""
+    """Make or show the certain repairs; return the remaining mistakes, and whether the program is
+    right now.
+    """
     from tiniscript.cli.repairing import print_difference, repair
 
-    repaired = repair(program_input, robot)
+    repaired_program = repair(program_input, robot)
     name = inputs.printable_name(program_input.name)
     prints_text = not options.json
     if options.diff:
-        if prints_text and repaired.repair_count:
-            print_difference(program_input.data, repaired.data, program_input.name)
-        key = "would_repair" if repaired.repair_count else "nothing_repaired"
-        if prints_text and (repaired.repair_count or not repaired.compilation.is_right):
-            key += "_one" if repaired.repair_count == 1 else ""
-            say_aside(key, language, file=name, n=repaired.repair_count)
-        return repaired.compilation, repaired.compilation.is_right and not repaired.repair_count
+        if prints_text and repaired_program.repair_count:
+            print_difference(program_input.data, repaired_program.data, program_input.name)
+        key = "would_repair" if repaired_program.repair_count else "nothing_repaired"
+        if prints_text and (
+            repaired_program.repair_count or not repaired_program.compilation.is_right
+        ):
+            key += "_one" if repaired_program.repair_count == 1 else ""
+            say_aside(key, language, file=name, n=repaired_program.repair_count)
+        return (
+            repaired_program.compilation,
+            repaired_program.compilation.is_right and not repaired_program.repair_count,
+        )
     if program_input.path is None:
         if prints_text:
-            outputs.write_output(None, repaired.data)
-    elif repaired.repair_count:
-        outputs.write(program_input.path, repaired.data, "unwritable_source")
-    if prints_text and repaired.repair_count and program_input.path is not None:
-        print_difference(program_input.data, repaired.data, program_input.name)
-        key = "repaired_one" if repaired.repair_count == 1 else "repaired"
-        say_aside(key, language, file=name, n=repaired.repair_count)
-    if prints_text and not repaired.compilation.is_right:
-        key = "not_repaired" if repaired.repair_count else "nothing_repaired"
+            outputs.write_output(None, repaired_program.data)
+    elif repaired_program.repair_count:
+        outputs.write(program_input.path, repaired_program.data, "unwritable_source")
+    if prints_text and repaired_program.repair_count and program_input.path is not None:
+        print_difference(program_input.data, repaired_program.data, program_input.name)
+        key = "repaired_one" if repaired_program.repair_count == 1 else "repaired"
+        say_aside(key, language, file=name, n=repaired_program.repair_count)
+    if prints_text and not repaired_program.compilation.is_right:
+        key = "not_repaired" if repaired_program.repair_count else "nothing_repaired"
         print(text(key, language).format(file=name) + "\n", file=sys.stderr)
-    compilation = compilations.for_level(repaired.compilation, robot, options.text_level)
+    compilation = compilations.for_level(repaired_program.compilation, robot, options.text_level)
     return compilation, compilation.is_right
 
 

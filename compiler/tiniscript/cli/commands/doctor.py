@@ -1,4 +1,4 @@
-"""`tsc doctor`: prints what the doctor finds, what the robot says of itself, and the ports.
+"""`tsc doctor`: prints the doctor's findings, the robot's description, and the ports.
 
 What is wrong goes into a report, too, which may be sent.
 """
@@ -42,7 +42,7 @@ from tiniscript.link.trim import trim_from_reply
 
 LONGEST_WATCH_S = 600
 BLANK_FIELD = "____"
-# The steps of a bring-up: `step_` names one, `do_` says what to do, `see_` what must be seen.
+# The steps of a bring-up: `step_` is the name, `do_` the action, `see_` the expected result.
 FORM_STEPS = ("answers", "boot", "drive", "stop", "typed", "cable", "upload", "power", "bluetooth",
          "wifi", "supply")  # fmt: skip
 
@@ -55,7 +55,7 @@ def run(options: Namespace, language: str) -> int:
             raise CommandError(2, "doctor_one")
         work = partial(_examine_member, expectations)
         return run_together(options, inputs.robot(options, language), language, work)
-    robot_facts: dict[str, str] = {}  # by a robot, of itself
+    robot_facts: dict[str, str] = {}  # the robot's description of itself
     answers: list[RobotAnswers] = []
     watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
     expectations = expectations._replace(on_facts=robot_facts.update, on_answers=answers.append)
@@ -121,7 +121,7 @@ def _examine_member(expectations: Expectations, connection: Connection, member: 
 
 
 def _description(port: str, answers: RobotAnswers, language: str) -> Description:
-    """Return what a robot says about itself, of what it has answered."""
+    """Return a robot's description of itself, based on its answers."""
     info = device_info_of(answers.hello)
     trim = None if answers.trim is None else trim_from_reply(answers.trim)
     return Description(port, info, answers.status, trim, ownership_of(info), language)
@@ -189,7 +189,7 @@ def _report(diagnosis: Diagnosis, robot_facts: Mapping[str, str], language: str)
 
 
 def _fields(diagnosis: Diagnosis, language: str) -> dict[str, object]:
-    """Return it as data."""
+    """Return the diagnosis as data."""
     return {
         "port": diagnosis.port,
         "is_opened": diagnosis.is_opened,

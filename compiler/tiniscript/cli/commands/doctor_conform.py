@@ -36,10 +36,10 @@ from tiniscript.link.wire import Wire
 
 TIMEOUT_S = 10
 MOST_ROWS = 20
-CABLE_TIMEOUT_MS, RADIO_TIMEOUT_MS = 300, 700  # for one try of an answer
+CABLE_TIMEOUT_MS, RADIO_TIMEOUT_MS = 300, 700  # time for one try of an exchange
 # An Uno takes 1.4 s after its port was opened, and a Mega wants silence until then.
 BOOT_WAIT_MS = 1700
-CASES_BUILDER = "tools.builds.conformance"  # which no package brings
+CASES_BUILDER = "tools.builds.conformance"  # module that builds the cases; no package contains it
 ISA = f"{ISA_MAJOR}.{ISA_MINOR}"
 
 
@@ -116,7 +116,7 @@ def _check_port(options: Namespace, language: str) -> int:
         }
         raise CommandError(3, "conform_gone", **values) from None
     finally:
-        with contextlib.suppress(OSError):  # nothing runs on, whatever has ended the checks
+        with contextlib.suppress(OSError):  # the robot must stop, however the checks ended
             robot.send(bytes(STOP_BYTES))
         wire.close()
     facts = {"version": str(LINK_VERSION), "link": f"{MAJOR}.{MINOR}", "isa": ISA}

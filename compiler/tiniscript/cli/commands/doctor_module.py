@@ -61,14 +61,14 @@ def _print_finding(finding: Finding, language: str) -> int:
 
 
 def _speed_after_abort(steps: list[Step], language: str) -> str:
-    """Return what is known of the speed of a module whose set-up was broken off."""
+    """Return the known facts about the speed of a module after an interrupted set-up."""
     if not steps:
         return text("module_left_nothing", language)
     return text("module_left", language).format(baud=steps[0].value)
 
 
 def _wanted_settings(options: Namespace) -> WantedSettings:
-    """Return what the options ask for. Raises CommandError for what no module can have."""
+    """Return the settings in the options. Raises CommandError for those that no module supports."""
     name: str | None = options.name
     if options.id is not None:
         if name is not None:
@@ -160,7 +160,7 @@ class _SetUp:
         return text(key, self.language).format(**values)
 
     def _read_settings(self, module: Module) -> dict[str, str]:
-        """Return what the module says about what it keeps. Its PIN is not asked."""
+        """Return the stored settings of a module. Its PIN is not read."""
         dialect = module.dialect
         questions = {NAME: dialect.name_question, BAUD: dialect.baud_question}
         values = {

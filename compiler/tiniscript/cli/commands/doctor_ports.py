@@ -35,7 +35,7 @@ def run(options: Namespace, language: str) -> int:
     in_reach = EMPTY_REACH
     if options.ask and options.port is None:
         in_reach = find_robots(list(known_ports.remembered_ports().name_by_port), language)
-        for note in in_reach.notes:  # what could not be searched
+        for note in in_reach.notes:  # transports that could not be searched
             print(note, file=sys.stderr, flush=True)
     rows = list_rows(language, options.port, in_reach)
     if options.ask:

@@ -32,7 +32,7 @@ def run(options: Namespace, language: str) -> int:
             try:
                 connection.meet()
                 findings = SelfTest(connection, expectations, not options.yes).run()
-            except CommandError:  # nothing was started: no robot has answered
+            except CommandError:  # nothing was started, because no robot answered
                 raise
             except BaseException:  # Ctrl-C, too: the motors may turn
                 connection.stop()
@@ -55,14 +55,14 @@ def _without_robot(
     options: Namespace, port: str | None, expectations: Expectations, error: CommandError,
     language: str,
 ) -> list[Finding]:  # fmt: skip
-    """Return what the doctor finds where no robot has answered.
+    """Return the doctor's findings when no robot has answered.
 
     It may open the port that was to be opened, and no other one.
     """
     may_open = port is not None
     findings = diagnosis_of(options, port, expectations, language, may_open=may_open).findings
     wrong_findings = [finding for finding in findings if finding.is_wrong]
-    if not wrong_findings:  # it has come meanwhile
+    if not wrong_findings:  # the robot has answered by now
         return [sure_finding("plain", said=error.sentence(language))]
     return [finding._replace(part_name=finding.part or "answers") for finding in wrong_findings]
 
@@ -99,7 +99,7 @@ def _report(findings: list[Finding], name: str, port: str, language: str) -> lis
     hidden_names = [
         (item, report.shown_port(port)) for item in (port, printable_name(port)) if port
     ]
-    if name and name not in robots.names():  # a shipped one's says what it is, not whose
+    if name and name not in robots.names():  # the description of a shipped robot is not personal
         hidden_names.append((name, report.HIDDEN))
 
     def without_names(row: str) -> str:
@@ -113,6 +113,6 @@ def _report(findings: list[Finding], name: str, port: str, language: str) -> lis
         finding
         if CAUSES[finding.cause].part
         else finding._replace(values=report.values_of(finding))
-        for finding in findings  # what is of no part is of the computer and its port
+        for finding in findings  # findings without a part concern the computer and its port
     ]
     return [*head, "", *map(without_names, finding_lines(private_findings, language))]

@@ -15,7 +15,7 @@ from tiniscript.robots.nearness import nearest_to
 from tiniscript.robots.profile import Robot
 
 SKETCH_FOLDER = Path("vm_arduino")
-HEADER_PATH = Path("src/boards/kits/own.h")  # in it
+HEADER_PATH = Path("src/boards/kits/own.h")  # relative to the project
 
 
 def run(options: Namespace, language: str) -> int:
@@ -36,7 +36,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _compare(robot: Robot, language: str) -> None:
-    """Say which shipped robot is nearest to somebody's own."""
+    """Print the shipped robot most similar to the user's own."""
     nearest = nearest_to(robot)
     if nearest.is_same:
         say_aside("board_same_kit", language, kit=nearest.name)

@@ -126,7 +126,7 @@ def _completions(
 
 
 def _split_verb(words: list[str]) -> tuple[str, list[str]]:
-    """Return the verb, or `tsc` where there is none, and the words after it."""
+    """Return the verb, or `tsc` if there is none, and the words after it."""
     word_index = first_word("tsc", words)
     if word_index is None:
         return "tsc", words
@@ -135,7 +135,7 @@ def _split_verb(words: list[str]) -> tuple[str, list[str]]:
 
 
 def _values_of_kind(kind: Kind, language: str) -> list[tuple[str, str]]:
-    """Return the values of a kind that have names, and what they do where that is known."""
+    """Return the values of a kind that have names, and what they do if that is known."""
     if kind is VERB:
         return [(verb, _first_clause(summary_of(verb, "summary", language))) for verb in VERBS]
     if kind.name == "port":

@@ -40,7 +40,7 @@ from tiniscript.robots.profile import Robot
 
 PROMPT = "tini> "
 MORE_PROMPT = "....> "  # a block is open
-LEAVE, HELP_ME = "bye", "help"  # as the lexicon calls them
+LEAVE, HELP_ME = "bye", "help"  # the words of the lexicon
 
 
 def run(options: Namespace, language: str) -> int:
@@ -69,7 +69,9 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _is_runnable(line: str, state: LiveState, robot: Robot, options: Namespace) -> bool:
-    """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
+    """Return whether a line has no mistakes, perhaps for the connected robot; otherwise print
+    them.
+    """
     language: str = options.language
     if options.robot is None:
         compilation = add_robot_hints(
@@ -78,7 +80,7 @@ def _is_runnable(line: str, state: LiveState, robot: Robot, options: Namespace) 
         if has_words_of_other_robots(compilation.diagnostics):
             answering_robot = own_kit.find_answering_robot(options, robot, language)
             if answering_robot is not None:
-                return True  # it is compiled again for that robot
+                return True  # the program is compiled again for that robot
     return _compile(line, state, robot, language, True, SHORT_BYTES, warns=False) is not None
 
 
@@ -186,7 +188,7 @@ class Repl:
         if simulator is not None:
             simulator.start_drawing()
         notice = self.connection.wait_notice.with_sentence(self.connection.text("line_runs"))
-        on_wait = notice.poll if simulator is None else None  # its picture shows that
+        on_wait = notice.poll if simulator is None else None  # the simulator's picture shows that
         monitor = RunMonitor(self.connection, printer, catcher.hold_event, on_wait)
         if self.remote is not None:
             monitor.on_wait, monitor.wait_s = self.remote.poll, remote_keys.POLL_S
@@ -202,7 +204,9 @@ class Repl:
                 simulator.stop_drawing()
 
     def _breakpoints_of(self, program: HaltableProgram, is_last: bool) -> tuple[int, ...]:
-        """Return where a line halts. Raises CommandError where the only one has no such place."""
+        """Return the breakpoints of a line. Raises CommandError if its only one has no place to
+        halt.
+        """
         offsets: set[int] = set()
         for line in self.break_lines:
             try:
@@ -248,7 +252,9 @@ class Repl:
         return 0
 
     def _report_time_limit(self) -> bool:
-        """Whether a virtual robot's time limit has passed between two lines; prints so then."""
+        """Return whether a virtual robot's time limit has passed between two lines, and print
+        that.
+        """
         if self.connection.is_time_over:
             say("time_over", self.language)
             return True
@@ -263,7 +269,7 @@ class Repl:
         )
 
     def run_prompt(self) -> int:
-        """Let a person type lines, until they leave."""
+        """Execute the lines that a person types, until they leave."""
         self.meet_robot()
         self.connection.print_text("live_hello")
         with _history(self.state):
@@ -395,7 +401,7 @@ def _is_mark(event: ShownEvent) -> bool:
 @contextlib.contextmanager
 def _history(state: LiveState) -> Iterator[None]:
     """Arrow keys bring back earlier lines, of earlier sessions too; Tab completes words."""
-    if sys.platform == "win32":  # its console has a history of its own
+    if sys.platform == "win32":  # the Windows console has its own history
         yield
         return
     try:

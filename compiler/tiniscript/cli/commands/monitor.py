@@ -22,7 +22,7 @@ def run(options: Namespace, language: str) -> int:
     try:
         with connect(options, language) as connection:
             connection.meet()
-            if options.csv is not None:  # without a robot the old file stays
+            if options.csv is not None:  # if there is no robot, the old file stays
                 rows = Rows(options.csv, ROWS_HEADER)
             add_row = rows.add_row if rows is not None else None
             print(connection.text("watching"), file=sys.stderr)

@@ -43,7 +43,8 @@ class _Log:
         self.language = connection.language
         self.printer = EventPrinter(connection.language, is_json)
         self.bookkeeping = Bookkeeping()
-        self.search: PendingRequest[HelloReply] | None = None  # for a robot that was lost
+        # The search for a robot whose link was lost.
+        self.search: PendingRequest[HelloReply] | None = None
 
     def print_events(self) -> None:
         """Print events until the port is gone."""

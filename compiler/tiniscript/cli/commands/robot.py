@@ -35,8 +35,8 @@ from tiniscript.virtual.transports import Transports, can_have_terminal
 if TYPE_CHECKING:
     from tiniscript.virtual.announcement import Announcement
 
-MOST_MEMORY_BYTES = 1_000_000  # of a file that may be a robot's memory: that of an ESP32 has 16,640
-SAVE_INTERVAL_S = 1.0  # between two looks at what the robot keeps
+MOST_MEMORY_BYTES = 1_000_000  # most bytes of a robot's memory file; an ESP32's has 16,640
+SAVE_INTERVAL_S = 1.0  # interval between two looks at the robot's stored data
 QUIT_KEYS = "qQ\x04"
 
 
@@ -93,7 +93,7 @@ class _Stage:
         self.screen: Screen | None = None
         self.picture: WorldPicture | None = None
         self.announced_port = ""  # the port by which it is found
-        self.began_ms = 0  # when the program began whose lines are printed
+        self.began_ms = 0  # start time of the program whose lines are printed
         self._bookkeeping = Bookkeeping()
         self._saved_memory = simulator.robot.memory
         self._last_save_s = monotonic()
@@ -117,7 +117,7 @@ class _Stage:
         except KeyboardInterrupt:
             pass
         finally:
-            robot.switch_off()  # what it drives now counts, too
+            robot.switch_off()  # motors that still run belong to the output
             if self.screen is not None and self.picture is not None:
                 for event in robot.take_events():
                     self.picture.add_event(event)
@@ -245,7 +245,7 @@ def _pushes_ms(option: str, typed_times: str | None) -> list[int]:
 
 
 def _memory(name: str | None) -> bytes | None:
-    """Return what a file has for a robot's memory; a missing file is that of a new robot."""
+    """Return the memory of a robot from a file; a missing file means a new robot."""
     if name is None:
         return None
     if is_pipe(name):
@@ -267,5 +267,5 @@ def _set_name(robot: VirtualRobot, name: str) -> None:
     keys = KeyFile(serves_virtual_robots=True)
     computer = Computer(robot, robot.random_source.getrandbits(32), keys)
     computer.wait_for(computer.session.name(data))
-    robot.step(robot.now_ms + 500)  # it is saved
+    robot.step(robot.now_ms + 500)  # time for the robot to save
     robot.power_cycle()

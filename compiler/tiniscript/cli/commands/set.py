@@ -10,6 +10,6 @@ from tiniscript.cli.texts.verbs import settings
 
 
 def run(options: Namespace, language: str) -> int:
-    *known, last = settings()
-    settings_text = f"{', '.join(known)} {text('or', language)} {last}"
+    *known_names, last = settings()
+    settings_text = f"{', '.join(known_names)} {text('or', language)} {last}"
     raise CommandError(2, "set_what", known=settings_text)

@@ -43,7 +43,7 @@ def _claim(connection: Connection, key_kind: int) -> None:
 
 
 def _check_claimable(connection: Connection) -> None:
-    """Say what no button changes. Raises CommandError."""
+    """Print the reasons that a button cannot change. Raises CommandError."""
     device_info = connection.device_info
     if not device_info.values.features & OWNERS:
         raise CommandError(3, "no_owners", robot=connection.name)

@@ -69,23 +69,23 @@ class UndoReceipt:
         self.program = None if program_map is None else program_map.name
 
     def program_fields(self) -> dict[str, object]:
-        """Return which program is back, as data. `program`: its file, where that is known."""
+        """Return the restored program as data. `program`: its file, if known."""
         return {"checksum": f"{self.values.program:08x}", "program": self.program}
 
     def fields(self) -> dict[str, object]:
         """Return the receipt as data."""
-        saved = saved_name(self.values.saved)
+        saved_text = saved_name(self.values.saved)
         return {
             "event": "RECEIPT",
             "robot": self.connection.device_info.name,
             "port": self.connection.port,
             **self.program_fields(),
-            "saved": saved,
-            "slot": self.values.slot if saved == "STORED" else None,
+            "saved": saved_text,
+            "slot": self.values.slot if saved_text == "STORED" else None,
         }
 
     def line(self) -> str:
-        """Return which program is back, in one line."""
+        """Return the restored program as one line."""
         name = f" ({printable_name(self.program)})" if self.program is not None else ""
         checksum = f"{self.values.program:08x}"
         return self.connection.text("undone_line", checksum=checksum, name=name)

@@ -22,7 +22,7 @@ from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
 
 PORT = 7070
-UNUSED_ADDRESS = "198.51.100.1"  # an address of documents, which nobody has
+UNUSED_ADDRESS = "198.51.100.1"  # an address for documentation, which is never assigned
 
 
 class _Class(NamedTuple):
@@ -91,7 +91,7 @@ def _serve(
         pass
     finally:
         if thread.is_alive():
-            server.shutdown()  # of one that has not begun it would wait for ever
+            server.shutdown()  # shutting down a server that has not begun would wait forever
         with show_wait("studio_stops", language):
             unconfirmed_ports = hosting.close()
         for silent_port in unconfirmed_ports:
@@ -123,7 +123,7 @@ def _server(port: int, host: str, hosting: Hosting, classroom: Classroom | None)
 
 
 def _address() -> str:
-    """Return this computer's address in the network of the room. Asks nobody for it."""
+    """Return this computer's address in the local network, without asking another computer."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as connection:
         try:
             connection.connect((UNUSED_ADDRESS, 9))  # chooses a way, and sends nothing

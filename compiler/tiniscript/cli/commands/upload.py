@@ -58,7 +58,7 @@ def run(options: Namespace, language: str) -> int:
     with Connection(options, robot, language) as connection:
         if connection.simulator is not None and options.detach:
             raise CommandError(2, "virtual_and_detach")
-        if ready_program.image.start == "PING":  # a program that asks who is there
+        if ready_program.image.start == "PING":  # a program that reads PING
             from tiniscript.cli.robot.description import introduce
 
             return introduce(connection, options.json)
@@ -83,7 +83,7 @@ def run(options: Namespace, language: str) -> int:
 def _prepare(
     program_input: inputs.Input, robot: Robot, options: Namespace, may_choose_robot: bool
 ) -> images.ReadyProgram | None:  # fmt: skip
-    """Return the program, or None where its mistakes have just been printed.
+    """Return the program, or None if its mistakes have just been printed.
 
     One with words of another robot is compiled for the robot that answers, if there is one.
     """
@@ -112,13 +112,14 @@ def _upload(
     connection.wait_notice.before_print = progress.end
 
     def draw_progress(done_bytes: int) -> None:
-        if done_bytes and progress.draw(done_bytes):  # before that, it is what is waited for
+        # Until then, the progress line shows what the robot is waiting for.
+        if done_bytes and progress.draw(done_bytes):
             connection.wait_notice.note_other_output()
 
     tells_readings = options.record is not None and _ask_for_readings(connection)
     try:
         receipt_reply = send_program(connection, ready_program, options, draw_progress)
-        sent_s = monotonic()  # before anything else is loaded or told
+        sent_s = monotonic()  # measured before anything else is loaded or printed
     finally:
         progress.end()
     printer = printer_of(connection, options.json, ready_program.program_map, receipt_reply.program)
@@ -146,18 +147,18 @@ def _upload(
                 _receipt_line(connection, ready_program, name, receipt_reply, options), flush=True
             )
         connection.wait_notice.note_other_output()
-        images.keep_map(ready_program)  # only now, so that the robot starts earlier
+        images.keep_map(ready_program)  # written last, so that the robot starts sooner
         return follow_run(connection, ready_program, saving, options, printer)
     except KeyboardInterrupt:
         exit_code = stop_and_say(connection)
         try:
             if recorder is not None:
                 recorder.end_recording("STOPPED")
-            saving.wait()  # short, as the motors stand now
+            saving.wait()  # a short wait, because the motors stand now
         except CommandError as error:
             print(error.sentence(language), file=sys.stderr)
         except KeyboardInterrupt:
-            pass  # a second one ends this wait: the stop has been told
+            pass  # another one ends this wait: the stop has been reported
         return exit_code
     except OSError:  # tsc's output has no reader any more
         if connection.stop_unseen():
@@ -170,12 +171,14 @@ def _upload(
     finally:
         if recorder is not None:
             recorder.close()
-            if recorder.untold:
-                say_aside("record_untold", language, sensors=", ".join(recorder.untold))
+            if recorder.unreadable_sensors:
+                say_aside("record_untold", language, sensors=", ".join(recorder.unreadable_sensors))
 
 
 def _ask_for_readings(connection: Connection) -> bool:
-    """Have the robot tell what its program reads; return whether it does. If not, that is said."""
+    """Ask the robot for its program's readings; return whether it sends them. If not, print
+    that.
+    """
     if not connection.device_info.values.features & READINGS:
         say_aside("record_no_readings", connection.language)
         return False
@@ -198,7 +201,7 @@ def _receipt_line(
     sentence = connection.text(how_key, start=ready_program.image.start)
     saved_state = saved_name(receipt_reply.saved)
     if not options.verbose:
-        if saved_state != "SAVING":  # else it is told once it is saved
+        if saved_state != "SAVING":  # while it is SAVING, the state is printed later
             key = "saved" if saved_state == "STORED" else f"saved_{saved_state}"
             sentence = f"{connection.text(key)}   {sentence}"
         return connection.text("receipt", program=name, how=sentence)

@@ -1,4 +1,6 @@
-"""The values that `tsc live` has a robot show only to keep its variables: nobody else is told."""
+"""The values that `tsc live` makes a robot show only to keep its variables, which are not
+printed.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,7 @@ class Bookkeeping:
         return self.is_on
 
     def filter_trace_event(self, name: str, values: tuple[int, ...]) -> bool:
-        """The same for an action in the trace of a virtual robot."""
+        """Return whether to print an action in the trace of a virtual robot."""
         if name in ("START", "DONE", "FAULT", "STOP", "OFF"):
             self.is_on = False
         elif name == "SHOW" and values == (BOOKKEEPING_MARK,):

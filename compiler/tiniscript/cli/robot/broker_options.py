@@ -1,4 +1,4 @@
-"""What the options of a command say of an MQTT broker: where it is, which class, who signs in."""
+"""The MQTT broker of a command's options: its address, the class, and the user."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tiniscript.link.messages import NETWORK_BYTES, PASSWORD_BYTES
 from tiniscript.link.wifi import is_class_name
 
 PLAIN_PORT, TLS_PORT = 1883, 8883
-DEFAULT_GROUP = "class"  # of who names none
+DEFAULT_GROUP = "class"  # the group of everyone who names none
 
 
 class BrokerAddress(NamedTuple):
@@ -27,7 +27,7 @@ class BrokerAddress(NamedTuple):
 
 
 def broker_address(options: Namespace, is_tls: bool = False) -> BrokerAddress:
-    """Return where the broker is. Raises CommandError."""
+    """Return the address of the broker. Raises CommandError."""
     match = re.fullmatch(r"([A-Za-z0-9][A-Za-z0-9._-]{0,252})(?::([0-9]{1,5}))?", options.broker)
     port = int(match[2] or (TLS_PORT if is_tls else PLAIN_PORT)) if match else 0
     if match is None or not 0 < port < 1 << 16:
@@ -55,7 +55,7 @@ def ask_user(options: Namespace, language: str) -> tuple[bytes, bytes]:
 
 
 def read_certificate(options: Namespace) -> bytes | None:
-    """Return what the file with a certificate has; None: there is no such option.
+    """Return the content of the certificate file; None without this option.
 
     Raises CommandError.
     """

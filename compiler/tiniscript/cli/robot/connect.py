@@ -131,7 +131,7 @@ class Connection(Client):
         one is no stop of that one's program."""
         if not self.holds_for_others:
             return
-        self.drives = False  # nothing of its own
+        self.drives = False  # whether a run of its own moves the robot
         with suppress(OSError):
             if not self.is_one_of_many:
                 say_aside("holds_for_others", self.language, port=printable_name(self.port))
@@ -210,7 +210,9 @@ class Connection(Client):
 
     @property
     def _needs_a_reader(self) -> bool:
-        """Whether the robot is stopped when nobody reads the output; a fleet looks for itself."""
+        """Return whether the robot is stopped when the output loses its reader; a fleet checks that
+        itself.
+        """
         is_own = self.drives and not self.is_one_of_many and not self.drives_another
         return is_own and not self._is_stopped_unseen
 
@@ -220,7 +222,7 @@ class Connection(Client):
 
     @contextmanager
     def _show_wait(self, key: str = "waits_for_robot") -> Iterator[None]:
-        """Say what takes so long, once; a fleet has a table that does."""
+        """Print the reason for a long wait, once; a fleet has a table for that."""
         is_robot = key == "waits_for_robot"
         if self.is_one_of_many or (is_robot and self.wait_notice.is_told):
             yield
@@ -233,7 +235,7 @@ class Connection(Client):
                     self.wait_notice.note_told()
 
     def _tell_stale_key(self, device_info: DeviceInfo) -> None:
-        """Say what to do where the robot has refused a key of this computer."""
+        """Print the remedy if the robot has refused a key of this computer."""
         if device_info.values.features & (OWNED | YOURS) != OWNED:
             return
         from tiniscript.link.keys import KeyFile
@@ -264,16 +266,16 @@ class Connection(Client):
     def request_or_raise(
         self, begin: Callable[[Requester], PendingRequest[T]], key: str, *statuses: str
     ) -> Reply[T]:
-        """Make a request, of which these refusals have the sentence `key`. Raises CommandError."""
+        """Make a request; these refusals have the sentence `key`. Raises CommandError."""
         reply = self.request(begin, [STATUSES[status] for status in statuses])
         if reply.status:
             raise CommandError(3, key, robot=self.name)
         return reply
 
     def watch(self, end_s: float | None) -> Iterator[tuple[int, Event] | None]:
-        """Yield what happens until `end_s`, of whoever drives; None now and then.
+        """Yield the events of any driver until `end_s`, and None now and then.
 
-        Raises CommandError where the robot is lost.
+        Raises CommandError if the robot is lost.
         """
         bookkeeping = Bookkeeping()
         while end_s is None or monotonic() < end_s:
@@ -331,7 +333,7 @@ def name_of(info: DeviceInfo, language: str) -> str:
 
 @contextmanager
 def convert_robot_error() -> Iterator[None]:
-    """Have a RobotError say what the command says of it."""
+    """Convert a RobotError into an error of the command."""
     try:
         yield
     except TiniScriptError as error:
@@ -430,7 +432,7 @@ def describe_virtual_robot(running_robot: directory.RunningRobot, language: str)
 def _ask_port(
     language: str, can_start_virtual: bool, virtual_robots: list[directory.RunningRobot]
 ) -> str:
-    """Let the person choose a port, or one of the virtual robots."""
+    """Ask the person for a port, or for one of the virtual robots."""
     name_by_port = known_ports.remembered_ports().name_by_port
     from tiniscript.link import ports
 

@@ -24,11 +24,11 @@ MOTOR_LINES = {"left": f"M({TURNING_POWER}, 0)", "right": f"M(0, {TURNING_POWER}
 
 
 class NoPerson(Exception):
-    """Nobody answers."""
+    """Raised if nobody answers."""
 
 
 class WheelTurn(NamedTuple):
-    """What a person saw of a motor: which wheel turned, if any, and which way."""
+    """A person's answer about a motor: the wheel that turned, if any, and its direction."""
 
     wheel: str
     is_forward: bool
@@ -71,7 +71,7 @@ class Conversation:
             say_aside("ask_number", self.language, high=choice_count)
 
     def run_line(self, line: str) -> list[int]:
-        """Let the robot do a line now; return what it showed. Raises CommandError."""
+        """Execute a line on the robot now; return the values shown. Raises CommandError."""
         values: list[int] = []
         messages: list[str] = []
 
@@ -88,7 +88,7 @@ class Conversation:
         return values
 
     def ask_what_was_seen(self, line: str, key: str, repeat_choice: int, **values: str) -> int:
-        """Let the robot do a line, and ask what was seen; `repeat_choice` shows it once more."""
+        """Execute a line on the robot, and ask what was seen; `repeat_choice` executes it again."""
         choice = repeat_choice
         while choice == repeat_choice:
             if not self.is_asking:
@@ -111,7 +111,7 @@ def trim_from_answers(old_trim: Trim, left: WheelTurn, right: WheelTurn) -> Trim
     """Return the trim with which each wheel turns forward for its side.
 
     With `old_trim`, the motor of the left side turned the one wheel, that of the right side the
-    other. None where both turned the same, or one turned none.
+    other. None if both turned the same, or one turned none.
     """
     if {left.wheel, right.wheel} != {"left", "right"}:
         return None

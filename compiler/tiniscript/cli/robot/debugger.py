@@ -42,7 +42,7 @@ class HaltableProgram(NamedTuple):
     first_line: int = 1
 
     def has_location(self, location: MapLocation) -> bool:
-        """Whether a place is one of the text that is seen; what comes from nowhere has no width."""
+        """Return whether a location is in the visible text; generated code has no width."""
         return location.line >= self.first_line and location[1:3] != location[3:]
 
     def location_at(self, statement_offsets: Sequence[int], offset: int) -> MapLocation | None:
@@ -90,7 +90,7 @@ class Debugger:
         self, connection: Connection, printer: EventPrinter, program: HaltableProgram,
         first_breakpoints: Sequence[int] | None = None,
     ) -> None:  # fmt: skip
-        """What began halted gets its places where it did."""
+        """Start the debugger; a program that began halted gets its breakpoints at its start."""
         self.connection = connection
         self.printer = printer
         self.program = program
@@ -107,12 +107,12 @@ class Debugger:
             self.keys.__enter__()
         return self
 
-    def __exit__(self, *raised: object) -> None:
+    def __exit__(self, *signal_arguments: object) -> None:
         if self.has_keys:
-            self.keys.__exit__(*raised)
+            self.keys.__exit__(*signal_arguments)
 
     def hold_event(self, event: Event) -> bool:
-        """Take an event; return whether it is told."""
+        """Process an event; return whether to print it."""
         if event.name != "HALTED":
             return False
         if self.first_breakpoints is not None:
@@ -125,7 +125,8 @@ class Debugger:
         is_inside = (
             location is None or statement_of(self.statement_offsets, location.offset) != event.at
         )
-        if self.is_stepping and is_inside:  # of one instruction of the text, or not of what is seen
+        # The step covers one instruction of the text, or one that is not shown.
+        if self.is_stepping and is_inside:
             self._resume(RESUME_STEP)
             return True
         self._print_halt(event.at, event.task, location)
@@ -191,7 +192,7 @@ class Debugger:
             values += chunk
         yes_no_flags = self.map.yes_no_flags or [False] * len(
             names
-        )  # of a map of an earlier version
+        )  # the map may be of an earlier version
         return list(zip(names, values, yes_no_flags, strict=False))
 
     def _tasks(self, halted_task: int) -> list[tuple[int, int]]:

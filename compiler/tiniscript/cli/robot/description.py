@@ -1,4 +1,4 @@
-"""What a robot says about itself, as data, as lines and as a line; and how soon it answers."""
+"""A robot's description of itself, as data, lines and one line, and its response times."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Description(NamedTuple):
     language: str
 
     def fields(self) -> dict[str, object]:
-        """Return it as data."""
+        """Return the description as data."""
         status, hello = self.status, self.device_info.values
         has_program = not self._no_program_key()
         fault = None
@@ -90,7 +90,7 @@ class Description(NamedTuple):
         return f"{self._program()}; {state}; {owner}"
 
     def text(self) -> str:
-        """Return it as lines."""
+        """Return the description as lines."""
         format_text, status, fields = self._text, self.status, self.fields()
         kit = f"{fields['kit']} ({fields['robot']})" if fields["robot"] else fields["kit"]
         state, reset = (
@@ -169,7 +169,7 @@ def describe_robot(connection: Connection) -> Description:
     status = connection.request(lambda session: session.status()).values
     owner = ownership_of(connection.device_info)
     trim: Trim | None = None
-    if owner != OWNED_BY_OTHER:  # it would count as a wrong key
+    if owner != OWNED_BY_OTHER:  # another owner's key would count as a wrong key
         with suppress(CommandError):
             trim = trim_from_reply(connection.request(lambda session: session.trim()).values)
     return Description(
@@ -207,7 +207,7 @@ def describe_and_measure(connection: Connection, member: Member) -> Result:
 
 
 def _measure_trips(connection: Connection, count: int) -> list[float]:
-    """Return how many milliseconds the answers took that came at once; none: CommandError."""
+    """Return the times in ms of immediate answers. Raises CommandError if there are none."""
     trips_ms = trips_of(SharedRobot(connection.connection, connection.wait), count)
     if not trips_ms:
         raise connection.error_for_reply(Reply(LOST))

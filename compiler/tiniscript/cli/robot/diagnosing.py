@@ -1,6 +1,6 @@
 """The doctor as a command asks it: what it gets from outside, and of a robot that answers.
 
-`tsc doctor` asks it, its self-test and its module's set-up where nothing answers, and the fleet.
+`tsc doctor` asks it, its self-test and its module's set-up if nothing answers, and the fleet.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def diagnosis_of(
     options: Namespace, port: str | None, expectations: Expectations, language: str,
     watch_ms: int = 0, may_open: bool = False,
 ) -> Diagnosis:  # fmt: skip
-    """Let the doctor look at a port, or at the one that there is; say what it does meanwhile.
+    """Diagnose a port, or the only port, and print the progress.
 
     `may_open`: nobody has to be asked before the port of a cable is opened.
     """
@@ -80,7 +80,7 @@ def examination_of(
     connection: Connection, expectations: Expectations,
     on_step: Callable[[str], None] = lambda what: None,
 ) -> tuple[list[Finding], RobotAnswers | None]:  # fmt: skip
-    """Let the doctor examine a robot that has answered; return what it found and heard."""
+    """Examine a robot that has answered; return the findings and its answers."""
     robot = SharedRobot(connection.connection, connection.wait)
     reply = robot.hello()
     if reply is None:

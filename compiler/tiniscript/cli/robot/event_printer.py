@@ -75,9 +75,10 @@ class EventPrinter:
         self.shows = ShowFinder(
             {} if shown_map is None or checksum is None else {checksum: shown_map}
         )
-        self.has_lines = whole_map is None  # whose numbers a person knows
+        self.has_lines = whole_map is None  # whether a person knows the line numbers
         self.add_row = add_row
-        self.readings: Callable[[ReadingEvent], None] | None = None  # gets those; nobody else does
+        # Printed only for those who ask for it.
+        self.readings: Callable[[ReadingEvent], None] | None = None
         self.print_line = print_line or _print_line
         self.print_error = print_error or _print_error
         self.robot_fields = robot_fields or {}
@@ -113,7 +114,7 @@ class EventPrinter:
             )
 
     def name_of(self, event: ShownEvent) -> str:
-        """Return the name of a value, by which it is told from the values of all other SHOWs."""
+        """Return the name of a value, which distinguishes it from those of all other SHOWs."""
         show = self.shows.show_of(event)
         if show is None:
             return ""

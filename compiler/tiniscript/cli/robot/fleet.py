@@ -69,11 +69,11 @@ def run_together(options: Namespace, robot: Robot, language: str, work: Work) ->
                 fleet.print_until_done(table)
         else:
             fleet.print_until_done(None)
-    except KeyboardInterrupt:  # while something is printed, too
+    except KeyboardInterrupt:  # an interrupt may come while printing
         fleet.interrupt_robots()
         streams.drop_unread_output()
         fleet.stop_robots()
-    except OSError:  # nobody reads, or can read, the output
+    except OSError:  # nobody reads the output, or it cannot be written
         if options.verb == "upload" and not options.detach:
             fleet.stop_robots()
         raise
@@ -247,7 +247,7 @@ class Fleet:
                 table.print_line(line)
 
     def _give_up(self, strangers: list[Member]) -> None:
-        """Give up on ports on which no robot has ever answered."""
+        """Give up the ports on which no robot has ever answered."""
         sentence = text("port_quiet", self.language)
         for member in strangers:
             member.result = Result(False, sentence, {}, is_absent=True)
@@ -277,7 +277,7 @@ class Fleet:
 
 
 def _is_stranger(member: Member) -> bool:
-    """Whether the user has not named the port and no robot has ever answered on it."""
+    """Return whether the port was not named by the user and no robot has ever answered on it."""
     connection = member.connection
     has_answered = connection is not None and connection.connection.robot is not None
     return not (has_answered or member.target.is_named or member.target.is_known)

@@ -26,7 +26,7 @@ def upload_to_many(
 ) -> int:  # fmt: skip
     """Send a program to many robots, keep its source map; return the exit code."""
     images.keep_map(ready_program)
-    is_ping = ready_program.image.start == "PING"  # a program that asks who is there
+    is_ping = ready_program.image.start == "PING"  # a program that reads PING
     work = describe_and_measure if is_ping else partial(_upload, options, ready_program, name)
     return run_together(options, robot, language, work)
 
@@ -102,5 +102,5 @@ class MemberPrinter(EventPrinter):
             super().print_values(
                 since_ms, name, shown_value, sentence, cell, is_bad=is_bad, **fields
             )
-        elif name == "SHOW" and not sys.stderr.isatty():  # there is no table
+        elif name == "SHOW" and not sys.stderr.isatty():  # without a table, values are printed
             self.print_line(f"{self.member.name} ({self.member.target.port}): {line}")

@@ -43,7 +43,7 @@ class ReachableRobots(NamedTuple):
 def find_robots(known_ports: list[str], language: str) -> ReachableRobots:
     """Search for some seconds. A robot that is known by a port of `known_ports` keeps it."""
     reach = ReachableRobots({}, [], [], [])
-    reasons = set()  # where both packages are missing, one note says it
+    reasons = set()  # one note covers two missing packages
     with ThreadPoolExecutor(2) as pool:
         searches = [(kind, pool.submit(search, known_ports, language))
                     for kind, search in ((BLE, _find_by_radio), (TCP, _find_by_name))]  # fmt: skip
@@ -124,7 +124,7 @@ def ports_in_use(is_virtual: bool = False) -> list[str]:
         shared_ports = [port for port in port_names if canonical_port(port) in server_ports]
         robot_ports.append(
             shared_ports[0] if shared_ports else robot.address
-        )  # one robot, one port
+        )  # each robot has one port
     return _unique_ports(robot_ports)
 
 

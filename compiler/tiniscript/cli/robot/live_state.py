@@ -58,7 +58,7 @@ def header(text: str) -> str:
 
 def missing_ends(text: str) -> str:
     """Return the ends that are missing of the blocks of a text, `END_LOOP; END_DEF`; the text may
-    go on there. Nothing where none is open, or an end is one of no block."""
+    go on there. Nothing if none is open, or an end is one of no block."""
     ends: list[str] = []
     for token in scan(text).tokens:
         word = ALIASES.get(token.text, token.text) if token.kind is WORD else ""
@@ -152,7 +152,7 @@ def _assigned_variables(compilation: Compilation, start: int) -> tuple[str, ...]
 
 
 def _map_of(compilation: Compilation, end: int) -> SourceMap:
-    """Return the map of the text up to `end`; what is after it comes from nowhere."""
+    """Return the map of the text up to `end`; later code has no place."""
     empty_span = Span(end, end)
     locations = tuple(
         location if location.span.end <= end else location._replace(span=empty_span)

@@ -33,7 +33,7 @@ class Target(NamedTuple):
 
 
 def select_port(options: Namespace) -> bool:
-    """Whether the options name many robots; if not, `port` becomes the only port."""
+    """Return whether the options select many robots; otherwise set `port` to the only port."""
     options.port = options.ports[0] if options.ports else None
     if options.virtual and (options.all or options.ports):
         raise CommandError(2, "virtual_and_port")
@@ -83,12 +83,12 @@ class Result(NamedTuple):
 
 
 class Member:
-    """One robot of many: its thread writes, all others read."""
+    """One robot of a fleet: its own thread writes it, the others read it."""
 
     def __init__(self, target: Target, lines: deque[str]) -> None:
         self.target = target
-        self.lines = lines  # to be printed by the one thread that prints for all
-        self.name = target.name  # its own name once it has answered
+        self.lines = lines  # lines for the printing thread
+        self.name = target.name  # replaced by the robot's own name once it has answered
         self.state: tuple[str, dict[str, object]] = ("crew_opening", {})
         self.value = ""  # the last that it has shown
         self.result: Result | None = None
@@ -96,7 +96,7 @@ class Member:
         self.bug: Exception | None = None
 
     def set_state(self, key: str, **values: object) -> None:
-        """Say what happens now."""
+        """Set the current state."""
         self.state = key, values
 
     def queue_line(self, line: str) -> None:

@@ -1,4 +1,4 @@
-"""The ports of this computer, as data and as lines: what is known of each without asking there."""
+"""The ports of this computer, as data and as lines, with facts known without asking there."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tiniscript.link import known_ports, ports
 from tiniscript.link.port_names import canonical_port, exists
 from tiniscript.virtual import directory
 
-EMPTY_REACH = ReachableRobots({}, [], [], [])  # nothing was searched
+EMPTY_REACH = ReachableRobots({}, [], [], [])  # result of no search
 
 Row = dict[str, object]  # a port as data
 

@@ -53,7 +53,7 @@ def send_program(
     )
     if reply.status:
         raise _upload_error(connection, reply, ready_program)
-    if breakpoints:  # it starts with them
+    if breakpoints:  # the program starts with the breakpoints set
         connection.request(lambda session: session.break_at(breakpoints))
         return connection.request(lambda session: session.start()).values
     return reply.values
@@ -89,7 +89,7 @@ def _follow_halts(
     saving: Saving,
     printer: EventPrinter,
 ) -> int:
-    """The same for a program with breakpoints."""
+    """Follow a program with breakpoints."""
     with Debugger(connection, printer, _haltable_program(ready_program)) as debugger:
 
         def on_wait() -> None:
@@ -106,14 +106,14 @@ def _haltable_program(ready_program: images.ReadyProgram) -> HaltableProgram:
 
 
 def is_running(ready_program: images.ReadyProgram, options: Namespace) -> bool:
-    """Whether a program runs once it has arrived."""
+    """Return whether a program starts once it is uploaded."""
     return ready_program.image.start == "SI" and not options.no_run
 
 
 def has_button(
     connection: Connection, ready_program: images.ReadyProgram, options: Namespace
 ) -> bool:
-    """Whether the program waits for the button of this command's own virtual robot."""
+    """Return whether the program waits for the button of this command's own virtual robot."""
     return (
         connection.simulator is not None
         and ready_program.image.start == "SB"
@@ -168,7 +168,7 @@ def receipt_fields(
 def follow_line(
     connection: Connection, line: str, printer: EventPrinter, hold: Callable[[Event], bool]
 ) -> int:
-    """Let the robot do a right line now, and follow it; return the exit code.
+    """Execute a correct line on the robot, and follow it; return the exit code.
 
     Raises CommandError.
     """
@@ -183,7 +183,7 @@ QUIT_KEYS = "qQ\x04"
 
 
 def has_keys(connection: Connection) -> bool:
-    """Whether the robot is drawn on a terminal with keys."""
+    """Return whether the robot is drawn on a terminal with keys."""
     simulator = connection.simulator
     return simulator is not None and simulator.is_drawn and sys.stdin.isatty() and is_in_front()
 
@@ -229,5 +229,5 @@ def _check_event(connection: Connection, event: Event, program: int) -> None:
 
 
 def _is_push(event: Event) -> bool:
-    """Whether the button has stopped the program."""
+    """Return whether the button has stopped the program."""
     return event.name == "STOPPED" and cause_name(event.cause) == "BUTTON"

@@ -43,7 +43,7 @@ def refuse(options: Namespace, names: tuple[str, ...], key: str) -> None:
 
 
 def require_known_robot(robot: Robot) -> None:
-    """Raise CommandError where nobody else could play a run of this robot."""
+    """Raise CommandError if nobody else could play a run of this robot."""
     if robot.name not in robots.names() or robots.load(robot.name).kit != robot.kit:
         raise CommandError(2, "record_robot", known=", ".join(robots.names()))
 
@@ -106,14 +106,14 @@ def play(program_input: Input, options: Namespace, language: str) -> int:
         raise CommandError(2, "play_only", option="--world")
     world = run.recording.world or world_of(options, language)
     with convert_refusal(world.name, language):
-        played = PlayedRun(run, world)
-    while not played.is_over:
-        played.go(STEP_MS)
-    started_ms = played.robot.started_ms or 0
-    _print(played.rows(), started_ms)
-    played.close()
+        played_run = PlayedRun(run, world)
+    while not played_run.is_over:
+        played_run.go(STEP_MS)
+    started_ms = played_run.robot.started_ms or 0
+    _print(played_run.rows(), started_ms)
+    played_run.close()
     sys.stdout.flush()
-    parting = played.divergence or Divergence("empty")
+    parting = played_run.divergence or Divergence("empty")
     print(
         sentence(parting, started_ms if run.recording.is_virtual else 0, language), file=sys.stderr
     )
@@ -134,7 +134,7 @@ def _print(rows: list[Row], started_ms: int) -> None:
 
 
 def sentence(parting: Divergence, started_ms: int, language: str) -> str:
-    """Return what a person reads of a comparison; the rows count from `started_ms`."""
+    """Return the sentence about a comparison; times count from `started_ms`."""
     place = text("replay_line" if parting.line else "replay_end", language)
     return text(f"replay_{parting.what}", language).format(
         count=parting.agreed,

@@ -64,7 +64,7 @@ class Rows:
             raise self._failure(error) from None
 
     def close(self) -> None:
-        with suppress(OSError):  # a write failure was told already
+        with suppress(OSError):  # a write failure was printed already
             self._file.close()
 
     def _failure(self, error: Exception) -> CommandError:
@@ -79,7 +79,7 @@ class Recorder:
 
     `head` is the first line. A virtual robot has a clock of its own: `robot_ms` says when it did an
     event, since the run began. Until there is an event, the old file stays. Raises CommandError
-    where it cannot be written.
+    if it cannot be written.
     """
 
     def __init__(
@@ -123,8 +123,8 @@ class Recorder:
                 return self._add_end_row(row.ms)
 
     @property
-    def untold(self) -> list[str]:
-        """The sensors of which the robot could not tell all readings."""
+    def unreadable_sensors(self) -> list[str]:
+        """The sensors whose readings the robot could not send completely."""
         return self._readings.incomplete_names
 
     def end_recording(self, event: str) -> None:

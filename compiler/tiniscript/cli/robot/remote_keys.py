@@ -19,14 +19,16 @@ from tiniscript.link.payloads import EmptyReply
 from tiniscript.link.remote import NOTHING_PRESSED, RemoteState, has_remote, remote_state_of
 from tiniscript.link.requests import OK, Reply
 
-FIRST_HOLD_S, REPEAT_HOLD_S = 0.7, 0.15  # for which a press holds a key
-SEND_INTERVAL_S = 0.1  # what is held is said so often: after half a second of silence nothing is
+# How long a press holds a key, at first and when it repeats.
+FIRST_HOLD_S, REPEAT_HOLD_S = 0.7, 0.15
+# Interval at which held keys are sent; after half a second of silence the robot releases them.
+SEND_INTERVAL_S = 0.1
 POLL_S = 0.02  # between two looks at the keys
 _QUIT_KEYS = ("q", "Q", "\x04")
 _ARROWS = {"A": "UP", "B": "DOWN", "C": "RIGHT", "D": "LEFT"}
 _WINDOWS_ARROWS = {"H": "UP", "P": "DOWN", "M": "RIGHT", "K": "LEFT"}
 _LETTERS = ("A", "B")
-_KEY_START = r"\x1b(?:[\[O][0-9;]*)?"  # a key of several characters may come in two pieces
+_KEY_START = r"\x1b(?:[\[O][0-9;]*)?"  # a key of several characters may arrive in two pieces
 _WHOLE_KEY = re.compile(r"\x1b[\[O][0-9;]*([A-Za-z~])|[\0\xe0](.)|(.)", re.DOTALL)
 _UNFINISHED_KEY = re.compile(_KEY_START + (r"\Z|[\0\xe0]\Z" if sys.platform == "win32" else r"\Z"))
 
@@ -70,7 +72,7 @@ class HeldKeys:
 
 
 class TerminalRemote:
-    """Says what is held to the robot, while somebody looks. Raises KeyboardInterrupt for q."""
+    """Sends the held keys to the robot, while somebody watches. Raises KeyboardInterrupt for q."""
 
     def __init__(self, connection: Connection) -> None:
         self.has_quit = False
@@ -86,11 +88,11 @@ class TerminalRemote:
         self._keys.__enter__()
         return self
 
-    def __exit__(self, *raised: object) -> None:
-        self._keys.__exit__(*raised)
+    def __exit__(self, *signal_arguments: object) -> None:
+        self._keys.__exit__(*signal_arguments)
 
     def poll(self) -> None:
-        """Pass on what is held. Raises CommandError where the robot takes no keys from here."""
+        """Pass on held keys. Raises CommandError if the robot accepts no keys from here."""
         now_s = monotonic()
         if self._held_keys.press_typed(self._keys.read_keys(), now_s):
             self.has_quit = True

@@ -21,14 +21,14 @@ from tiniscript.link.payloads import WifiReply
 from tiniscript.link.port_names import is_at_broker
 from tiniscript.link.wifi import STATES, BrokerSettings, Tls, address
 
-READY_TIMEOUT_S = 20  # until the robot is in the network, or at the broker
+READY_TIMEOUT_S = 20  # time for the robot to join the network, or to reach the broker
 LOOK_INTERVAL_S = 0.5
 UNSTARTED_STATES = ("OFF", "RESTS")  # states of the robot's WiFi
 _PEM = r"-----BEGIN CERTIFICATE-----.+?-----END CERTIFICATE-----"
 
 
 def broker_settings(options: Namespace, language: str) -> BrokerSettings:
-    """Return what the options say; the password is asked for. Raises CommandError."""
+    """Return the broker settings of the options; the password is asked for. Raises CommandError."""
     is_tls = bool(options.tls)
     broker_address, group_name = (
         broker_options.broker_address(options, is_tls),
@@ -49,7 +49,7 @@ def broker_settings(options: Namespace, language: str) -> BrokerSettings:
 
 
 def _resolve(broker_address: broker_options.BrokerAddress) -> IPv4Address:
-    """Return where the broker is now. Raises CommandError."""
+    """Return the broker's current address. Raises CommandError."""
     try:
         addresses = socket.getaddrinfo(
             broker_address.host, broker_address.port, socket.AF_INET, socket.SOCK_STREAM
@@ -92,7 +92,7 @@ def _certificate(data: bytes) -> bytes | None:
 
 
 def use_broker(connection: Connection, broker: BrokerSettings | None, options: Namespace) -> None:
-    """Give the robot the broker of the options, or none, and say whether it is there.
+    """Configure the robot's broker, or none, and print whether the robot is there.
 
     Raises CommandError.
     """
@@ -115,7 +115,7 @@ def use_broker(connection: Connection, broker: BrokerSettings | None, options: N
 def await_state(
     request_state: Callable[[], WifiReply], is_over: Callable[[WifiReply], bool]
 ) -> WifiReply:
-    """Return what the robot tells when something has come of it, or after READY_S."""
+    """Return the robot's state once it has settled, or after READY_S."""
     end_s = time.monotonic() + READY_TIMEOUT_S
     while not is_over(wifi_reply := request_state()) and time.monotonic() < end_s:
         time.sleep(LOOK_INTERVAL_S)
@@ -132,7 +132,7 @@ def tell_broker_if_any(connection: Connection) -> None:
 def tell_wifi_state(
     connection: Connection, wifi_reply: WifiReply, name: str = "", command: str = ""
 ) -> None:
-    """Say where the robot's broker is: under its name, where that is known.
+    """Say where the robot's broker is: under its name, if that is known.
 
     `command` reaches all robots of the class: a robot tells neither port nor certificate.
     """

@@ -49,7 +49,7 @@ class RunMonitor:
     def follow(self, run: int) -> int:
         """Wait for the end of a run; return the exit code.
 
-        Raises CommandError where the link ends.
+        Raises CommandError if the link ends.
         """
         follower = Follower(run)
         while True:
@@ -108,7 +108,8 @@ def stop_and_say(connection: Connection) -> int:
 class Saving:
     """Waits until the robot has saved the uploaded program, and prints that once."""
 
-    KEY_BY_REASON: ClassVar[dict[str, str]] = {}  # in place of what is said for a reason
+    # Message keys that replace the usual ones, by reason.
+    KEY_BY_REASON: ClassVar[dict[str, str]] = {}
 
     def __init__(
         self, connection: Connection, printer: EventPrinter, receipt: ReceiptReply
@@ -135,7 +136,7 @@ class Saving:
             self._status_request = self.connection.begin_request(Requester.status)
 
     def wait(self) -> None:
-        """Wait until it is saved. Raises CommandError where it is not."""
+        """Wait until it is saved. Raises CommandError if it is not."""
         if self._progress.is_over:
             return
         for _ in self._progress.polls():
@@ -148,7 +149,7 @@ class Saving:
             raise CommandError(3, "plain", said=sentence)
 
     def wait_unread(self) -> None:
-        """The same when tsc's output has no reader: only failures are printed."""
+        """Wait for the end when tsc's output has no reader: only failures are printed."""
         self.is_unread = True
         try:
             self.wait()

@@ -1,4 +1,4 @@
-"""What a computer can check of a robot that should be ready for a lesson.
+"""The checks that a computer can make of a robot before a lesson.
 
 What the robot says of itself the doctor examines; here are its trim, and what it senses and does.
 Nothing moves before a person has lifted the robot; without a person no motor turns. Changes nothing
@@ -36,17 +36,17 @@ SELF_REPORTED_PARTS = (
     "line",
     "supply",
     "store",
-)  # of which a robot tells itself
+)  # sensors that report their own faults
 SIDES = ("left", "right")
 READING_COUNT = 3
 SONAR = "hc_sr04"  # a driver: one that hangs is read as 0
-NOTICEABLE_PARTS = 50  # a hand changes a reading by more than one part of so many of its range
+NOTICEABLE_PARTS = 50  # the fraction of its range by which a hand must change a reading
 STAND_LINE = "W(2)"
 BUZZER_HEARD, BUZZER_AGAIN = 1, 3  # answers about the buzzer
 ANSWERED_FAILURES = (
     "plain",
     "selftest_silent",
-)  # failures that the robot has told: it is still there
+)  # failures that the robot reported, so it is still there
 
 
 class SelfTest(Conversation):
@@ -60,7 +60,7 @@ class SelfTest(Conversation):
         self.trim = Trim()
 
     def run(self) -> list[Finding]:
-        """Return what was found; an end of the link is the last of it."""
+        """Return the findings; a lost link is the last one."""
         try:
             self._run_checks()
         except CommandError as error:
@@ -90,7 +90,7 @@ class SelfTest(Conversation):
     # -- what the robot says about itself
 
     def _examine_robot(self) -> Robot | None:
-        """Let the doctor examine it; return the robot that it is, where this computer knows it."""
+        """Examine the robot; return its profile, if this computer knows it."""
         expected_robot = self.connection.profile
         kit = self.connection.device_info.kit
         causes, self.robot_answers = examination_of(self.connection, self.expectations)
@@ -103,7 +103,7 @@ class SelfTest(Conversation):
         return known_robot
 
     def _passed_parts(self, robot_name: str) -> dict[str, list[Finding]]:
-        """Return what is said of each part of a robot of which nothing is wrong."""
+        """Return the findings of each part without faults."""
         if self.robot_answers is None:
             return {}
         hello, status, _, trips_ms = self.robot_answers
@@ -121,7 +121,7 @@ class SelfTest(Conversation):
         return {finding.part: [finding] for finding in findings}
 
     def _check_discs(self) -> None:
-        """Let it stand, and longer than wheels roll: an edge is none of a wheel."""
+        """Check that no disc counts edges after the wheels have come to rest."""
         edges_before = self.connection.request(lambda session: session.status()).values.noise
         try:
             self.run_line(STAND_LINE)
@@ -152,7 +152,7 @@ class SelfTest(Conversation):
         name = sensor.name
         try:
             readings_before = self._read(sensor)
-            if wiring.driver == SONAR and not any(readings_before):  # nothing is so near
+            if wiring.driver == SONAR and not any(readings_before):  # an obstacle cannot be so near
                 self._add_finding("echo_hung", name=name)
                 return
             values = _range(sensor, readings_before)
@@ -193,7 +193,7 @@ class SelfTest(Conversation):
             self._check_motor(side, is_lifted)
 
     def _check_motor(self, side: str, is_lifted: bool) -> WheelTurn | None:
-        """Return what a person saw of a motor, which is found; None where nobody did."""
+        """Return a person's answer about a motor, and note it; None if nobody saw it."""
         try:
             if not is_lifted:
                 raise NoPerson
@@ -211,7 +211,7 @@ class SelfTest(Conversation):
         return turn
 
     def _offer_wiring(self, left: WheelTurn, right: WheelTurn) -> bool:
-        """Have the robot keep how its motors are wired, if that is new and the person wants it."""
+        """Offer to store the wiring of the motors, if it is new."""
         trim = trim_from_answers(self.trim, left, right)
         if trim is None or trim == self.trim:
             return False

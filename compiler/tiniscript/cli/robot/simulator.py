@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from tiniscript.cli.terminal.world_drawing import WorldPicture
 
 LONGEST_ROUND_S = 1.0  # the longest round; a robot draws at least 15 pictures per second
-TOLD_EVENTS = ("SHOW", "DONE", "FAULT", "STOP")  # events of a robot that it tells its client, too
-MOST_EVENTS = 10_000  # that nobody has asked for yet; the oldest are lost
+TOLD_EVENTS = ("SHOW", "DONE", "FAULT", "STOP")  # events that the robot also sends to its client
+MOST_EVENTS = 10_000  # most events that wait to be read; the oldest are dropped
 
 
 def running_address(options: Namespace) -> str | None:
@@ -70,9 +70,7 @@ class CommandSimulator(SimulatorThread):
         self._draw_lock = RLock()
         self._round_bell = Bell()
         self._undrawn_events: deque[Event] = deque(maxlen=MOST_EVENTS)
-        self._told_events: deque[Event] = deque(
-            maxlen=MOST_EVENTS
-        )  # what `told_ms` may be asked for
+        self._told_events: deque[Event] = deque(maxlen=MOST_EVENTS)  # values of `told_ms`
         self._round_count = 0  # rounds after which the picture is up to date
         robot = simulator_options.make_robot(options, profile, language)
         super().__init__(robot, options.verb, hurry, faults)
@@ -127,7 +125,7 @@ class CommandSimulator(SimulatorThread):
         print(line, file=sys.stderr, flush=True)
 
     def event_ms(self, event: str) -> int:
-        """Return when the robot did what it tells next as `event`, since its program began.
+        """Return the time of the robot's next event of this kind, since the start of its program.
 
         Of what it has not told itself (that its values did not arrive), the time now.
         """
@@ -153,7 +151,7 @@ class CommandSimulator(SimulatorThread):
         """Stop drawing; the last picture stays."""
         if self.screen is not None:
             with self._draw_lock:
-                wanted_round_count = self._round_count + 1  # the newest events are still to come
+                wanted_round_count = self._round_count + 1  # the newest events are still under way
             self._round_bell.wait_until(
                 lambda: self._round_count >= wanted_round_count, LONGEST_ROUND_S
             )

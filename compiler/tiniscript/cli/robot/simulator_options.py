@@ -21,14 +21,14 @@ from tiniscript.virtual.world import World, WorldRefused
 
 ONE = 1000  # thousandths
 MOST_NOISE = 50 * ONE  # percent
-MOST_FAULTS = 200 * ONE  # of 1000 bytes
+MOST_FAULTS = 200 * ONE  # most faults in 1000 bytes
 FASTEST = 10_000 * ONE
 LONGEST_S = 1_000_000 * ONE
 MOTOR_LOW, MOTOR_HIGH = 10 * ONE, 200 * ONE  # percent
 
 
 def needs_own_robot(options: Namespace) -> bool:
-    """Whether an option needs a virtual robot of this command."""
+    """Return whether an option needs a virtual robot of this command."""
     return any(getattr(options, name, None) not in (None, []) for name in virtual_names())
 
 

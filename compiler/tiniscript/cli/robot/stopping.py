@@ -10,7 +10,7 @@ from tiniscript.cli.texts import text
 
 
 def stop_one(connection: Connection, member: Member) -> Result:
-    """Stop one of many robots. Raises CommandError where it does not confirm."""
+    """Stop one of many robots. Raises CommandError if it does not confirm."""
     member.set_state("crew_stopping")
     if connection.stop():
         if connection.options.teacher:
@@ -25,7 +25,7 @@ def stop_one(connection: Connection, member: Member) -> Result:
 
 
 def hold_back(connection: Connection) -> None:
-    """Have a robot that was stopped wait for the teacher, or its button. Raises CommandError."""
+    """Make a stopped robot wait for the teacher, or for its button. Raises CommandError."""
     connection.meet()
     connection.request_or_raise(
         lambda session: session.hold_back(), "no_teachers_key", "NOT_OWNER", "WRONG_KEY"
@@ -33,5 +33,7 @@ def hold_back(connection: Connection) -> None:
 
 
 def may_be_opened(connection: Connection) -> bool:
-    """Whether the port's server has ended during the stop, so that the port can be opened now."""
+    """Return whether the port's server ended during the stop, so that the port can be opened
+    now.
+    """
     return bool(connection.connection.holder_verb) and connection.connection.has_ended

@@ -19,7 +19,7 @@ from tiniscript.link.requests import ACCEPTING_STATUSES
 from tiniscript.link.trim import MOST_PACE, Pace, Trim
 
 MEASURED_POWERS = 40, 80  # percent: it is seen and measured at both
-DRIVE_S, TURN_S = 2, 1  # how long it is measured
+DRIVE_S, TURN_S = 2, 1  # how long to measure
 INCH_CM = 2.54
 NUMBER_PATTERN = r"([0-9]{1,4}(?:[.,][0-9]{1,3})?)"
 INCH_WORDS = ("in", "inch", "inches", "pulg", "pulgada", "pulgadas", '"')
@@ -48,7 +48,7 @@ def guide(connection: Connection, old_trim: Trim) -> Trim:
 
 
 def _is_reachable(error: CommandError) -> bool:
-    """Whether the robot can still be reached."""
+    """Return whether the robot can still be reached."""
     return error.key in STOPPED_KEYS or error.key.startswith("trim_")
 
 
@@ -119,7 +119,7 @@ class TrimWizard(Conversation):
         raise self._error_for(sure_finding("too_weak", n=str(MOST_LEAST)))
 
     def _measure(self, move: str, seconds: int, question: str) -> list[float]:
-        """Return how much it went, or turned, in a second at each power."""
+        """Return the distance or angle per second at each power."""
         while True:
             paces = [
                 self._measure_move(move, power, seconds, question) / seconds
@@ -130,7 +130,7 @@ class TrimWizard(Conversation):
             say_aside("trim_not_faster_again", self.language)
 
     def _measure_move(self, move: str, power: int, seconds: int, question: str) -> float:
-        """Return how far it went in centimetres, or turned in degrees, as the person measured."""
+        """Return the distance in cm or the angle in degrees that the person measured."""
         self.ask("trim_mark")
         while True:
             self.run_line(f"{move}({seconds}, {power})")
@@ -153,7 +153,7 @@ class TrimWizard(Conversation):
                 return trim.balance
             if answer == STRAIGHT_AGAIN:
                 continue
-            # to its left: the right wheel is too strong
+            # it drifts to its left, so the right wheel is too strong
             side = -1 if answer == 2 else 1
             if last_side and side != last_side:
                 step = max(1, step // 2)

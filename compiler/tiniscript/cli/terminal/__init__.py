@@ -1,3 +1,3 @@
 """Drawing on a terminal, and reading its keys."""
 
-FRAME_S = 1 / 15  # how often a picture is redrawn
+FRAME_S = 1 / 15  # seconds between two redraws

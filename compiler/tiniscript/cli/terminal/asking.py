@@ -14,12 +14,12 @@ YES_ANSWERS = ("1", "y", "yes", "s", "si", "sí")
 
 
 def can_ask() -> bool:
-    """Whether somebody reads a question, and can answer."""
+    """Return whether a person can read and answer questions."""
     return sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty()
 
 
 def ask(question: str) -> str:
-    """Ask, and return the line that is typed; nothing where nobody answers."""
+    """Ask, and return the line that is typed; nothing if nobody answers."""
     print(question, end="", file=sys.stderr, flush=True)
     return sys.stdin.readline()
 

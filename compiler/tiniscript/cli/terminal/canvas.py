@@ -13,7 +13,8 @@ from rich.text import Text
 
 DOTS_PER_COLUMN, DOTS_PER_ROW = 2, 4  # dots of a character
 _BLANK = 0x2800  # the braille character without dots
-_DOT_BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # of a dot, by row and column
+# Bits of the dots, by row and column.
+_DOT_BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 _MOST_STEPS = 10_000  # steps of a line: one that is longer has its dots further apart
 
 Dot = tuple[int, int]

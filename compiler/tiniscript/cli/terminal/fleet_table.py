@@ -17,7 +17,7 @@ STYLES = {"": "", "ok": "green", "bad": "red", "absent": "dim"}
 
 
 class FleetTable:
-    """The terminal while robots work: the table, and above it what is said."""
+    """The terminal while robots work: the table, with messages above it."""
 
     def __init__(self, members: Sequence[Member], language: str) -> None:
         self.members = members
@@ -49,7 +49,7 @@ class FleetTable:
         self.screen.draw(self, time.monotonic() * 1000)
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
-        """Return at most `height` lines: those that are not done first, where not all fit."""
+        """Return at most `height` lines; if not all fit, the unfinished ones come first."""
         if not self.members:
             return []
         done_count = sum(member.result is not None for member in self.members)
@@ -61,7 +61,7 @@ class FleetTable:
             rows.sort(key=lambda member: member.mark == "ok")  # the others stay in their order
             hidden_count = len(rows) - max(0, height - 2)
             rows = rows[: len(rows) - hidden_count]
-        # of hidden rows, too, so that no column jumps when another row is shown
+        # Widths include hidden rows, so that columns do not jump when other rows are shown.
         self.column_widths = [
             max(old_width, *map(cell_len, column))
             for old_width, column in zip(self.column_widths, _columns(self.members), strict=True)

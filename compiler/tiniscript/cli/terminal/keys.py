@@ -14,13 +14,13 @@ _SEQUENCE_OF_WINDOWS = re.compile(r"[\0\xe0].", re.DOTALL)
 
 
 def letters_of(keys: str) -> str:
-    """Return what was typed without the keys of several characters."""
+    """Return the typed characters without the keys of several characters."""
     pattern = _SEQUENCE_OF_WINDOWS if sys.platform == "win32" else _SEQUENCE
     return pattern.sub("", keys)
 
 
 class Keys:
-    """Where there is no terminal, there are no keys."""
+    """A keyboard without a terminal, which never has keys."""
 
     def __init__(self) -> None:
         self._saved_mode: object = None
@@ -36,7 +36,7 @@ class Keys:
             tty.setcbreak(self._descriptor)
         return self
 
-    def __exit__(self, *raised: object) -> None:
+    def __exit__(self, *signal_arguments: object) -> None:
         if self._saved_mode is not None and sys.platform != "win32":
             import termios
 
@@ -54,7 +54,7 @@ class Keys:
 
 
 def is_in_front() -> bool:
-    """Whether this command has the terminal: `tsc robot &` leaves it to the shell."""
+    """Return whether this command owns the terminal: `tsc robot &` leaves it to the shell."""
     if sys.platform == "win32":
         return True
     try:

@@ -14,7 +14,7 @@ from shutil import get_terminal_size, which
 
 from tiniscript.cli.texts import text
 
-# What a shell answers where the command cannot be started.
+# Exit codes of a shell for a command that cannot be started.
 NOT_STARTED_CODES = (126, 127)
 
 
@@ -27,7 +27,7 @@ def show(text: str, language: str) -> None:
 
 
 def _needs_pager(text: str) -> bool:
-    """Whether a person sits at a terminal that has fewer lines than the text."""
+    """Return whether a person uses a terminal with fewer lines than the text."""
     is_person = sys.stdin.isatty() and sys.stdout.isatty() and os.environ.get("TERM") != "dumb"
     return is_person and text.count("\n") >= get_terminal_size().lines
 

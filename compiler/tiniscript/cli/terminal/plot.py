@@ -19,16 +19,16 @@ from tiniscript.cli.terminal.canvas import DOTS_PER_COLUMN, DOTS_PER_ROW, Canvas
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.link.outcomes import Event, ShownEvent
 
-SHOWN_SECONDS = 30  # from the left edge to the right one
-MOST_ROWS = 12  # at most
+SHOWN_SECONDS = 30  # seconds from the left edge to the right one
+MOST_ROWS = 12  # most rows of a plot
 MOST_VALUES = 5000  # values of a curve, the newest
-STYLES = ("cyan", "magenta", "yellow", "green", "blue", "red")  # of curves; so many there are
+STYLES = ("cyan", "magenta", "yellow", "green", "blue", "red")  # one style for each curve
 NAMELESS_CURVE = "SHOW"  # the curve of all values without a name
 AXIS_STEPS = 4  # between the marks of the axis, about
 
 
 class PlotScreen(Screen):
-    """The terminal while values come: what is told, and below it the curves."""
+    """The terminal while values arrive: messages, with the curves below."""
 
     def __init__(self, waiting_text: str) -> None:
         super().__init__()
@@ -53,7 +53,7 @@ class PlotScreen(Screen):
             self.draw(self.plot, now_ms)
 
 
-Values = deque[tuple[int, int]]  # when, and thousandths
+Values = deque[tuple[int, int]]  # time in ms, and thousandths
 
 
 class Plot:
@@ -62,7 +62,7 @@ class Plot:
     def __init__(self, waiting_text: str = "") -> None:
         self.waiting_text = waiting_text
         self.now_ms = 0
-        self.values_by_name: dict[str, Values] = {}  # by name, in the order of their first values
+        self.values_by_name: dict[str, Values] = {}  # in the order of the first values
         self.style_by_name: dict[str, str] = {}
         self.margin = 0  # columns of the labels
 
@@ -87,7 +87,7 @@ class Plot:
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
         """Return at most `height` lines of at most `width` columns: a title and the curves."""
-        width -= 2  # the ^C of the terminal stands after the last line
+        width -= 2  # the terminal's ^C is after the last line
         begin_ms = now_ms - SHOWN_SECONDS * 1000
         for values in self.values_by_name.values():
             while len(values) > 1 and values[1][0] < begin_ms:
@@ -96,7 +96,8 @@ class Plot:
         low, high, step = scale(min(values_shown, default=0), max(values_shown, default=1000))
         rows = min(MOST_ROWS, height - 1)
         ticks = [as_text(value) for value in range(low, high + 1, step)]
-        self.margin = max(self.margin, *(len(tick) + 1 for tick in ticks))  # it never jumps back
+        # The margin never shrinks.
+        self.margin = max(self.margin, *(len(tick) + 1 for tick in ticks))
         margin = self.margin
         columns = width - margin
         title = self._title(width)

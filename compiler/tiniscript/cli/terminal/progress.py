@@ -1,4 +1,4 @@
-"""What the terminal shows while something takes longer than a moment: a bar, or what is awaited."""
+"""Progress on the terminal during long operations: a bar, or the name of the wait."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tiniscript.cli.texts import text
 
 DRAW_DELAY_S = 0.3
 BAR_COLUMNS = 30
-MOST_PERCENT = 99  # of what is not done
+MOST_PERCENT = 99  # percent shown until the work is done
 
 
 class Progress:
@@ -31,7 +31,7 @@ class Progress:
         self._begin_s = monotonic()
         self._is_terminal = sys.stderr.isatty()
         self._drawn_line = ""
-        self._is_drawn = False  # in the terminal's line
+        self._is_drawn = False  # whether the terminal's line shows it
 
     def draw(self, done_units: int) -> bool:
         """Draw it where it has grown; return whether it has."""
@@ -56,7 +56,7 @@ class Progress:
 
 
 class StatusLine:
-    """The line on the terminal that says what is done just now."""
+    """The line on the terminal about the current action."""
 
     def __init__(self, is_shown: bool = True) -> None:
         self._is_shown = is_shown and reads_sequences(sys.stderr)
@@ -103,16 +103,16 @@ class WaitNotice:
                 print(self._sentence, file=sys.stderr, flush=True)
 
     def cancel(self) -> None:
-        """From now on nothing is said."""
+        """Print nothing from now on."""
         self._end_bell.ring()
         with self._print_lock:
             self._is_cancelled = True
-        with self._thread_lock:  # a thread that begins while Python ends takes it down (3.11)
+        with self._thread_lock:  # a thread that starts while Python exits crashes it (3.11)
             pass
 
 
 class RepeatedWaitNotice:
-    """The same for waits that follow each other: said once, until something else came between."""
+    """A notice for successive waits, printed once until something else is printed."""
 
     def __init__(self, sentence: str, is_seen: bool) -> None:
         self.before_print: Callable[[], None] = lambda: None  # clears the line of a bar
@@ -140,11 +140,11 @@ class RepeatedWaitNotice:
         self._since_s = self._until_s = monotonic()
 
     def end_wait(self) -> None:
-        """The wait has ended, and nothing was said: what comes next is the same silence."""
+        """End the wait without a message, so that the next silence continues it."""
         self._until_s = monotonic()
 
     def with_sentence(self, sentence: str) -> RepeatedWaitNotice:
-        """Return the same silence, of which something else is said."""
+        """Return a notice about the same silence with another sentence."""
         notice = RepeatedWaitNotice(sentence, self._is_terminal)
         notice._since_s = self._since_s
         return notice

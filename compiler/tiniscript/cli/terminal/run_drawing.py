@@ -21,7 +21,7 @@ from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 
 MOST_SHOWN_VALUES = 5  # values of SHOW that stay in the picture
-MOST_VALUE_COLUMNS = 80  # columns of the values, where the way leaves so many
+MOST_VALUE_COLUMNS = 80  # columns of the values, if the path leaves that many
 COLUMNS_FOR_VALUES_BESIDE = 60  # columns from which on the values are beside the way, not below it
 
 
@@ -60,7 +60,7 @@ class Picture:
         self.language = language
         self.labels = {**REMOTE_SIGNS, **robot.labels[language]}
         self.sketch = Sketch(robot)
-        self.now_ms = 0  # when the newest event was
+        self.now_ms = 0  # time of the newest event
         self.value_by_sensor: dict[int, int] = {}
         self.value_by_actuator: dict[int, int] = {}
         self.shown_values: deque[str] = deque(maxlen=MOST_SHOWN_VALUES)

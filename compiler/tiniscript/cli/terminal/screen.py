@@ -18,7 +18,7 @@ from rich.text import Text
 from tiniscript.cli.streams import DRAWING_SUBSTITUTES, reads_sequences
 from tiniscript.cli.terminal import FRAME_S
 
-BEGIN_UPDATE, END_UPDATE = "\x1b[?2026h", "\x1b[?2026l"  # of a synchronized update
+BEGIN_UPDATE, END_UPDATE = "\x1b[?2026h", "\x1b[?2026l"  # begin and end of a synchronized update
 HIDE_CURSOR, SHOW_CURSOR = "\x1b[?25l", "\x1b[?25h"  # the cursor
 TO_LINE_END, TO_SCREEN_END = "\x1b[K", "\x1b[J"  # erase
 
@@ -26,8 +26,8 @@ TO_LINE_END, TO_SCREEN_END = "\x1b[K", "\x1b[J"  # erase
 class Frame:
     def __init__(self, console: Console) -> None:
         self.console = console
-        self.lines: list[Text] = []  # as the terminal has them
-        self._width = 0  # of the terminal, when they were written
+        self.lines: list[Text] = []  # the lines that the terminal shows
+        self._width = 0  # width of the terminal when they were written
 
     def begin(self) -> None:
         self._write(HIDE_CURSOR)
@@ -50,7 +50,9 @@ class Frame:
             self._write(BEGIN_UPDATE + text + END_UPDATE)
 
     def _full_picture(self, lines: Sequence[Text], text_above: str) -> str:
-        """Return what writes all of it, from the first line of the last picture on."""
+        """Return the output that draws the whole picture, from the first line of the last one
+        on.
+        """
         width = self.console.size.width
         # a terminal that has become narrower has wrapped the last picture
         rows = max(0, len(self.lines) - 1)
@@ -64,7 +66,7 @@ class Frame:
         return f"\r{_cursor_up(rows)}{erase_code}{''.join(parts)}{TO_SCREEN_END}"
 
     def _changes(self, lines: Sequence[Text]) -> str:
-        """Return what writes the lines that are not as they were; there are as many as before."""
+        """Return the output that redraws changed lines; the number of lines is the same."""
         rows = [
             ""
             if new_line == old_line and new_line.style == old_line.style
@@ -105,12 +107,12 @@ class Screen:
         self.console = Console(stderr=True, legacy_windows=is_legacy)
         self.frame = Frame(self.console)
         self.is_begun = False
-        # Where nothing can be redrawn, only the last picture is printed.
+        # If nothing can be redrawn, only the last picture is printed.
         self.is_still = self.console.legacy_windows or self.console.is_dumb_terminal
         self.last_picture = Text()
-        self.lines: list[str] = []  # of the trace, for the next frame
+        self.lines: list[str] = []  # trace lines for the next frame
         self.frame_s = time.monotonic()
-        # where the trace goes to this very terminal, it has to go around the picture
+        # A trace that goes to the same terminal must be printed around the picture.
         self.is_shared = sys.stdout.isatty() and _is_one_terminal()
 
     def begin(self) -> None:
@@ -186,7 +188,7 @@ class Screen:
 
 
 def _is_one_terminal() -> bool:
-    """Whether both streams of this command, which are terminals, are the same one."""
+    """Return whether both streams of this command are the same terminal."""
     if sys.platform == "win32":  # a command has one console
         return True
     device_numbers = [os.fstat(stream.fileno()).st_rdev for stream in (sys.stdout, sys.stderr)]

@@ -10,7 +10,7 @@ from typing import Any
 
 
 class EndRequest:
-    """Whether a signal has asked the process to end."""
+    """A request by a signal to end the process."""
 
     def __init__(self) -> None:
         self.is_set = False
@@ -29,7 +29,8 @@ def handle_signals() -> Iterator[EndRequest]:
     hook_before = sys.unraisablehook
 
     def on_unraisable(unraisable: sys.UnraisableHookArgs) -> None:
-        if not issubclass(unraisable.exc_type, KeyboardInterrupt):  # of which the flag is left
+        # An interrupt only leaves its flag.
+        if not issubclass(unraisable.exc_type, KeyboardInterrupt):
             hook_before(unraisable)
 
     sys.unraisablehook = on_unraisable

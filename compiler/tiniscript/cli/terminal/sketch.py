@@ -23,7 +23,7 @@ from tiniscript.cli.terminal.canvas import (
 from tiniscript.robots.kinematics import START, Pose, Way
 from tiniscript.robots.profile import Robot
 
-MOST_CORNERS = 5000  # of the way that stay in the picture
+MOST_CORNERS = 5000  # most points of the path that stay in the picture
 WAY_STYLE, ROBOT_STYLE = "cyan", "bold green"
 ARROWS = "↑↖←↙↓↘→↗"  # every 45 degrees, counterclockwise from straight ahead
 _ROUND_SCALES = (
@@ -57,7 +57,7 @@ class View(NamedTuple):
     y_cm: float
 
     def dot(self, pose: Pose) -> Dot:
-        """Return where a place lies on the canvas."""
+        """Return the place of a pose on the canvas."""
         right, down = (self.y_cm - pose.y_cm), (self.x_cm - pose.x_cm)
         return (
             floor(right / self.cm_per_dot + DOTS_PER_COLUMN / 2 * self.columns),
@@ -93,7 +93,7 @@ class Sketch:
             self.drawn_corner_count = 0
 
     def ruler(self) -> str:
-        """Return how long ten columns are."""
+        """Return the length of ten columns."""
         if self.view is None:
             return ""
         cm = 10 * DOTS_PER_COLUMN * self.view.cm_per_dot
@@ -101,7 +101,7 @@ class Sketch:
         return f" ├────────┤ {length} "
 
     def fit_columns(self, most_columns: int, rows: int) -> int:
-        """Return how many columns of `most_columns` the picture takes: a way may go anywhere."""
+        """Return the number of columns that the picture needs, at most `most_columns`."""
         return most_columns
 
     def draw(self, columns: int, rows: int, now_ms: float) -> list[Text]:

@@ -86,7 +86,7 @@ class WorldSketch(Sketch):
             0,
             0,
             0,
-        )  # columns and rows that there were, and the columns that it takes
+        )  # former columns and rows, and the columns needed now
 
     def set_motors(self, now_ms: float, left: int, right: int) -> None:
         self.way.left, self.way.right = left, right
@@ -97,7 +97,7 @@ class WorldSketch(Sketch):
         return f" ├────────┤ {10 * DOTS_PER_COLUMN * self.floor.cm_per_dot:g} cm "
 
     def fit_columns(self, most_columns: int, rows: int) -> int:
-        """Return how many columns the floor takes; the values are beside it, not at the edge."""
+        """Return the columns that the floor needs; the values are beside it, not at the edge."""
         if self._fitted_size[:2] != (most_columns, rows):
             right, _ = Floor(self.world, most_columns, rows).dot(Point(self.world.width_cm, 0))
             self._fitted_size = most_columns, rows, min(most_columns, right // DOTS_PER_COLUMN + 1)
@@ -153,7 +153,7 @@ class Floor:
             self.wall_canvas.draw_lines(map(self.dot, ring.outline(RING_CORNERS)))
 
     def dot(self, point: Point | Pose) -> Dot:
-        """Return where a place lies on the canvas."""
+        """Return the place of a point on the canvas."""
         x, y = point[:2]
         return round(x / self.cm_per_dot), round((self.height_cm - y) / self.cm_per_dot)
 

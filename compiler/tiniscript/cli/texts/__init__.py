@@ -13,11 +13,11 @@ from tiniscript.base import languages
 from tiniscript.base.source import printable
 
 CATALOGUE = "command"
-MOST_VALUE_CHARACTERS = 2000  # characters of what is put into a sentence
+MOST_VALUE_CHARACTERS = 2000  # characters of a value in a sentence
 # What is counted, right after its number: catalogues have how one of it is called, and several.
 # Other words have a sentence of their own for one.
 COUNTED_NOUNS = ("counted_bytes", "counted_checks")
-SEVERAL_COUNT = 5  # as sentences have it
+SEVERAL_COUNT = 5  # a typical plural number in sentences
 
 
 class Sentence(str):
@@ -66,7 +66,7 @@ def say(key: str, language: str, /, **values: object) -> None:
 
 
 def say_aside(key: str, language: str, /, **values: object) -> None:
-    """Print a sentence on standard error, where no results are."""
+    """Print a sentence on standard error, if no results are."""
     print(text(key, language).format(**values), file=sys.stderr, flush=True)
 
 

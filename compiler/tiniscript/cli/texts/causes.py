@@ -1,4 +1,4 @@
-"""The sentences of a finding, whoever has found it: the doctor, self-test or a module's set-up."""
+"""The sentences of a finding by the doctor, self-test or a module's set-up."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tiniscript.link.messages import RESETS
 
 
 class Sentences(NamedTuple):
-    """What was found, how that was seen, and the next step; nothing where there is none."""
+    """Sentences about a finding: the finding, its evidence, and the next step; "" if there is none."""
 
     finding: str
     evidence: str
@@ -22,7 +22,7 @@ class Sentences(NamedTuple):
 def sentences_of(
     finding: Finding, language: str, values: Mapping[str, str] | None = None
 ) -> Sentences:
-    """Return what is said of a finding; `values`: instead of its own."""
+    """Return the sentences about a finding; `values` replaces its own values."""
     gap_values = dict(finding.values if values is None else values)
     if gap_values.get("reset") in dict(RESETS):
         gap_values["reset"] = text(f"reset_{gap_values['reset']}", language)
@@ -74,7 +74,7 @@ def label(finding: Finding, language: str) -> str:
 
 
 def finding_lines(findings: Iterable[Finding], language: str) -> list[str]:
-    """Return the lines of a conversation about parts: what came of each, and what to do."""
+    """Return the lines about the parts in a conversation: their results, and the next step."""
     lines = []
     for finding in findings:
         meaning, evidence, advice = sentences_of(finding, language)

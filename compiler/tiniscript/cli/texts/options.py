@@ -55,11 +55,11 @@ class Option(NamedTuple):
 
     @property
     def default(self) -> object:
-        """Its value where nobody has given it."""
+        """Its value if nobody has given it."""
         return [] if self.repeats else False if self.kind is None else None
 
     def help(self, language: str) -> str:
-        """Return what it does."""
+        """Return the description of the option."""
         return verb_text(f"option/{self.flags}/{self.verbs.split()[0]}", language)
 
     def shown_value(self, language: str) -> str:
@@ -85,12 +85,12 @@ NEW_KEYS = Kind("file", writes="unwritable_more --export")
 MEMORY = Kind("file", reads="path_memory", writes="unwritable_at --memory")
 TEXT = Kind("text")
 NUMBER = Kind("number")
-CODE = Kind("code")  # of a mistake
+CODE = Kind("code")  # code of a message
 CHIP = Kind("chip")
 SENSOR = Kind("sensor")
 VERB = Kind("verb")
 HURRY = Kind("hurry")
-LESSON_ACTION = Kind("action")  # of tsc lesson
+LESSON_ACTION = Kind("action")  # action of tsc lesson
 LANGUAGE = Kind("choice", choices=languages())
 MACHINE = Kind("choice", choices=("python", "cpp"))
 YES_NO = Kind("choice", choices=("yes", "no"))
@@ -101,7 +101,7 @@ TRUST = Kind("file", reads="path_trust")
 SHELL = Kind("choice", choices=("bash", "zsh", "powershell"))
 LEVEL = Kind("choice", choices=tuple(LEVELS))
 
-# What each action of `tsc lesson` takes besides the lesson and the language.
+# Options of each action of `tsc lesson` besides the lesson and the language.
 LESSON_ACTIONS = {
     "show": ("teacher",),
     "check": ("program", "texts", "seed", "csv", "plot", "json"),
@@ -145,7 +145,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("network", "set_wifi", TEXT, "NETWORK"),
     Option("about", "help", VERB, "COMMAND", repeats=True),
     Option("words", "help_completion", TEXT, A_TEXT, repeats=True, silent_verbs="help_completion"),
-    # what chooses a step of a verb
+    # Options that choose a step of a verb.
     Option("--explain", "check_explain", CODE, "CODE", "code", may_be_alone=True),
     Option("--previous", "start_previous"),
     Option("--hold", "monitor_hold"),
@@ -189,7 +189,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--machine", "run", MACHINE, "python|cpp"),
     Option("--record", "run", RECORDING, A_FILE),
     Option("--world", "run", WORLD, A_ROBOT),
-    # another machine or robot
+    # Options for another machine or robot.
     Option("--machine", "doctor_conform", TEXT, "COMMAND"),
     Option("--only", "doctor_conform", TEXT, A_TEXT),
     Option("--timeout", "doctor_conform", NUMBER, S),
@@ -204,7 +204,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--breakpoints", "firmware"),
     Option("--build", "firmware"),
     Option("--list", "firmware"),
-    # what a verb does
+    # Options that change what a verb does.
     Option("--broker", "class", TEXT, "HOST[:PORT]"),
     Option("--broker", "set_wifi", TEXT, "HOST[:PORT]"),
     Option("--class", "class set_wifi", TEXT, "NAME", "group"),
@@ -298,7 +298,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--virtual", "stop"),
     Option("--virtual", "upload"),
     Option("--virtual", "live"),
-    # how it is said
+    # Options that change the output.
     Option("--json", "check show lesson doctor_ports set_owner_list doctor doctor_selftest doctor_conform", silent_verbs="set_owner_list"),
     Option("--json", "upload class"),
     Option("--json", "start_previous", silent_verbs="start_previous"),
@@ -340,7 +340,7 @@ def selecting_options_of(command: str) -> list[Option]:
 
 
 def command_of(verb: str, words: list[str]) -> tuple[str, list[str]]:
-    """Return the command that a verb and the words after it mean, and what is left of these.
+    """Return the command that a verb and its words mean, and the remaining words.
 
     That is the verb itself where they choose none of its steps.
     """
@@ -359,7 +359,7 @@ def command_of(verb: str, words: list[str]) -> tuple[str, list[str]]:
 
 
 def first_word(verb: str, words: list[str]) -> int | None:
-    """Return where the first word is that is neither an option nor the value of one."""
+    """Return the index of the first word that is neither an option nor an option's value."""
     commands = (verb, *steps_of(verb))
     flags_with_value = {flag for command in commands for option in options_of(command)
               if option.kind is not None for flag in option.flags.split()}  # fmt: skip

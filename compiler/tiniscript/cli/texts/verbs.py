@@ -34,7 +34,7 @@ VERBS: dict[str, str] = {
 
 
 class Step(NamedTuple):
-    """What a verb does besides, where it is followed by more: `tsc doctor --ports`.
+    """A step of a verb, which follows it: `tsc doctor --ports`.
 
     `command_text` is that command; the last of its flags chooses the step, and so do `flags`.
     """
@@ -49,7 +49,7 @@ class Step(NamedTuple):
 
     @property
     def selecting_flags(self) -> list[str]:
-        """The flags of which one chooses the step; none where its words do."""
+        """The flags that select a step; empty if words do."""
         own_flags = [word for word in self.command_text.split() if word.startswith("-")]
         return [*own_flags, *self.flags.split()]
 
@@ -122,12 +122,12 @@ def verb_text(key: str, language: str) -> str:
 
 
 def command_words(command: str) -> str:
-    """Return what is typed after `tsc` for a command: `doctor --ports`."""
+    """Return the words after `tsc` for a command: `doctor --ports`."""
     return STEPS[command].command_text if command in STEPS else command
 
 
 def steps_of(command: str) -> list[str]:
-    """Return what begins with a command: the steps of a verb, `set owner --list` of `set owner`."""
+    """Return the commands that begin with a command: the steps of a verb, or `set owner --list`."""
     prefix = f"{command_words(command)} "
     return [
         name
@@ -143,7 +143,7 @@ def settings() -> tuple[str, ...]:
 
 
 def verb_sentence(verb: str, part: str, language: str) -> str:
-    """Return what is said of a command.
+    """Return a sentence about a command.
 
     `example` is what may be typed for it, `summary` what that does, `says` what the command does,
     `ends` what else there is to know. Where it is used in several ways, `usage` has a line for each.

@@ -19,7 +19,7 @@ _PRECEDENCE = {
     "MUL": 9, "DIV": 9, "MOD": 9, "ADD": 8, "SUB": 8,
     "LT": 7, "LE": 7, "GT": 7, "GE": 7, "EQ": 6, "NE": 6, "AND": 5, "OR": 4,
 }  # fmt: skip
-SIGNS = {**SIGN_OF, "EQ": "==", "NE": "!=", "AND": "&&", "OR": "||"}  # those of C++
+SIGNS = {**SIGN_OF, "EQ": "==", "NE": "!=", "AND": "&&", "OR": "||"}  # operators of C++
 ARITHMETIC_OPS = frozenset(("MUL", "DIV", "MOD", "ADD", "SUB"))
 COMPARISON_OPS = frozenset(("LT", "LE", "GT", "GE", "EQ", "NE"))
 FUNCTIONS = {"MIN": "smaller", "MAX": "larger", "ROUND": "rounded", "RANDOM": "random"}
@@ -28,13 +28,13 @@ _UNARY, _PRIMARY = 10, 11
 
 class _Operand(NamedTuple):
     text: str
-    precedence: int  # how tightly, as C++ has it
+    precedence: int  # precedence in C++
     is_literal: bool = False  # a number that C++ itself would calculate with
     is_random: bool = False
 
 
 class Expressions:
-    """Writes expressions. `use` is told each helper that one needs and returns its name."""
+    """Writes expressions. `use` receives each helper that they need and returns its name."""
 
     def __init__(
         self,
@@ -113,7 +113,7 @@ class Expressions:
                 left = self._as_number(left)
             if op in ARITHMETIC_OPS or self.is_exact:
                 self.use(op)
-        # Brackets that C++ does not need stand where it warns without them.
+        # Brackets that C++ does not need, but without which it warns.
         left_precedence, right_precedence = (
             (8, 8) if op in COMPARISON_OPS else (precedence, precedence + 1)
         )
@@ -140,7 +140,7 @@ def _bracket(operand: _Operand, precedence: int) -> str:
 
 
 def is_float(value: int) -> bool:
-    """Whether a literal means this number of thousandths: C++ reads it as a float of 24 bits."""
+    """Return whether a literal is exactly this number of thousandths in a 24-bit float of C++."""
     if value % ONE == 0:
         return True
     nearest_float: float = struct.unpack("f", struct.pack("f", abs(value) / ONE))[0]
@@ -153,7 +153,7 @@ def _long(value: int) -> str:
 
 
 def is_literal(expression: Expression) -> bool:
-    """Whether an expression is one number or one yes/no that the text says."""
+    """Return whether an expression is a single number or yes-no literal."""
     return len(expression) == 1 and expression[0].op in ("NUMBER", "YES_NO")
 
 
@@ -162,7 +162,9 @@ def has_random(expression: Expression) -> bool:
 
 
 def reads_once(expression: Expression, sensor: int) -> bool:
-    """Whether a sensor's name stands once in it, and is not what an AND or OR may skip."""
+    """Return whether an expression uses a sensor exactly once, outside of parts that AND or OR may
+    skip.
+    """
     if any(term.op in ("AND_LEFT", "OR_LEFT") for term in expression):
         return False
     return sum(term == ("SENSOR", sensor) for term in expression) == 1

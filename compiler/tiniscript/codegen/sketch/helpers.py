@@ -145,7 +145,7 @@ FOREVER = {
     False: "const float $FOREVER = -1;",
 }
 
-# Variables that functions share: a comment's key, and what is written before it.
+# Variables that functions share: the key of a comment, and the code before it.
 SHARED: dict[str, tuple[str, str]] = {
     "due": ("shared_start", "unsigned long $started, $due;"),
     "random_state": ("shared_random", "unsigned long $random_state = 1;"),

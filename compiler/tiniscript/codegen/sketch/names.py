@@ -1,4 +1,4 @@
-"""What the names of a program are called in C++: `MY_SPEED` is `mySpeed`.
+"""The C++ names of a program's names: `MY_SPEED` becomes `mySpeed`.
 
 No two have the same name, and none has a name of C++, of the Arduino core or of a helper. Their
 names, and what a sketch says in words, are in the catalogue `sketch`.
@@ -19,12 +19,12 @@ _LOCAL = re.compile(rf"(?<![$\w.])({'|'.join(LOCALS)})(?!\w)")
 
 
 def note_text(key: str, language: str) -> str:
-    """Return a note, or nothing where nothing is said."""
+    """Return a note, or nothing if nothing is said."""
     return find_text("sketch", f"said/{key}", language) or ""
 
 
 def translated_name(key: str, language: str) -> str:
-    """Return what something is called; other names stay what they are."""
+    """Return the translation of a name; other names stay unchanged."""
     return find_text("sketch", f"name/{key}", language) or key
 
 
@@ -72,7 +72,8 @@ RESERVED = frozenset(
 )
 
 
-_COUNTER_NAME = re.compile(r"[ijk][0-9]*|first[0-9]+")  # of a LOOP; of a value that is kept
+# The counter of a LOOP, or the copy of a value.
+_COUNTER_NAME = re.compile(r"[ijk][0-9]*|first[0-9]+")
 
 
 class Names:

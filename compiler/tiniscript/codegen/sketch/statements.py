@@ -19,8 +19,8 @@ from tiniscript.semantics.ir import Term
 from tiniscript.semantics.optimizer import constant
 from tiniscript.semantics.ways import to_timed
 
-MOST_COLUMNS = 100  # columns of a line with what stands beside it
-COMMENT_COLUMN = 40  # the column of what stands beside code
+MOST_COLUMNS = 100  # columns of a line with its comment
+COMMENT_COLUMN = 40  # column of the comments beside code
 _MOVE_FUNCTIONS = {"F": "forward", "B": "backward", "L": "turn_left", "R": "turn_right"}
 _START_FUNCTIONS = {
     "F": "start_forward",
@@ -30,7 +30,7 @@ _START_FUNCTIONS = {
 }
 _LARGEST_INT = 2**15 - 1
 
-Part = tuple[ir.Expression, tuple[int, int] | None]  # and its limits; None: a time
+Part = tuple[ir.Expression, tuple[int, int] | None]  # an expression and its limits; a time has None
 
 
 class Comment(NamedTuple):
@@ -42,7 +42,7 @@ class Comment(NamedTuple):
 
 
 class SketchNames(NamedTuple):
-    """What things are called in C++. `reads` and `sets` are functions."""
+    """The C++ names in a sketch. `reads` and `sets` are functions."""
 
     sensors: Sequence[str]
     reads: Sequence[str]
@@ -72,7 +72,7 @@ class Statements:
         self.depth = 1
         self.loop_depth = 0
         self.variables_set_by_calls: frozenset[int] = frozenset()  # arguments
-        self.argument_values: list[ir.Expression] = []  # of the arguments of the call that is next
+        self.argument_values: list[ir.Expression] = []  # arguments of the next call
 
     def add_body(self, body: ir.Body) -> None:
         for statement in body:
@@ -188,12 +188,12 @@ class Statements:
         for value, limits in parts:
             constant_value = constant(value)
             if constant_value is not None:
-                rounded = (
+                rounded_value = (
                     max(0, constant_value)
                     if limits is None
                     else clamp(whole(constant_value), *limits) * ONE
                 )
-                texts.append(self.expressions.code_of((Term("NUMBER", rounded),)))
+                texts.append(self.expressions.code_of((Term("NUMBER", rounded_value),)))
                 continue
             text = self.expressions.code_of(value)
             if must_keep and not texts:

@@ -1,4 +1,4 @@
-"""What a kit's pins need in a sketch: constants, what is set up, motors, readers and setters."""
+"""The parts of a sketch for a kit's pins: constants, set-up, motors, readers and setters."""
 
 from __future__ import annotations
 
@@ -53,10 +53,10 @@ class SketchPlan(DriverPlan):
 
 
 def reads_counts(device: Device, wiring: Wiring) -> bool:
-    """Whether a sensor's reading is what the converter counts."""
+    """Return whether a sensor's reading is the converter's raw count."""
     return sensor_of(device.kind, wiring).is_count(device, wiring)
 
 
 def is_exact_as_float(devices: Iterable[Device]) -> bool:
-    """Whether a float tells all readings apart, thousandth by thousandth."""
+    """Return whether a float can represent all readings exactly to the thousandth."""
     return all(max(abs(device.low), abs(device.high)) < 2**24 for device in devices)

@@ -30,7 +30,7 @@ from tiniscript.syntax.lexer import scan
 
 
 def needs_numbers(program: ir.Program, robot: Robot) -> bool:
-    """Whether a program calculates: then it needs numbers that are exact."""
+    """Return whether a program calculates, so that it needs exact numbers."""
     kit, wirings = robot.kit, robot.board.sensors
     for statement in ir.all_statements(program):
         if isinstance(statement, ir.Show) and not statement.is_yes_no:
@@ -73,9 +73,9 @@ BOARD_TITLES = {"uno": "Uno", "nano": "Nano", "mega": "Mega 2560"}
 
 
 def missing_feature(program: ir.Program, kit: Kit) -> str | None:
-    """Return what a program needs and no sketch has: "tasks", "remote" or "ways".
+    """Return a feature of a program that sketches lack: "tasks", "remote" or "ways".
 
-    Tasks are TASK and WHEN, ways are CM and DEG that are calculated. None where there is a sketch.
+    Tasks are TASK and WHEN, ways are CM and DEG that are calculated. None if there is a sketch.
     """
     statements = list(ir.all_statements(program))
     sensors_read = {statement.sensor for statement in statements if isinstance(statement, ir.Read)}
@@ -100,7 +100,8 @@ class _Sketch:
     def __init__(self, source: Source, program: ir.Program, robot: Robot, language: str) -> None:
         self.source, self.program, self.robot, self.language = source, program, robot, language
         self.is_exact = needs_numbers(program, robot)
-        self.are_yes_no = ir.yes_no_variables(program, robot.kit)  # of each variable
+        # Whether each variable is a yes-no value.
+        self.are_yes_no = ir.yes_no_variables(program, robot.kit)
         self.argument_variables = frozenset(
             k for procedure in program.procedures for k in procedure.values
         )
@@ -208,10 +209,10 @@ class _Sketch:
         comment_lines, statements.lines = statements.lines, []
         statements.variables_set_by_calls = self.argument_variables - {
             *procedure.values
-        }  # those of this DEF it sets itself
+        }  # the DEF sets these itself
         variables_read = ir.referenced_numbers("VARIABLE", ir.walk(procedure.body))
         for k in procedure.values:
-            if k not in variables_read:  # or a compiler warns
+            if k not in variables_read:  # a compiler would warn about an unused variable
                 statements.add_line(f"(void){self.sketch_names.variables[k]};")
         statements.add_body(procedure.body)
         body, statements.lines = statements.lines, []
@@ -299,7 +300,7 @@ class _Sketch:
     # -- its parts
 
     def setup_lines(self) -> list[str]:
-        """Return what setup() does first."""
+        """Return the first lines of setup()."""
         lines = list(self.plan.begin_lines)
         if self.needs_serial():
             lines.append(f"Serial.begin({self.robot.board.baud});")

@@ -17,7 +17,7 @@ from tiniscript.semantics.ir import Program
 from tiniscript.syntax.checksums import with_checksum
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token, scan
 
-EMPTY_PROGRAM = "SI|"  # a program that does nothing: an empty line would be none
+EMPTY_PROGRAM = "SI|"  # a program that does nothing, because an empty line is not a program
 
 
 def spell_out(tokens: Iterable[Token]) -> Iterator[Token]:
@@ -80,7 +80,7 @@ def line_of(source: Source) -> str:
 
 
 class PlainLocation(NamedTuple):
-    """What `span` of the text says makes the code from `offset` on."""
+    """The span of the text that the code from `offset` on comes from."""
 
     offset: int
     span: Span
@@ -98,7 +98,7 @@ class PlainCode(NamedTuple):
 
 
 def plain_code(program: Program) -> PlainCode:
-    """Return the plain code of a checked program, as it is written."""
+    """Return the plain code of a checked program, as written."""
     code, locations = lower(program, is_plain=True)
     short_offsets = _short_offsets(code)
     short_locations = tuple(
@@ -108,7 +108,7 @@ def plain_code(program: Program) -> PlainCode:
 
 
 def _short_offsets(code: bytes) -> dict[int, int]:
-    """Return where each instruction, and the end, would be if no jump were a far one."""
+    """Return the offsets of all instructions, and of the end, if all jumps were short."""
     short_offsets, offset, excess_bytes = {0: 0}, 0, 0
     while offset < len(code):
         op = op_at(code, offset)

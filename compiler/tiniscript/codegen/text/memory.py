@@ -1,4 +1,4 @@
-"""How much of its memory a robot's reader uses while it reads a program, token by token.
+"""The memory that a robot's reader needs while it reads a program, token by token.
 
 Knows what a reader keeps beside the code, and in which order: `docs/develop/text.md`. The code
 grows from one end of the memory; names, blocks that are open and operators that wait grow from the
@@ -24,14 +24,14 @@ from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, MINUS, NOT, OPEN
 
 MOST_BRACKETS = 254  # open at once
-_BLOCK_BYTES = 3  # and three sets of sensors
-_DEF_BYTES = 6  # in front of the name of a DEF, and a set of sensors
+_BLOCK_BYTES = 3  # bytes of a block, without its three sets of sensors
+_DEF_BYTES = 6  # bytes before a DEF's name and its set of sensors
 _JUMP_BYTES = 2  # bytes of an instruction with a short jump
-_TASK_BYTES = 3  # of one that begins a task
+_TASK_BYTES = 3  # bytes of an entry that begins a task
 
 
 class Need(NamedTuple):
-    """So many bytes are needed from the token at `span` on, and fewer before."""
+    """The bytes needed from the token at `span` on; fewer are enough before it."""
 
     byte_count: int
     span: Span
@@ -51,7 +51,7 @@ class _Block:
 
     def __init__(self, word: str, read_before: int, readings_taken: int, name: str = "") -> None:
         self.word = word
-        self.name = name  # of a DEF
+        self.name = name  # name of the DEF
         self.read_before = read_before
         self.readings_taken = readings_taken
         self.read_after = -1
@@ -71,10 +71,10 @@ class Reader:
         self.most_bytes = 0  # bytes that have been wanted at once
         self.block_bytes = _BLOCK_BYTES + 3 * sensor_bytes
         self.def_bytes = _DEF_BYTES + sensor_bytes
-        self.code_bytes = 0  # of the code
-        self.used_bytes = 0  # at the other end
+        self.code_bytes = 0  # bytes of code
+        self.used_bytes = 0  # bytes used from the other end
         self.open_brackets = 0
-        self.has_extent_unit = False  # of the instruction whose brackets have been read
+        self.has_extent_unit = False  # whether the last brackets had a unit of length or angle
         self.extra_bracket_span: Span | None = None  # the first bracket after MOST_BRACKETS
         self.sensors = {
             device.name: k for k, device in enumerate(kit_for_tokens(tokens, kit).readings)
@@ -82,11 +82,12 @@ class Reader:
         self.actuators = {device.name: k for k, device in enumerate(kit.actuators)}
         self.variables: dict[str, int] = {}
         self.own_variables: dict[str, int] = {}  # the values of the DEF that is open
-        self.variable_count = 0  # of variables so far, with the values of DEFs
+        self.variable_count = 0  # variables so far, including the values of DEFs
         self.defs: dict[str, _Def] = {}
         self.blocks: list[_Block] = []
         self.read_mask = 0  # sensors that are surely read
-        self.known_mask = 0  # those, and what this instruction has read
+        # Variables known so far, including those that this instruction has read.
+        self.known_mask = 0
         self.pending_operators: list[
             tuple[int, str]
         ] = []  # operators: how tightly each binds, its name
@@ -212,7 +213,7 @@ class Reader:
         self.emit_numbered(number)
 
     def number_of(self, name: str, default: int) -> int:
-        """Return the number of a variable, and `default` where there is none."""
+        """Return the number of a variable, and `default` if there is none."""
         return self.own_variables.get(name, self.variables.get(name, default))
 
     def read_def_values(self) -> None:
@@ -412,7 +413,7 @@ class Reader:
         self.reduce(binding)
         if binding <= AND:
             self.emit(1)
-            self.push()  # where its jump is
+            self.push()  # place of the jump
             self.emit(1)
         self.wait(binding, name)
 

@@ -1,4 +1,4 @@
-"""What a robot that reads text says: about a wrong line, and to a person.
+"""The messages of a robot that reads text, for wrong lines and for people.
 
 Knows numbers and names; the catalogue `robot` has the words. Generated into the firmware, which has
 room for one language. A number is never used for something else. Texts are ASCII, for any terminal.
@@ -10,23 +10,72 @@ from tiniscript.base.languages import find_text
 
 MOST_CHARACTERS = 40  # characters of a text
 
-# By number, from 1. In front of what is said stands a column; of RANGE, the number and the least
-# that goes there, and after it the most.
-# fmt: off
+# By number, from 1. A message begins with a column; that of RANGE also with the value's number and
+# its least value, and ends with the largest. fmt: off
 PROBLEMS = (
-    "CHECKSUM", "CHARACTER", "NUMBER", "TOO_BIG", "SETUP", "PING", "INSTRUCTION", "UNKNOWN_WORD",
-    "UNKNOWN_VALUE", "RESERVED", "SEPARATOR", "OPEN", "CLOSE", "VALUE", "COUNT", "RANGE",
-    "WANTS_NUMBER", "WANTS_YES_NO", "COMPARE", "NOT", "KIND", "FOREVER_HERE", "UNTIL", "BLOCK",
-    "BREAK", "DEF", "TAKEN", "LIMIT", "FULL", "LACKS", "COMMA",
+    "CHECKSUM",
+    "CHARACTER",
+    "NUMBER",
+    "TOO_BIG",
+    "SETUP",
+    "PING",
+    "INSTRUCTION",
+    "UNKNOWN_WORD",
+    "UNKNOWN_VALUE",
+    "RESERVED",
+    "SEPARATOR",
+    "OPEN",
+    "CLOSE",
+    "VALUE",
+    "COUNT",
+    "RANGE",
+    "WANTS_NUMBER",
+    "WANTS_YES_NO",
+    "COMPARE",
+    "NOT",
+    "KIND",
+    "FOREVER_HERE",
+    "UNTIL",
+    "BLOCK",
+    "BREAK",
+    "DEF",
+    "TAKEN",
+    "LIMIT",
+    "FULL",
+    "LACKS",
+    "COMMA",
     "ONE_TASK",
 )
-DEF_PROBLEMS = frozenset(("DEF", "ONE_TASK"))  # only a robot whose reader has DEFs says these
+DEF_PROBLEMS = frozenset(("DEF", "ONE_TASK"))  # only robots whose reader knows DEF report these
 # Of MISTAKE and HELP the firmware makes the text.
 REMARKS = (
-    "OK", "OK_BUTTON", "LOST", "WAITING", "GIVEN_UP", "STOPPED", "LATCHED", "SAVING",
-    "REFUSED", "NOT_OWNER", "HELD_BACK", "DONE", "FAULT", "MISTAKE", "HELLO", "HELP", "CUT",
-    "LEVEL_UNO", "LEVEL_MEGA", "LEVEL_ESP32", "FAILED", "MUTE",
-    "PAUSE", "ENTER", "NO_ZERO", "STARTED_AGAIN", "NO_KEYS",
+    "OK",
+    "OK_BUTTON",
+    "LOST",
+    "WAITING",
+    "GIVEN_UP",
+    "STOPPED",
+    "LATCHED",
+    "SAVING",
+    "REFUSED",
+    "NOT_OWNER",
+    "HELD_BACK",
+    "DONE",
+    "FAULT",
+    "MISTAKE",
+    "HELLO",
+    "HELP",
+    "CUT",
+    "LEVEL_UNO",
+    "LEVEL_MEGA",
+    "LEVEL_ESP32",
+    "FAILED",
+    "MUTE",
+    "PAUSE",
+    "ENTER",
+    "NO_ZERO",
+    "STARTED_AGAIN",
+    "NO_KEYS",
 )
 # fmt: on
 

@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 CRLF = b"\r\n"
-ANSWER_MS = 500  # for an answer of a module that knows the end of a line
-SLOW_ANSWER_MS = 1300  # of one that waits for a second of silence instead
-RESTART_MS = 1200  # until a module answers again after it was restarted
-WAKE_BYTES = 100  # of any text but AT commands: more than 80 wake a module that sleeps
+ANSWER_MS = 500  # time for an answer of a module that detects line ends
+SLOW_ANSWER_MS = 1300  # time for an answer of a module that waits for a second of silence
+RESTART_MS = 1200  # time for a module to answer again after a restart
+WAKE_BYTES = 100  # text other than AT commands; more than 80 bytes wake a sleeping module
 BAUDS = (9600, 38400, 115200, 57600, 19200)  # a robot's, and 38400 of an HC-05 that is set up
 
 _FROM_1 = {9600: "4", 19200: "5", 38400: "6", 57600: "7", 115200: "8"}
@@ -47,7 +47,7 @@ class Dialect(NamedTuple):
 
     @property
     def wait_ms(self) -> int:
-        """How long an answer takes, at most."""
+        """The longest time that an answer takes."""
         return ANSWER_MS if self.line_end else SLOW_ANSWER_MS
 
 
@@ -76,7 +76,7 @@ DIALECTS = (HC05, HC05_3, HC06, HC06_3, HM10, CC41, BT05)
 
 
 def is_ok(answer: str) -> bool:
-    """Whether an answer says that a command was done: `OK`, `OKsetname`, `OK+Set:4`."""
+    """Return whether an answer confirms a command: `OK`, `OKsetname`, `OK+Set:4`."""
     return not is_error(answer) and any(word.startswith("OK") for word in answer.split())
 
 

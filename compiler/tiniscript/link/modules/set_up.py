@@ -1,6 +1,6 @@
-"""Sets a module's name, PIN and speed, and asks it afterwards: what is said done was seen.
+"""Sets a module's name, PIN and speed, and checks them afterwards.
 
-The speed comes last, and is looked for at all speeds where it cannot be found at the new one: so
+The speed comes last, and is looked for at all speeds if it cannot be found at the new one: so
 nobody is left with a module whose speed they do not know.
 """
 
@@ -14,17 +14,17 @@ from tiniscript.link.modules.talk import Module, ask, find_module, is_there
 from tiniscript.link.wire import Wire
 
 NAME, PIN, BAUD = "name", "pin", "baud"
-# How a step ends. UNSEEN: the module says that it is done, and does not tell the value.
+# Results of a step. UNSEEN: the module confirms it, but does not report the value.
 DONE, UNSEEN, REFUSED, SILENT, DIFFERS, ELSEWHERE, LOST = (
     "done", "unseen", "refused", "lost_midway", "differs", "elsewhere", "lost",
 )  # fmt: skip
 GOOD_OUTCOMES = (DONE, UNSEEN)
 NAME_LETTERS = set("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_ ")
-NAME_START = "Tini-"  # how a name from a robot's id begins
+NAME_START = "Tini-"  # start of a name made from a robot's id
 
 
 class WantedSettings(NamedTuple):
-    """What a module is to have; None leaves it as it is."""
+    """The requested settings of a module; None leaves one unchanged."""
 
     name: str | None = None
     pin: str | None = None
@@ -32,7 +32,7 @@ class WantedSettings(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What is set, to which value, by which commands: the first that is taken counts."""
+    """A setting, its value, and the commands to try until one is accepted."""
 
     setting: str
     value: str
@@ -40,7 +40,7 @@ class Step(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """How a step has ended; `answer` is what the module answered, or the speed at which it is."""
+    """The result of a step; `answer` is the module's answer, or its speed."""
 
     step: Step
     status: str
@@ -53,7 +53,7 @@ def name_for(robot_id: int) -> str:
 
 
 def unsupported_setting(settings: WantedSettings, dialect: Dialect) -> str:
-    """Return what this kind of module cannot have: `name`, `pin`, `baud`, or an empty text."""
+    """Return the setting that this kind of module lacks: `name`, `pin`, `baud`, or ""."""
     name, pin, baud = settings
     if name is not None and (
         not name.strip() or name != name.strip() or set(name) - NAME_LETTERS
@@ -67,7 +67,7 @@ def unsupported_setting(settings: WantedSettings, dialect: Dialect) -> str:
 
 
 def plan_steps(settings: WantedSettings, dialect: Dialect) -> list[Step]:
-    """Return what is to be sent, in this order. Nothing is sent here."""
+    """Return the steps in the order in which to send them. Sends nothing."""
     name, pin, baud = settings
     plan = (
         (NAME, name, dialect.name_commands, name),
@@ -122,7 +122,7 @@ def _apply_step(wire: Wire, dialect: Dialect, step: Step) -> Outcome:
 
 
 def _is_same(step: Step, dialect: Dialect, answer: str) -> bool:
-    """Whether an answer has the value.
+    """Return whether an answer contains the value.
 
     Firmware that wants a PIN in quotes tells `+PIN:"1234"`. Where an older one tells
     `+PSWD:"1234"`, it has kept the quotes.

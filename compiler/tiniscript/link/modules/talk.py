@@ -40,7 +40,7 @@ class Module(NamedTuple):
 
 
 def ask(wire: Wire, command: str, line_end: bytes, wait_ms: int) -> str:
-    """Send a command and return the answer, or an empty text where none comes.
+    """Send a command and return the answer, or an empty text if none comes.
 
     Some clones say a command again before they answer it: that is no part of the answer.
     """
@@ -55,11 +55,12 @@ def find_module(
     on_baud: Callable[[int], None] = lambda baud: None,
     wakes: bool = True,
 ) -> Module | None:
-    """Return the module on a wire, or None where none answers. `on_baud` is told each speed.
+    """Return the module on a wire, or None if there is no answer. `on_baud` is called for each
+    speed.
 
-    `wakes`: where none answers a text of 100 bytes is sent, which wakes an HM-10 that sleeps.
+    `wakes`: if none answers a text of 100 bytes is sent, which wakes an HM-10 that sleeps.
     """
-    wire.receive(SLOW_ANSWER_MS, SLOW_ANSWER_MS)  # what was sent before is no part of a command
+    wire.receive(SLOW_ANSWER_MS, SLOW_ANSWER_MS)  # discards the answers to earlier bytes
     for is_awake in (False, True) if wakes else (False,):
         for baud in bauds:
             on_baud(baud)
@@ -75,12 +76,12 @@ def find_module(
 
 
 def is_there(wire: Wire, dialect: Dialect) -> bool:
-    """Whether a module of this kind answers at the speed that the wire has."""
+    """Return whether a module of this kind answers at the wire's speed."""
     return any(is_ok(ask(wire, "AT", dialect.line_end, dialect.wait_ms)) for _ in range(TRIES))
 
 
 def _find_line_ending(wire: Wire) -> bytes | None:
-    """Return how a command ends for the module on the wire, or None where none answers.
+    """Return the line ending of the module on the wire, or None if there is no answer.
 
     A module that waits for a silence must not hear more before that; one that waits for the end of
     a line has `AT` already when it comes.
@@ -88,7 +89,7 @@ def _find_line_ending(wire: Wire) -> bytes | None:
     if _is_accepted(ask(wire, "AT", b"", SLOW_ANSWER_MS)):
         return b""
     text = ask(wire, "", CRLF, SLOW_ANSWER_MS)
-    if is_error(text):  # it had half a command of before
+    if is_error(text):  # the module still had half of an earlier command
         text = ask(wire, "AT", CRLF, ANSWER_MS)
     return CRLF if _is_accepted(text) else None
 
@@ -98,7 +99,7 @@ def _is_accepted(answer: str) -> bool:
 
 
 def _identify_dialect(wire: Wire, line_end: bytes) -> tuple[Dialect, str]:
-    """Return which module this is, and what it says of itself."""
+    """Return the kind of module, and its answer."""
     if not line_end:
         text = ask(wire, "AT+VERSION", line_end, SLOW_ANSWER_MS)
         if text.startswith("OK") and not text.startswith("OK+") and text != "OK":

@@ -1,1 +1,1 @@
-"""One port, many commands: the command that holds a port shares its session with the others."""
+"""Shares one port among commands: the command that holds it lets others use its session."""

@@ -1,6 +1,6 @@
 """Whose connection it is: the user at the other end of a connection within this computer.
 
-A port of 127.0.0.1 is there for all users. Linux tells who has the other end; where nobody tells,
+A port of 127.0.0.1 is there for all users. Linux tells who has the other end; if nobody tells,
 everybody is let in.
 """
 
@@ -13,7 +13,7 @@ import struct
 import sys
 from typing import NamedTuple
 
-_SOCK_DIAG = 4  # of netlink, and its request and its answer
+_SOCK_DIAG = 4  # netlink protocol, with its request and answer below
 _BY_FAMILY, _REQUEST, _ERROR = 20, 1, 2
 _ALL_STATES, _NO_COOKIE = 0xFFFFFFFF, b"\xff" * 8
 _HEAD = struct.Struct("=IHHII")  # length, type, flags, number, sender
@@ -42,15 +42,15 @@ class SocketOwner(NamedTuple):
 
 
 def is_of_this_user(peer: socket.socket) -> bool:
-    """Whether this user, or root, has the other end of an accepted connection.
+    """Return whether the other end of an accepted connection belongs to this user or root.
 
-    False where nobody has it any more: who has hung up can have been anybody.
+    False if nobody has it any more: who has hung up can have been anybody.
     """
     if sys.platform != "linux":
         return True
     try:
         peer_address, own_address = peer.getpeername(), peer.getsockname()
-    except OSError:  # it has gone
+    except OSError:  # the process has gone
         return False
     try:
         owner = _socket_owner(peer_address, own_address)
@@ -60,9 +60,9 @@ def is_of_this_user(peer: socket.socket) -> bool:
 
 
 def is_of_another_user(number: int) -> bool:
-    """Whether another user than this one and root listens at a port of 127.0.0.1.
+    """Return whether another user, except root, listens at a port of 127.0.0.1.
 
-    False where nobody listens there, and where nobody tells.
+    False if nobody listens there, and if nobody tells.
     """
     if sys.platform == "win32":
         return False
@@ -74,12 +74,12 @@ def is_of_another_user(number: int) -> bool:
 
 
 def tells_users() -> bool:
-    """Whether this system says whose a connection is."""
+    """Return whether this system reports the users of connections."""
     return sys.platform == "linux"
 
 
 def is_on_this_computer(peer: socket.socket) -> bool:
-    """Whether the other end of an accepted connection is in this computer."""
+    """Return whether the other end of an accepted connection is on this computer."""
     try:
         with socket.socket() as probe:
             probe.bind((peer.getpeername()[0], 0))
@@ -89,7 +89,7 @@ def is_on_this_computer(peer: socket.socket) -> bool:
 
 
 def _socket_owner(peer_address: tuple[str, int], own_address: tuple[str, int]) -> SocketOwner:
-    """Return what the kernel knows of the socket at `peer_address`. Raises OSError."""
+    """Return the kernel's information about the socket at `peer_address`. Raises OSError."""
     if sys.platform != "linux":
         raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))
     addresses = socket.inet_aton(peer_address[0]), socket.inet_aton(own_address[0])

@@ -61,7 +61,7 @@ class Greeting(NamedTuple):
 def read_greeting(data: bytes) -> Greeting | None:
     """Return the greeting that data begins with, or None while it is still incomplete.
 
-    Raises BadMessage where data is no greeting.
+    Raises BadMessage if data is no greeting.
     """
     match = _GREETING.match(data)
     if match is not None:
@@ -102,7 +102,7 @@ def message_of(line: bytes) -> JsonMessage:
 
 
 def read_field(message: JsonMessage, name: str, field_type: type[T]) -> T:
-    """Return a field of this kind. Raises BadMessage where it is something else."""
+    """Return a field of this kind. Raises BadMessage if it is something else."""
     value = message.get(name)
     if type(value) is not field_type:  # True is no whole number
         raise BadMessage
@@ -114,7 +114,7 @@ def read_int(message: JsonMessage, name: str) -> int:
 
 
 def read_bytes(message: JsonMessage, name: str) -> bytes:
-    """Return a field of bytes in hex. Raises BadMessage where it is something else."""
+    """Return a field of bytes in hex. Raises BadMessage if it is something else."""
     try:
         return bytes.fromhex(read_field(message, name, str))
     except ValueError:

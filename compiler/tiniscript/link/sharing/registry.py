@@ -65,7 +65,7 @@ def find_all() -> list[Registration]:
 
 
 def write(registration: Registration) -> None:
-    """Write the file by which clients find a server. Raises OSError where that is impossible."""
+    """Write the file by which clients find a server. Raises OSError if that is impossible."""
     _make_folder()
     tidy()
     files.replace(_path(registration.port), json.dumps(registration._asdict()).encode(), 0o600)
@@ -73,7 +73,9 @@ def write(registration: Registration) -> None:
 
 def remove(registration: Registration) -> None:
     """Remove the file of a server, unless another server has replaced it."""
-    _remove(_path(registration.port), lambda written: written == registration)
+    _remove(
+        _path(registration.port), lambda written_registration: written_registration == registration
+    )
 
 
 def _remove(path: Path, is_meant: Callable[[Registration | None], bool]) -> None:
@@ -115,9 +117,9 @@ def _is_dead(registration: Registration | None) -> bool:
 
 
 def is_taken(number: int) -> bool:
-    """Whether a process listens on a TCP port of this computer; makes no connection."""
+    """Return whether a process listens on a TCP port of this computer, without connecting."""
     with socket() as probe:
-        if sys.platform != "win32":  # on Windows it would take the port from its owner
+        if sys.platform != "win32":  # on Windows this would take the port from its owner
             probe.setsockopt(SOL_SOCKET, SO_REUSEADDR, 1)
         try:
             probe.bind(("127.0.0.1", number))
@@ -133,10 +135,10 @@ def forget(port: str) -> None:
 
 
 def lock_port(port: str) -> IO[bytes] | None:
-    """Return a file that is locked for this process, or None where another process has the lock.
+    """Return a file that is locked for this process, or None if another process has the lock.
 
     Systems lock serial ports, but not addresses: two processes could use the same one. The lock
-    ends with the file, or with the process. Raises OSError where nothing can be locked.
+    ends with the file, or with the process. Raises OSError if nothing can be locked.
     """
     _make_folder()
     return _try_lock(lock_path(port))
@@ -157,7 +159,7 @@ class _Lock(FileIO):
 
     @property
     def is_there(self) -> bool:
-        """Whether this locked file is still the one at its path."""
+        """Return whether this locked file is still the one at its path."""
         try:
             return os.path.samestat(os.fstat(self.fileno()), self.path.stat())
         except OSError:
@@ -178,7 +180,7 @@ class _Lock(FileIO):
 
 
 def _try_lock(path: Path) -> _Lock | None:
-    """Return a locked file, or None where another process has locked it.
+    """Return a locked file, or None if another process has locked it.
 
     The previous owner may have removed the file between our open and our lock: then the lock
     protects nothing, and the file that is now at the path is tried.

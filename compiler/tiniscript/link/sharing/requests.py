@@ -28,8 +28,8 @@ from tiniscript.link.sharing import protocol
 from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
 from tiniscript.link.wifi import BrokerSettings, Network, Tls
 
-MOST_CODE_BYTES = 0x7FFF  # the most that an image's header can say
-MOST_LATER_BYTES = 0xFF - HEADER_BYTES  # the most that it can say
+MOST_CODE_BYTES = 0x7FFF  # the largest value in an image's header
+MOST_LATER_BYTES = 0xFF - HEADER_BYTES  # the largest value of the field
 T = TypeVar("T")
 
 
@@ -103,7 +103,7 @@ def _message_arguments(name: str, message: JsonMessage) -> tuple[object, ...]:
 
 
 def _field(message: JsonMessage, field: Field) -> int | bytes:
-    """Return what a message says for a field of the link's. Raises BadMessage."""
+    """Return the value of a link field in a message. Raises BadMessage."""
     if field.kind == "rest":
         return _bytes(
             message, field.name, field.least_bytes, min(field.most_bytes, SEALED_PAYLOAD_BYTES)
@@ -125,7 +125,7 @@ def _bounded_number(message: JsonMessage, name: str, limit: int, default: int | 
 
 
 def _bytes(message: JsonMessage, name: str, least_bytes: int, most_bytes: int) -> bytes:
-    """Return so many bytes. Raises BadMessage."""
+    """Return the bytes of a field. Raises BadMessage."""
     data = protocol.read_bytes(message, name)
     if not least_bytes <= len(data) <= most_bytes:
         raise BadMessage
@@ -133,10 +133,10 @@ def _bytes(message: JsonMessage, name: str, least_bytes: int, most_bytes: int) -
 
 
 def _pressed_keys(message: JsonMessage) -> tuple[object, ...]:
-    pressed = RemoteState(*(protocol.read_int(message, name) for name in RemoteState._fields))
-    if not pressed.is_sound:
+    pressed_state = RemoteState(*(protocol.read_int(message, name) for name in RemoteState._fields))
+    if not pressed_state.is_sound:
         raise BadMessage
-    return pressed
+    return pressed_state
 
 
 def _places(message: JsonMessage) -> tuple[int, ...]:
@@ -197,7 +197,8 @@ def _image(message: JsonMessage) -> Image:
         _bounded_number(message, "checksum", 1 << 32),
         (major, minor),
         _bytes(message, "later", 0, MOST_LATER_BYTES),
-        _bounded_number(message, "needs", 1 << 8, 0),  # without it the image is of 2.0
+        # Without this field, the image is of version 2.0.
+        _bounded_number(message, "needs", 1 << 8, 0),
     )
 
 
@@ -206,8 +207,7 @@ def _upload(message: JsonMessage) -> tuple[object, ...]:
     return (_image(message), *flags, _kit(message))
 
 
-# What requests are given, read from a message, where that is not what the link's message of their
-# name has.
+# Arguments of requests, read from a message, if they differ from the link's message of that name.
 _ARGUMENT_READERS: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
     **dict.fromkeys(
         ("hello", "ping", "fetch", "hold_back", "wifi", "forget_wifi", "broker"),

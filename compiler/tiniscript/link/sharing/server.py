@@ -41,17 +41,17 @@ from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.requests import is_detached, request_maker
 
 GREETING_S = 2.0  # timeout for a new client's greeting
-MOST_CLIENTS = 64  # at a time, and as many connections without a greeting
-MOST_REQUESTS = 8  # of one client, at a time
-FULL_BYTES = 200_000  # in the send buffer: a client with more misses values
-TOO_FULL_BYTES = 1_000_000  # in the send buffer: a client with more is disconnected
+MOST_CLIENTS = 64  # most clients at a time, and most connections without a greeting
+MOST_REQUESTS = 8  # most requests of one client at a time
+FULL_BYTES = 200_000  # bytes in the send buffer over which a client misses values
+TOO_FULL_BYTES = 1_000_000  # bytes in the send buffer over which a client is disconnected
 FULL_S = 0.02  # pause before the next try when the process has too many files open
 PAUSE_S = 0.1  # between two checks while a client has a run or a request
-REST_S = 1.0  # between two checks while none has
+REST_S = 1.0  # interval of checks without one
 _ENDING_EVENTS = ("DONE", "FAULT", "STOPPED", "RESTARTED", "LOST")
 _DROPPABLE_EVENTS = ("SHOW", "TEXT", "READING")
 _STARTING_REQUESTS = ("upload", "live", "start")
-# that end with what they start
+# Verbs whose runs end with them.
 _DRIVING_VERBS = ("upload", "start", "set trim", "doctor --selftest", "python")
 
 
@@ -62,7 +62,7 @@ class ConnectedClient:
         self.peer = peer
         self.verb = ""
         self.greeting = b""  # the bytes that have arrived so far
-        self.heard_s = monotonic()  # before the greeting: when it connected
+        self.heard_s = monotonic()  # before the greeting, the time of the connection
         self.messages = protocol.MessageReader(protocol.LINE_BYTES)
         self.speaker = 0  # its number, once it presses keys
         self.requests: dict[int, ServedRequest] = {}
@@ -78,7 +78,7 @@ class ServedRequest(NamedTuple):
 
 
 class Server:
-    """Shares a line until `close`. Raises OSError where the line cannot be shared."""
+    """Shares a line until `close`. Raises OSError if the line cannot be shared."""
 
     def __init__(
         self, connection: PortConnection, port: str, baud: int, verb: str,
@@ -103,8 +103,8 @@ class Server:
         self._told_events: deque[TimedEvent] = deque()
         self._clients: list[ConnectedClient] = []
         self._speaker_count = 0
-        self._owner: tuple[ConnectedClient, int] | None = None  # of the current run
-        self._orphaned_requests: list[ServedRequest] = []  # of clients that have left
+        self._owner: tuple[ConnectedClient, int] | None = None  # owner of the current run
+        self._orphaned_requests: list[ServedRequest] = []  # requests of clients that have left
         self._is_closing = False
         self._selector = selectors.DefaultSelector()
         self._selector.register(self._listening_socket, selectors.EVENT_READ)
@@ -121,21 +121,24 @@ class Server:
 
     @property
     def has_run(self) -> bool:
-        """Whether a client has started the current run, and the run ends with that client."""
+        """Return whether a client owns the current run, which ends with that client."""
         owner = self._owner
         return owner is not None and self._connection.runs(owner[1])
 
     @property
     def is_needed(self) -> bool:
-        """Whether a client drives the robot, or is about to: one whose command ends with that."""
+        """Return whether a client drives the robot or is about to, and its command ends with the
+        run.
+        """
         return self.may_have_run or any(
             client.verb in _DRIVING_VERBS for client in list(self._clients)
         )
 
     @property
     def may_have_run(self) -> bool:
-        """Whether `has_run`, or the request for such a run may still be on its way to the robot.
-        After `close` nothing changes that any more."""
+        """Return whether `has_run`, or a request for such a run is under way. `close` freezes the
+        answer.
+        """
         clients = list(self._clients)
         requests = [request for client in clients for request in list(client.requests.values())]
         return self.has_run or any(

@@ -24,7 +24,7 @@ from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.requests import ClientRequest, ClientRequests
 
 ANSWER_S = 2.0  # timeout for the server's greeting
-SEND_S = 2.0  # timeout for a server that takes no bytes
+SEND_S = 2.0  # timeout for a server that accepts no bytes
 DEAF_S = 5.0  # timeout for the answer to a heartbeat
 
 
@@ -57,8 +57,8 @@ class SharedConnection(LinkConnection):
         self._request_count = 0
         self._events: deque[tuple[int, Event]] = deque()
         self._end: ConnectionLost | None = None
-        self._heartbeat_s = 0.0  # when the last heartbeat was sent
-        self._unanswered_since_s: float | None = None  # since when a heartbeat is
+        self._heartbeat_s = 0.0  # time of the last heartbeat
+        self._unanswered_since_s: float | None = None  # time of the first unanswered heartbeat
 
     @property
     def robot(self) -> DeviceInfo | None:
@@ -176,14 +176,14 @@ class SharedConnection(LinkConnection):
 def join(port: str, verb: str) -> SharedConnection | None:
     """Return the connection through the command that holds a port; None if no command does.
 
-    Raises OtherVersion where the server is another version of tsc; `stop` works there, too.
+    Raises OtherVersion if the server is another version of tsc; `stop` works there, too.
     """
     registration = registry.find_registration(port)
     return None if registration is None else _connect_to(registration, verb)
 
 
 def is_alive(registration: Registration) -> bool:
-    """Whether a server is still there."""
+    """Return whether a server is still running."""
     try:
         client = _connect_to(registration, protocol.LOOKING_VERB)
     except OtherVersion:
@@ -204,7 +204,7 @@ def _connect_to(registration: Registration, verb: str) -> SharedConnection | Non
         reader = protocol.MessageReader(protocol.LINE_BYTES)
         messages = _read_greeting(peer, reader)
         if protocol.read_field(messages[0], "answer", str) != registration.answer:
-            raise BadMessage  # another program listens there now
+            raise BadMessage  # another program is listening on that port
         version = protocol.read_field(messages[0], "tsc", str)
         if version != __version__ and verb != "stop":
             raise OtherVersion(registration, version)

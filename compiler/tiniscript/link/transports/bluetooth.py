@@ -26,9 +26,9 @@ from tiniscript.link.transports.event_loop import EventLoop, shared_loop
 from tiniscript.link.transports.pushed import END_REASON, PushedTransport
 
 CONNECT_S = 15.0
-QUEUE_S = 60.0  # and of those that wait for the connections of others
+QUEUE_S = 60.0  # timeout of a queued operation, including its wait for other connections
 CLOSE_S = 5.0  # BlueZ takes 2 s
-UART_BITS = 10  # of a byte, with its start and its stop
+UART_BITS = 10  # bits of a byte, including start and stop
 LEAST_WRITE_BYTES = 20  # bytes of a write before more is negotiated
 
 T = TypeVar("T")
@@ -61,7 +61,7 @@ UART_SERVICES = (
         is_paced=True,
     ),
 )
-_found_devices: dict[str, BLEDevice] = {}  # by address: devices that a search has found
+_found_devices: dict[str, BLEDevice] = {}  # devices found by a search, by address
 
 
 def resolve(port: str) -> str:
@@ -134,7 +134,7 @@ class BluetoothPort(PushedTransport):
     def close(self) -> None:
         client, self._client = self._client, None
         if client is not None:
-            with suppress(Exception):  # it has ended already
+            with suppress(Exception):  # the connection may already have ended
                 self._loop.run(client.disconnect(), CLOSE_S)
 
     # -- in the loop ------------------------------------------------------------------------------
@@ -200,7 +200,7 @@ def _run(loop: EventLoop, work: Coroutine[Any, Any, T], limit_s: float) -> T:
         raise PortError(errors.SLOW) from None
     except BleakDeviceNotFoundError as failure:
         raise PortError(errors.UNREACHABLE, str(failure)) from None
-    except Exception as failure:  # of bleak, of D-Bus, of the system: each has its own
+    except Exception as failure:  # bleak, D-Bus and the system each raise their own exceptions
         raise PortError(search.reason_of(failure), str(failure)) from None
 
 

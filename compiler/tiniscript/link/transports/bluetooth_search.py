@@ -26,12 +26,13 @@ NORDIC_UART = "6e400001-b5a3-f393-e0a9-e50e24dcca9e"
 HM10 = "0000ffe0-0000-1000-8000-00805f9b34fb"
 SERVICES = (NORDIC_UART, HM10)
 
-SEARCH_S = 10.0  # for one robot
-LINGER_S = 1.5  # after a name was seen: an HM-10 says its own once in 1.3 s, and two may have one
-LIST_S = 4.0  # for all robots
+SEARCH_S = 10.0  # time to search for one robot
+# Wait after the first match: an HM-10 sends its name every 1.3 s, and two robots may share one.
+LINGER_S = 1.5
+LIST_S = 4.0  # time to list all robots
 LEAVE_S = 3.0  # timeout of the end of a scan
 MAX_NAMES_SHOWN = 8  # names in a sentence
-MOST_DEVICES = 1000  # that a scan keeps
+MOST_DEVICES = 1000  # most devices that a scan keeps
 
 _Unavailable = BleakBluetoothNotAvailableReason
 _FORBIDDEN = (
@@ -70,7 +71,7 @@ class _Scan:
                 self._scanner = BleakScanner(self._notice_device)
                 start = asyncio.ensure_future(self._scanner.start())
                 try:
-                    await asyncio.shield(start)  # one that begins cannot be ended yet
+                    await asyncio.shield(start)  # a start under way cannot be cancelled
                     for device in await _connected_devices():
                         self._keep_device(SeenDevice(device, device.name or "", True))
                 except BaseException:
@@ -168,7 +169,7 @@ async def find_robots() -> list[SeenDevice]:
 
 
 def reason_of(failure: Exception) -> str:
-    """Return why Bluetooth cannot be used, a name of `errors`."""
+    """Return the reason why Bluetooth cannot be used, as a name in `errors`."""
     if isinstance(failure, BleakBluetoothNotAvailableError):
         if failure.reason in _FORBIDDEN:
             return errors.RADIO_FORBIDDEN

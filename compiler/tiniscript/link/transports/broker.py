@@ -33,22 +33,24 @@ PLAIN_PORT, TLS_PORT = 1883, 8883
 ROOT = "tiniscript"
 CONNECT_S = 5.0
 KEEP_ALIVE_S = 4
-LIST_S = 10.0  # until a broker has sent what it retains
+LIST_S = 10.0  # time for a broker to send its retained messages
 LEAVE_S = 0.5
 PATIENCE_S = 4.0  # a robot frees its place when a client that was killed has been silent for 3 s
-QUIET_S = 0.3  # of silence, and that was all
-MOST_ROBOTS = 250  # that a list keeps
-MESSAGE_BYTES = 4096  # of one that is taken; a robot sends less
-SKIPPED_BYTES = 1 << 20  # of one that is left out; a larger one ends the connection
+QUIET_S = 0.3  # silence after which the list is complete
+MOST_ROBOTS = 250  # most robots in a list
+MESSAGE_BYTES = 4096  # bytes of the longest message accepted; a robot sends less
+SKIPPED_BYTES = 1 << 20  # bytes of the longest message skipped; a longer one ends the connection
 MOST_SKIPPED, TOPIC_CHARACTERS = 20, 80  # topics that are named, and of one
 _PUBLISH, _PINGRESP = 0x30, 0xD0  # kinds of packets
-PIECE_BYTES = 400  # of a message; a robot takes 512
-DRIVER_S = 0.5  # of silence of the driver, after which nothing keeps a run alive
+PIECE_BYTES = 400  # bytes of a message's piece; a robot accepts 512
+DRIVER_S = 0.5  # silence of the driver after which its run is not kept alive
 _PORT = re.compile(rf"{MQTT}(.+):(\d{{1,5}})/([a-z0-9-]{{1,16}})/([0-9a-f]{{8}})", re.IGNORECASE)
 
 
 class Access(NamedTuple):
-    """How this process signs in: nobody's name is none; `trusted_file` has a certificate."""
+    """The credentials of this process; an empty name means none; `trusted_file` holds a
+    certificate.
+    """
 
     user: str = ""
     password: str = ""
@@ -78,7 +80,7 @@ def port_of(host: str, port: int, group: str, robot_id: str) -> str:
 
 
 def sign_in(host: str, port: int, access: Access) -> None:
-    """Have this process sign in so from now on."""
+    """Set the credentials of this process."""
     _access_by_broker[host, port] = access
 
 
@@ -107,7 +109,7 @@ def connect(host: str, port: int) -> Broker:
 def _tls_context(path: str | None) -> ssl.SSLContext:
     """Return whom TLS trusts: what a file has, in PEM or DER, or whom this computer does.
 
-    A broker's own certificate is enough, whoever has signed it. Raises OSError.
+    A broker's own certificate is enough, anyone who has signed it. Raises OSError.
     """
     data = None if path is None else Path(path).read_bytes()
     if data is None or b"-----BEGIN" in data:
@@ -131,7 +133,7 @@ class _Client(mqtt.Client):
         self.skipped_bytes: dict[str, int] = {}
 
     def _sock_recv(self, bufsize: int) -> bytes:
-        """Return at most so many bytes: those that a packet still lacks, or one of its head."""
+        """Return received bytes, at most the rest of a packet or one byte of its head."""
         packet = self._in_packet
         if bufsize > MESSAGE_BYTES and packet["command"] & 0xF0 not in (_PUBLISH, _PINGRESP):
             bufsize = SKIPPED_BYTES + bufsize
@@ -144,7 +146,7 @@ class _Client(mqtt.Client):
                 return data
             if packet["command"] != _PINGRESP:
                 self._skip(data, packet["remaining_length"])
-                # its end is no message: paho does nothing about this one
+                # The rest is not a message; paho ignores this one.
                 packet["command"], packet["remaining_length"] = _PINGRESP, 0
             bufsize -= len(data)
             packet["to_process"] = bufsize
@@ -163,14 +165,15 @@ class Broker:
         """Connect. Raises PortError, at the latest after CONNECT_S for each of its addresses."""
         self.end_reason = ""
         self.peer = os.urandom(4).hex()
-        self.driver_heard_s: float | None = None  # last time; None: nobody attends
+        # Time of the last heartbeat; None without a driver.
+        self.driver_heard_s: float | None = None
         self._lock = RLock()
         self._bell = Bell()
         self._presences_by_group: dict[str, dict[str, RobotPresence]] = {}
-        self._answered_s = 0.0  # when a robot was told, or a request was answered
+        self._answered_s = 0.0  # when a message was sent or a request answered
         self._acknowledged_numbers: set[int] = set()
         self._port_by_group_and_id: dict[tuple[str, str], BrokerPort] = {}
-        self._refusal: str | None = None  # of a refusal; empty: let in
+        self._refusal: str | None = None  # reason of a refusal; empty if accepted
         self._client = _Client(
             CallbackAPIVersion.VERSION2, protocol=mqtt.MQTTv311, reconnect_on_failure=False
         )
@@ -242,7 +245,7 @@ class Broker:
         return self._client.publish(topic, data, qos=0, retain=False)
 
     def attend(self) -> None:
-        """Say that the driver is there: from now on it has to say so every DRIVER_S."""
+        """Note that the driver is present, which it must repeat every DRIVER_S."""
         self.driver_heard_s = monotonic()
 
     @property
@@ -250,12 +253,13 @@ class Broker:
         return self.driver_heard_s is None or monotonic() - self.driver_heard_s < DRIVER_S
 
     def forget(self, port: BrokerPort) -> None:
-        """Let another client have the robot."""
+        """Release the robot for another client."""
         with self._lock:
             if self._port_by_group_and_id.get((port.group, port.robot_id)) is port:
                 del self._port_by_group_and_id[port.group, port.robot_id]
         with suppress(OSError, RuntimeError, ValueError):  # the broker has gone
-            self.publish(port.topic, b"").wait_for_publish(LEAVE_S)  # before the process ends
+            # Completes before the process ends.
+            self.publish(port.topic, b"").wait_for_publish(LEAVE_S)
 
     def close(self) -> None:
         self._client.disconnect()
@@ -345,7 +349,7 @@ class BrokerPort(PushedTransport):
         self._patient_until_s = monotonic() + PATIENCE_S
 
     def write(self, data: bytes) -> None:
-        """Send bytes in pieces. Where nobody attends to the run, the robot hears a stop instead."""
+        """Send bytes in pieces. If nobody attends to the run, the robot hears a stop instead."""
         if self._end_reason:
             raise OSError(self._end_reason)
         if not self._broker.has_driver:
@@ -354,7 +358,7 @@ class BrokerPort(PushedTransport):
             self._broker.publish(self.topic, data[k : k + PIECE_BYTES])
 
     def close(self) -> None:
-        self.end("closed")  # whoever writes after the goodbye would come in again
+        self.end("closed")  # a frame after the goodbye would register again
         self._broker.forget(self)
 
     def take_message(self, data: bytes) -> None:

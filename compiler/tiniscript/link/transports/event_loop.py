@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 from tiniscript.base.bell import Bell
 
 LOOK_S = 0.1  # between two looks: on Windows, Ctrl-C interrupts nothing that waits
-CANCEL_S = 1.0  # timeout of what has been cancelled
+CANCEL_S = 1.0  # timeout of cancelled tasks
 END_S = 5.0  # timeout of the tasks that end with the process
 
 T = TypeVar("T")

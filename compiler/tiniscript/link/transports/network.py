@@ -18,12 +18,12 @@ from tiniscript.link.port_names import name_in
 from tiniscript.link.transports import Port, serial
 
 SERVICE = "_tiniscript._tcp.local."
-SEARCH_S = 5.0  # for one robot
-LIST_S = 2.0  # for all robots,
-ROBOT_MS = 1000  # for the address of each that has not come with its name,
-ADDRESSES_S = 3.0  # and for all of these
+SEARCH_S = 5.0  # time to search for one robot
+LIST_S = 2.0  # time to list all robots
+ROBOT_MS = 1000  # time for each address that did not arrive with its name
+ADDRESSES_S = 3.0  # time for all addresses
 MOST_NAME_BYTES = 63  # bytes of a name
-MOST_ROBOTS = 1000  # that a list keeps
+MOST_ROBOTS = 1000  # most robots in a list
 
 
 class AnnouncedRobot(NamedTuple):
@@ -79,13 +79,13 @@ def list_robots() -> list[AnnouncedRobot]:
                 continue
             try:
                 robots.append(AnnouncedRobot(name.removesuffix(f".{SERVICE}"), _address(info)))
-            except PortError:  # no robot has such an address
+            except PortError:  # an address that no robot has
                 continue
     return robots
 
 
 def query_service(network: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
-    """Return what is announced of a name, or None.
+    """Return the announcement of a name, or None.
 
     The answer goes to all: of several programs of a computer, one alone would get its own.
     """

@@ -10,7 +10,7 @@ from threading import Lock
 from tiniscript.base.bell import Bell
 from tiniscript.link.transports import READ_S
 
-MOST_BUFFERED_BYTES = 65_536  # of somebody who sends more than is read; more is lost
+MOST_BUFFERED_BYTES = 65_536  # most bytes that wait to be read; more are dropped
 END_REASON = "the connection has ended"
 
 
@@ -29,9 +29,9 @@ class PushedTransport:
         return len(self._buffer)
 
     def read(self, size: int) -> bytes:
-        """Return what has arrived, at most `size` bytes, or nothing after READ_S.
+        """Return received bytes, at most `size`, or none after READ_S.
 
-        Raises OSError where the connection has ended and all of it was read.
+        Raises OSError if the connection has ended and all of it was read.
         """
         if not (self._buffer or self._end_reason or self._is_cancelled):
             self._bell.wait(READ_S)

@@ -42,8 +42,9 @@ _REASONS = {
 
 
 class _Device(serial.Serial):  # type: ignore[misc] # pyserial has no types
-    """A port of this computer. What another program has read before us is no end of it: a stop that
-    goes past the lock of a suspended command reads what that command had been told of."""
+    """A port of this computer. Bytes read earlier by another program do not end it: a stop that
+    passes the lock of a suspended command reads bytes announced to that command.
+    """
 
     def read(self, size: int = 1) -> bytes:
         try:
@@ -54,12 +55,12 @@ class _Device(serial.Serial):  # type: ignore[misc] # pyserial has no types
             return b""
 
     def _is_there(self) -> bool:
-        """Whether the system still has it; False where nobody tells."""
+        """Return whether the system still has the port; False if unknown."""
         if sys.platform == "win32" or self.fd is None:
             return False
         poll = select.poll()
         poll.register(self.fd, 0)
-        return not poll.poll(0)  # else it is hung up
+        return not poll.poll(0)  # otherwise the line has hung up
 
 
 class ListedDevice(Protocol):
@@ -82,7 +83,7 @@ def resolve(port: str) -> str:
 def open_port(port: str, baud: int, limit_s: float, is_exclusive: bool = True) -> serial.SerialBase:
     """Open a port, at the latest after `limit_s`. Raises PortError.
 
-    Some drivers block in `open` for ever, so a daemon thread opens the port.
+    Some drivers block in `open` forever, so a daemon thread opens the port.
     """
     outcomes: list[serial.SerialBase | BaseException] = []
 
@@ -129,15 +130,15 @@ def _port_error(error: BaseException) -> PortError:
     if error.errno is not None:
         return PortError(_REASONS.get(error.errno, BROKEN), error.strerror or message)
     for part, reason in (
-        ("FileNotFoundError", MISSING),  # Windows gives the error only in the text
-        ("PermissionError", BUSY),  # and reports a port in use like this
+        ("FileNotFoundError", MISSING),  # Windows has the error only in the text
+        ("PermissionError", BUSY),  # the message for a port in use
         ("could not configure port", NO_PORT),
         ("Could not configure port", NO_PORT),
         ("expected a string in the form", NO_PORT),
         ("Connection refused", UNREACHABLE),
         ("timed out", UNREACHABLE),
-        ("Could not open port", UNREACHABLE),  # of a network
-        ("RFC2217", UNREACHABLE),  # another kind of server listens there
+        ("Could not open port", UNREACHABLE),  # the message of a network port
+        ("RFC2217", UNREACHABLE),  # another kind of server is listening there
         ("timeout while waiting for option", UNREACHABLE),
         ("could not open port", UNREACHABLE),
     ):

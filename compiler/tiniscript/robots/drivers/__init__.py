@@ -26,7 +26,7 @@ def drivers_for(used_by: str) -> tuple[str, ...]:
 
 
 def driver_of(used_by: str, wiring: Wiring) -> Driver:
-    """Return the driver of a wiring. Raises LookupError where no file has it."""
+    """Return the driver of a wiring. Raises LookupError if no file has it."""
     driver = DRIVERS.get((used_by, wiring.driver))
     if driver is None:
         raise LookupError(f"robots/drivers has no driver {wiring.driver} for {used_by}")
@@ -34,28 +34,28 @@ def driver_of(used_by: str, wiring: Wiring) -> Driver:
 
 
 def motors_of(wiring: Wiring) -> MotorDriver:
-    """Return the driver of a robot's motors. Raises LookupError where no file has it."""
+    """Return the driver of a robot's motors. Raises LookupError if no file has it."""
     driver = driver_of("motors", wiring)
     assert isinstance(driver, MotorDriver)
     return driver
 
 
 def discs_of(wiring: Wiring) -> DiscDriver:
-    """Return the driver of the discs on a robot's wheels. Raises LookupError where there is none."""
+    """Return the driver of the discs on a robot's wheels. Raises LookupError if there is none."""
     driver = driver_of("discs", wiring)
     assert isinstance(driver, DiscDriver)
     return driver
 
 
 def sensor_of(kind: str, wiring: Wiring) -> SensorDriver:
-    """Return the driver of a sensor of a kind. Raises LookupError where no file has it."""
+    """Return the driver of a sensor of a kind. Raises LookupError if no file has it."""
     driver = driver_of(f"sensors {kind}", wiring)
     assert isinstance(driver, SensorDriver)
     return driver
 
 
 def actuator_of(kind: str, wiring: Wiring) -> ActuatorDriver:
-    """Return the driver of an actuator of a kind. Raises LookupError where no file has it."""
+    """Return the driver of an actuator of a kind. Raises LookupError if no file has it."""
     driver = driver_of(f"actuators {kind}", wiring)
     assert isinstance(driver, ActuatorDriver)
     return driver

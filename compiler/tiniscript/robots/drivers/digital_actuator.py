@@ -36,7 +36,7 @@ class DigitalActuator(ActuatorDriver):
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", comment)
         on, off = ("LOW", "HIGH") if wiring.settings["yes_is_low"] else ("HIGH", "LOW")
         plan.off_lines.append(f"digitalWrite({pin}, {off});")
-        if off == "HIGH":  # before the pin is an output, so that the part stays off
+        if off == "HIGH":  # set before the pin becomes an output, so that the part stays off
             plan.begin_lines.insert(-1, f"digitalWrite({pin}, {off});")
         return f"void {function}(bool isOn) {{\n  digitalWrite({pin}, isOn ? {on} : {off});\n}}"
 

@@ -1,4 +1,4 @@
-"""The shield HW-130, "Motor Shield V1": four motors behind two L293Ds, directions in a 74HC595.
+"""The shield HW-130, "Motor Shield V1": four motors on two L293Ds, directions in a 74HC595.
 
 Which pins it takes, and which bit of the 74HC595 is which input of an L293D, is from the schematic
 and the header AFMotor.h of Adafruit's Motor Shield, of which it is a copy.
@@ -136,7 +136,7 @@ def _motors_of_side(side: str, settings: Mapping[str, int]) -> list[str]:
 
 
 def _bits(motors: list[str]) -> tuple[int, int]:
-    """Return what the 74HC595 has where these motors turn forward, and where backward."""
+    """Return the bits of the 74HC595 that turn these motors forward, and backward."""
     return (
         sum(1 << CHANNELS[motor].forward for motor in motors),
         sum(1 << CHANNELS[motor].backward for motor in motors),

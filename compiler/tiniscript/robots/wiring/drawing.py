@@ -242,7 +242,7 @@ def line_to(
 
 
 def _tag(rail: str, x: float, y: float) -> str:
-    """Return the tag of a rail around a point. Ground is filled, so that it is told apart."""
+    """Return the tag of a rail around a point. Ground is filled to distinguish it."""
     ink = RAIL_COLOURS[rail]
     fill, text_colour = (ink, "#ffffff") if rail == GROUND else ("#ffffff", ink)
     return (
@@ -287,11 +287,11 @@ def _box(box: Box, language: str) -> list[str]:
 
 
 def _end(end: End, y: int, box: Box) -> list[str]:
-    """Return a terminal, its name, and what is in its wire on the way through the zone."""
+    """Return a terminal, its name, and the parts in its wire through the zone."""
     edge, outward = box.edge, (1 if box.side == LEFT else -1)
 
     def x_at(distance: float) -> float:
-        """Return how far a point is from the part's edge, towards the board."""
+        """Return the distance of a point from the part's edge, towards the board."""
         return edge + outward * distance
 
     lines = []

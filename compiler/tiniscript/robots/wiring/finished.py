@@ -22,17 +22,17 @@ from tiniscript.robots.wiring.headers import SIDES
 from tiniscript.robots.wiring.plan import Part, Plan
 from tiniscript.robots.wiring.texts import text
 
-PLATE_LENGTH = 520  # of the longer side of the plate
+PLATE_LENGTH = 520  # length of the plate's longer side
 MARGIN = 70  # above and below the plate
 SIDE_WIDTH = 230  # left and right of it, for the labels
-WHEEL_CM = 6.5, 2.6  # its diameter and its width
+WHEEL_CM = 6.5, 2.6  # diameter and width of a wheel
 LABEL_STEP = 44  # between two labels
 ARROW_LENGTH = 30
-JAW_LENGTH = 46  # how far the arm of a servo reaches ahead
-MOST_JAW_OFFSET_CM = 3  # from the middle line: so far is between the jaws
+JAW_LENGTH = 46  # reach of a servo's arm
+MOST_JAW_OFFSET_CM = 3  # greatest distance between the jaws' middle line and a jaw
 PLATE_FILL, PART_FILL = "#f4f4f4", "#ffffff"
 THIN_LINE = "#888888", 1  # the line from a label
-DASHED_STYLE = ' stroke-dasharray="5 4"'  # what is under the plate
+DASHED_STYLE = ' stroke-dasharray="5 4"'  # style of parts under the plate
 
 
 def finished_of(plan: Plan) -> str:
@@ -74,7 +74,9 @@ class _FinishedDrawing:
         return text(key, self.plan.language)
 
     def position(self, x_cm: float, y_cm: float) -> tuple[float, float]:
-        """Return where a place of the body is drawn: `x_cm` goes forward, `y_cm` to the left."""
+        """Return the drawn position of a place on the body: `x_cm` is forward, `y_cm` to the
+        left.
+        """
         return self.x - y_cm * self.scale, self.y - x_cm * self.scale
 
     def _plate_svg(self) -> list[str]:
@@ -229,7 +231,7 @@ class _FinishedDrawing:
             label_y_of_side[side] += LABEL_STEP
             line_x = label_x + (6 if side == "left" else -6)
             front_y = self.y - self.length / 2
-            if y < front_y:  # it is held before the plate
+            if y < front_y:  # the part is held in front of the plate
                 lines.append(line_to(x, y, x, front_y, LINE_COLOUR, 4))
             lines += [
                 line_to(line_x, label_y - 5, x, y, *THIN_LINE),
@@ -265,7 +267,7 @@ class _FinishedDrawing:
         ]
 
     def _sizes_svg(self) -> list[str]:
-        """Return how long and how wide the plate is, in centimetres."""
+        """Return the dimension lines of the plate, in centimetres."""
         body = self.plan.body
         size = f"{body.length_cm:g} × {body.width_cm:g} cm"
         return [text_at(size, self.x, self.y + self.length / 2 + 26, 300, "middle")]

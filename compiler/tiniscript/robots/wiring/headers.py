@@ -29,7 +29,7 @@ def _slots(text: str) -> tuple[Slot, ...]:
     return tuple(slots)
 
 
-RECEIVE_PINS = {"esp32dev": 3, "esp32c3": 20}  # of the link; 0 on the others
+RECEIVE_PINS = {"esp32dev": 3, "esp32c3": 20}  # receive pins of the link; 0 on other chips
 ROW_AT_THE_END = range(22, 54)  # a Mega's double row; only its used pins are drawn
 
 SIDES = {

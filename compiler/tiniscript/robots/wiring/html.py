@@ -74,7 +74,7 @@ def _block(block: Block, plan: Plan) -> str:
     if block.kind in ("drawing", "finished"):
         svg = drawing_of(plan) if block.kind == "drawing" else finished_of(plan)
         paragraphs = f"<p>{_bold_html(block.text)}</p>\n"
-        if block.kind == "drawing":  # of which a phone shows a part
+        if block.kind == "drawing":  # a phone shows a part of a drawing
             paragraphs += f'<p class="slide">{escape(text("slide", plan.language))}</p>\n'
         return f'{paragraphs}<div class="{block.kind}">\n{svg}</div>'
     if block.kind == "ticks":

@@ -13,21 +13,21 @@ from tiniscript.robots.wiring.headers import RECEIVE_PINS, ROW_AT_THE_END, SIDES
 from tiniscript.robots.wiring.plan import Part, Plan, Wire
 
 LEFT, RIGHT = 0, 1
-STEP = 22  # from pin to pin
-TRACK_WIDTH = 9  # from wire to wire
+STEP = 22  # distance between pins
+TRACK_WIDTH = 9  # distance between wires
 HEAD_HEIGHT = 44  # the title of a part
 BOARD_WIDTH = 136
 BOARD_NAME_HEIGHT = 44  # below its pins
 PART_WIDTH = 160
 ZONE_WIDTH = 158  # beside a part, where its resistors are
-BOARD_GAPS = (54, 26)  # left: what the board's 5V and GND are joined to; right: only numbers
+BOARD_GAPS = (54, 26)  # left: connections of the board's 5V and GND; right: only numbers
 MOTORS_WIDTH = 100
 MARGIN = 10
-PART_GAP = 16  # at least, from part to part
+PART_GAP = 16  # smallest distance between parts
 
 
 class Pin(NamedTuple):
-    """What is drawn at a place of the board's edge. `wire` is None where nothing is joined."""
+    """The drawing of a place on the board's edge. `wire` is None if it is unconnected."""
 
     side: int
     y: int
@@ -48,7 +48,7 @@ class Box(NamedTuple):
 
     @property
     def edge(self) -> int:
-        """Where its terminals are."""
+        """The position of its terminals."""
         return self.x + (PART_WIDTH if self.side == LEFT else 0)
 
 
@@ -147,7 +147,7 @@ class _Layout:
                 if slot is not None:
                     self.pins.append(self._pin(side, self.board_top + STEP * (k + 1), slot))
         self.pin_y = {pin.number: pin.y for pin in self.pins if pin.number is not None}
-        self.top_by_part: dict[int, int] = {}  # of parts, by their place in the plan
+        self.top_by_part: dict[int, int] = {}  # top of each part, by its index in the plan
         bottom = MARGIN + STEP + full_height
         for column_parts in parts:
             self._stack(column_parts, bottom)

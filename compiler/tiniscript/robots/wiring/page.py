@@ -109,7 +109,7 @@ class _Page:
             Block("heading", say("rails")),
             Block("paragraph", say("rails_intro")),
             Block("ticks", rows=tuple(rail_rows(self.plan))),
-            *(Block("paragraph", sentence) for sentence in self._unconnected()),
+            *(Block("paragraph", sentence) for sentence in self._list_unconnected()),
             Block("list", rows=_column(self._power_lines())),
             Block("heading", say("mind")),
             Block("list", rows=_column(self._warnings())),
@@ -142,8 +142,8 @@ class _Page:
         need_texts += [self.text("need_plate", size=size), self.text("need_power_bank")]
         return need_texts
 
-    def _unconnected(self) -> list[str]:
-        """Return what is joined to no pin and no rail: motors, and what stays free."""
+    def _list_unconnected(self) -> list[str]:
+        """Return the parts without a pin or a rail: motors, and free terminals."""
         sentences = []
         motors = self.plan.parts[0].shape.motor_terminals
         if motors:

@@ -1,4 +1,4 @@
-"""The parts of a robot as a person buys them: what its drivers say, and what every robot has.
+"""The parts of a robot for a buyer: those of its drivers, and those of every robot.
 
 Knows no robot's pins (`plan`), no places (`layout`) and no sentences (`texts`).
 """
@@ -26,7 +26,7 @@ RAILS = (BOARD_5V, BOARD_3V3, GROUND, MOTOR_BATTERY, SERVO_SUPPLY)
 
 def shape_of(used_by: str, wiring: Wiring, device: Device | None = None,
              place: Place | None = None, pin_volts: int = FIVE_VOLTS) -> Shape:  # fmt: skip
-    """Return what a wiring's part looks like. Raises LookupError for an unknown driver."""
+    """Return the form of a wiring's part. Raises LookupError for an unknown driver."""
     sees = place.sees if place else ""
     shape = driver_of(used_by, wiring).shape(wiring, device, sees, pin_volts)
     return shape if pin_volts == FIVE_VOLTS else _adapt_to_3v3(shape)
@@ -57,7 +57,7 @@ def _adapt_to_3v3(shape: Shape) -> Shape:
 
 
 def key_for_3v3(key: str) -> str:
-    """Return the key of what is said of a part on such a board, where that differs."""
+    """Return the key of the sentence about a part on such a board, if that differs."""
     return f"{key}_3v3" if has_text(f"{key}_3v3") else key
 
 

@@ -23,8 +23,8 @@ from tiniscript.robots.profile import Body, Robot
 from tiniscript.robots.wiring import parts
 from tiniscript.robots.wiring.texts import text
 
-RECEIVE_PIN, TRANSMIT_PIN = 0, 1  # of an AVR
-LAMP_PIN = 13  # has a lamp on an AVR's boards, called L
+RECEIVE_PIN, TRANSMIT_PIN = 0, 1  # pins of an AVR's serial port
+LAMP_PIN = 13  # an AVR board has a lamp on this pin, called L
 COLOURS = ("orange", "green", "blue", "violet", "yellow", "grey", "brown")
 
 
@@ -75,7 +75,7 @@ class Plan(NamedTuple):
 
     @property
     def has_radio(self) -> bool:
-        """Whether an HC-05 is joined to it; an ESP32 has its link on USB."""
+        """Return whether it has an HC-05; an ESP32 has its link on USB."""
         return self.chip.pin_volts == FIVE_VOLTS
 
     @property
@@ -91,7 +91,7 @@ class Plan(NamedTuple):
 
     @property
     def resistors(self) -> dict[str, int]:
-        """How many resistors of each value are needed."""
+        """Return the number of resistors of each value."""
         counts: dict[str, int] = {}
         for part in self.parts:
             for end in part.ends:

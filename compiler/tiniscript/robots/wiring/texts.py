@@ -1,4 +1,4 @@
-"""What a wiring page says: the catalogue `wiring`, which has the sentences of drivers, too."""
+"""The texts of a wiring page: the catalogue `wiring`, which includes the drivers' sentences."""
 
 from __future__ import annotations
 

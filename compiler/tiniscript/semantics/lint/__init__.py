@@ -23,9 +23,9 @@ PROGRAM, TASKS, BODY, STATEMENT = "program", "tasks", "body", "statement"
 
 
 class Row(NamedTuple):
-    """What reports these codes. Asked once for the PROGRAM, or for its TASKS if there are any: of
-    the `LintContext`; for each BODY and each STATEMENT, or each of a type: of it and what is
-    around it."""
+    """A rule for these codes. Called once for the PROGRAM, or for its TASKS: with the
+    `LintContext`; for each BODY and each STATEMENT, or those of a type: with its context.
+    """
 
     codes: tuple[Code, ...]
     target: str | type
@@ -33,7 +33,7 @@ class Row(NamedTuple):
 
 
 TABLE = (
-    # numbers that nobody means
+    # Unlikely numbers.
     Row((codes.WILL_FAULT,), STATEMENT, numbers.report_will_fault),
     Row(
         (codes.ZERO_TIME_MOVE, codes.WILL_FAULT, codes.SWAPPED, codes.LONG_TIME,
@@ -45,7 +45,7 @@ TABLE = (
     Row((codes.ZERO_TIME_MOVE, codes.LONG_TIME, codes.CUT_VALUE), ir.Act, numbers.check_act),
     Row((codes.LONG_TIME,), STATEMENT, numbers.check_clock),
     Row((codes.NEVER_REPEATS, codes.ROUNDED_TIMES), ir.Loop, numbers.check_times),
-    # conditions whose answer does not come
+    # Conditions that never become true.
     Row((codes.FROZEN_UNTIL, codes.TURNED_ROUND, codes.EXACT, codes.KNOWN_ANSWER),
         ir.Move, conditions.check_until),
     Row((codes.FROZEN_WHILE, codes.TURNED_ROUND, codes.KNOWN_ANSWER),
@@ -54,16 +54,16 @@ TABLE = (
         ir.If, conditions.check_if),
     Row((codes.FROZEN_WHILE,), ir.Show, conditions.check_show),
     Row((codes.ASKED_ONCE,), PROGRAM, conditions.report_asked_once),
-    # what is the same whatever the robot meets
+    # Rules that hold whatever the robot meets.
     Row((codes.KNOWN_ANSWER,), PROGRAM, known.report_past_clock),
     Row((codes.KNOWN_ANSWER,), STATEMENT, known.report_narrowed),
     Row((codes.EXACT,), ir.If, known.report_no_room),
     Row((codes.NEW_THROW,), ir.If, known.report_thrown_arms),
     Row((codes.NEW_THROW,), BODY, known.report_thrown_again),
-    # what comes of a move
+    # Rules about the effects of a move.
     Row((codes.LATE_CHECK, codes.IDLE_STOP), BODY, moves.report_late_conditions),
     Row((codes.UNSEEN_MOTORS,), BODY, moves.report_unseen_motors),
-    # what is written for nothing
+    # Rules about code without effect.
     Row((codes.NEVER_REACHED,), BODY, useless.report_never_reached),
     Row((codes.EMPTY_BLOCK,), BODY, useless.report_empty_blocks),
     Row((codes.BUSY_LOOP,), ir.Loop, useless.report_busy_loop),
@@ -78,7 +78,7 @@ TABLE = (
     Row((codes.LONE_TASK,), TASKS, tasks.report_lone_task),
 )  # fmt: skip
 
-# What is found before there is a program, or knows the board: in which module.
+# Findings without a program, or with the board: the module of each.
 FOUND_ELSEWHERE: dict[Code, str] = {
     codes.ROUNDED: "syntax.expressions",
     codes.BOARD_MAY_BE_TOO_SMALL: "library.compiling",
@@ -126,7 +126,7 @@ def _check_body(body: ir.Body, body_context: BodyContext, context: LintContext) 
 
 
 def _inner_context(statement: ir.Statement, outer: BodyContext, is_last: bool) -> BodyContext:
-    """Return what the bodies of a statement are in; `is_last`: no other stands after it."""
+    """Return the context of a statement's bodies; `is_last`: nothing follows it."""
     is_question = isinstance(statement, (ir.If, ir.While))
     inner = outer._replace(
         loop=None,

@@ -28,20 +28,20 @@ from tiniscript.semantics.lint.context import STANDING_STATEMENTS, BodyContext, 
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import BINARY, OPPOSITES, SIGN_OF
 
-SHORT_MOVE_MS = 1000  # ms: a loop looks again after so long
+SHORT_MOVE_MS = 1000  # time in ms after which a loop checks again
 _CHANGING_OPS = frozenset(("SENSOR", "TIME", "RANDOM"))
-# By the way that the robot goes, what is true where the robot stands, and what comes true.
+# Comparisons that hold and that become true, by direction of the move.
 _REVERSED_COMPARATORS = {"F": {"GT": "LT", "GE": "LE"}, "B": {"LT": "GT", "LE": "GE"}}
 _SIDE_BY_COMPARATOR = {"LT": "below", "LE": "below", "GT": "above", "GE": "above"}
-_MOST_ARMS = 50  # of an IF whose conditions are compared
+_MOST_ARMS = 50  # most arms of an IF whose conditions are compared
 _COMPARATOR_REACHED = {
     "F": "LE",
     "B": "GE",
-}  # what is sure to come true, by the way that the robot goes
+}  # comparisons certain to become true, by direction of the move
 
 
 def _is_endless(loop: ir.Loop | ir.While) -> bool:
-    """Whether a loop counts nothing: what counts may do what was decided before it."""
+    """Return whether a loop counts nothing: the counted part may do what was decided before it."""
     return not isinstance(loop, ir.Loop) or loop.times is None
 
 
@@ -134,7 +134,7 @@ class _Conditions:
         self._context.report(codes.FROZEN_UNTIL, move.span, **values)
 
     def _with_condition(self, move: ir.Move, new_condition: str) -> str:
-        """Return a move as it is written, with another condition after UNTIL."""
+        """Return a move as written, with another condition after UNTIL."""
         text = self._source[move.span]
         end = max((match.start() for match in re.finditer(r"(?i)\bUNTIL\b", text)), default=0)
         return f"{text[:end].rstrip()} UNTIL({new_condition})" if end else ""
@@ -251,7 +251,7 @@ class _Conditions:
         )
         terms_used = self._context.variables.terms_used_in(outermost)
         if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & terms_used:
-            return  # it is shown beside what is measured now, or the rounds need it
+            return  # it is shown beside the current measurement, or the rounds depend on it
         fix = f"SHOW({sensor_of_variable[name]})"
         self._context.report(
             codes.FROZEN_WHILE, show.span, name=name, sensor=sensor_of_variable[name], fix=fix
@@ -303,10 +303,10 @@ class _Conditions:
         return True
 
     def _report_late_arms(self, statement: ir.If) -> None:
-        """`IF(DISTANCE < 60) … ELSEIF(DISTANCE < 20)`: what is below 20 is below 60, too."""
+        """`IF(DISTANCE < 60) … ELSEIF(DISTANCE < 20)`: any distance below 20 is below 60, too."""
         widest_comparisons: dict[
             tuple[str, str], Comparison
-        ] = {}  # by sensor and the way of the sign
+        ] = {}  # keyed by sensor and direction of the comparison
         for k, arm in enumerate(statement.arms[:_MOST_ARMS]):
             comparison = self._comparison(arm.condition)
             if comparison is None or comparison.op not in _SIDE_BY_COMPARATOR:
@@ -400,12 +400,12 @@ class _Conditions:
 
 
 def _opposite(op: str) -> str:
-    """Return what is TRUE where a comparison is not."""
+    """Return the comparison that is TRUE when the other is not."""
     return BINARY[OPPOSITES[SIGN_OF[op]]][1]
 
 
 def _lasts_ms(statement: ir.Statement) -> int:
-    """Return how long a move by its time lasts; 0 where that is not known."""
+    """Return the duration of a timed move, or 0 if unknown."""
     if not isinstance(statement, ir.Move) or statement.unit:
         return 0
     return known_value(statement.time) or 0
@@ -437,7 +437,7 @@ def _sensors(condition: ir.Expression) -> set[int]:
 
 
 def _is_within(narrower: Comparison, wider: Comparison) -> bool:
-    """Whether one comparison is true only where the other one is; their signs go the same way."""
+    """Return whether one comparison implies the other; their signs have the same direction."""
     if narrower.number == wider.number:
         return narrower.op == wider.op or wider.op in ("LE", "GE")
     return (narrower.number < wider.number) == (_SIDE_BY_COMPARATOR[wider.op] == "below")

@@ -1,4 +1,4 @@
-"""What the warnings know of one program while it is looked at, and of the place of a statement."""
+"""The state of the warnings for one program, and the context of a statement."""
 
 from __future__ import annotations
 
@@ -12,18 +12,19 @@ from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.semantics import ir
 from tiniscript.syntax.lexer import Scan
 
-STANDING_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Act)  # they leave the robot where it is
+# Statements that leave the robot where it is.
+STANDING_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Act)
 MOST_CHARACTERS = 120  # characters of a condition that a message can hold
 
 
 class BodyContext(NamedTuple):
-    """What a body is in: `loop` repeats it itself, `is_last` where the program ends with it."""
+    """The context of a body: `loop` repeats it, `is_last` if the program ends with it."""
 
     loop: ir.Loop | ir.While | None = None
-    is_repeated: bool = False  # by a loop, or in a DEF
+    is_repeated: bool = False  # whether a loop or a DEF repeats it
     is_last: bool = False
     asked_sensors: frozenset[int] = frozenset()  # sensors of the conditions around it
-    outermost: ir.Loop | ir.While | None = None  # of the loops around it
+    outermost: ir.Loop | ir.While | None = None  # the outermost loop around it
 
 
 class LintContext:
@@ -46,7 +47,7 @@ class LintContext:
 
     @cached_property
     def uses_motors(self) -> bool:
-        """Whether M is used; without it the motors stand between two instructions."""
+        """Return whether M is used; without it the motors stop between instructions."""
         return any(isinstance(statement, ir.Motors) for statement in self.statements)
 
     @cached_property
@@ -63,7 +64,7 @@ class LintContext:
         return span
 
     def condition_text(self, span: Span, word: str) -> str:
-        """Return what is in the brackets after `word`, the last of that name in `span`.
+        """Return the text in the brackets after the last `word` in `span`.
 
         Nothing where it is long, or goes over several lines.
         """
@@ -91,12 +92,10 @@ class Variables:
         for statement in ir.all_statements(program):
             if isinstance(statement, ir.Assign):
                 self.values_by_variable.setdefault(statement.variable, []).append(statement.value)
-        # By a loop's start, the variables that get a value in it; None where it takes no time.
+        # Variables assigned in each loop, by its start; None if the loop takes no time.
         self._assigned_in_loop: dict[int, set[int] | None] = {}
-        self._terms_of_loop: dict[int, set[ir.Term]] = {}  # by a loop's start
-        self._assigned_by_def: list[
-            set[int]
-        ] = []  # for each DEF, the variables that it gives a value
+        self._terms_of_loop: dict[int, set[ir.Term]] = {}  # keyed by the start of the loop
+        self._assigned_by_def: list[set[int]] = []  # variables assigned in each DEF
         for procedure in program.procedures:
             self._assigned_by_def.append(self.assigned_in(procedure.body))
 
@@ -113,7 +112,7 @@ class Variables:
         return assigned
 
     def sensors_of(self, variables: list[int]) -> dict[str, str]:
-        """Return the sensor that each of these variables holds; nothing where one holds another."""
+        """Return the sensor that each of these variables holds; nothing if one holds another."""
         sensor_of_variable = {}
         for variable in variables:
             values = set(self.values_by_variable.get(variable, ()))

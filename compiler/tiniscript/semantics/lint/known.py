@@ -1,4 +1,4 @@
-"""Warns of what is the same whatever the robot meets, where something else was meant.
+"""Warns of code with a constant effect where another one was meant.
 
 A clock that is past a number, MIN and MAX the wrong way round, an ELSE that its questions leave no
 room, and a RANDOM that is thrown again.
@@ -19,7 +19,7 @@ from tiniscript.semantics.optimizer import known_value
 
 _LESS_OPS = ("LT", "LE")
 _NARROWING_OPS = ("MIN", "MAX")
-_SIDE_OPS = {"LT", "GT"}  # of one number: it alone is left for ELSE
+_SIDE_OPS = {"LT", "GT"}  # comparisons of one number, which alone remains for ELSE
 _THROW_OPS = ("NUMBER", "NUMBER", "RANDOM")
 
 
@@ -50,7 +50,7 @@ def report_past_clock(context: LintContext) -> None:
 
 
 def _least_duration(statement: ir.Statement) -> int:
-    """Return how long a statement surely lasts, in thousandths of a second."""
+    """Return the shortest duration of a statement, in thousandths of a second."""
     if isinstance(statement, ir.Move) and statement.until is not None:
         return 0
     return max(0, known_value(ir.time_of(statement)) or 0)
@@ -81,7 +81,7 @@ def report_narrowed(
     statement: ir.Statement | ir.Task, body_context: BodyContext, context: LintContext
 ) -> None:
     """`MAX(80, MIN(20, DISTANCE))` is 80 at each distance."""
-    nestings = (nesting for value in ir.expressions(statement) for nesting in _nested(value))
+    nestings = (nesting for value in ir.expressions(statement) for nesting in _find_nested(value))
     for outer, inner, numbers in nestings:
         limit, inner_limit = numbers
         if outer != inner and (inner_limit < limit if outer == "MAX" else inner_limit > limit):
@@ -91,9 +91,9 @@ def report_narrowed(
             context.report(codes.KNOWN_ANSWER, statement.span, **values)
 
 
-def _nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
-    """Give each MIN or MAX of a number and of one with a number: both words, both numbers."""
-    stack: list[tuple[str, int | None]] = []  # what made a value, and the number that it has
+def _find_nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
+    """Yield each MIN or MAX of a number with a nested one: both words, both numbers."""
+    stack: list[tuple[str, int | None]] = []  # operation behind each value, and its number
     for op, number in value:
         if op == "NUMBER":
             stack.append((op, number))
@@ -108,7 +108,7 @@ def _nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
             stack.append((op, numbers[0] if len(numbers) == 1 else None))
         else:
             if op not in ("SENSOR", "VARIABLE", "TIME", "YES_NO"):
-                return  # what else is calculated is none of these
+                return  # other calculations are none of these
             stack.append((op, None))
 
 
@@ -136,7 +136,7 @@ def report_no_room(statement: ir.If, body_context: BodyContext, context: LintCon
 
 
 def _has_many_values(value: ir.Expression, number: int, context: LintContext) -> bool:
-    """Whether a value comes from a sensor that has very many."""
+    """Return whether a value comes from a sensor with very many values."""
     for op, index in value:
         if op == "SENSOR" and is_one_of_many(context.kit.readings[index], max(number, 1)):
             return True

@@ -1,4 +1,4 @@
-"""Warns of what comes of a move: it is looked at when the move is over, or nobody sees it.
+"""Warns of the effects of a move: they are only checked when it is over, or cannot be seen.
 
 `F(5, 60)`, then `IF(DISTANCE < 20); S; ENDIF`, where while the robot moves was meant: the repair is
 the move with that condition after UNTIL. `SI|M(2, 80)` and `M(80, 80); S`, where W is missing: the
@@ -16,13 +16,13 @@ from tiniscript.semantics.lint.context import STANDING_STATEMENTS, BodyContext, 
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
 
-LONG_MOVE_MS = 500  # ms: a robot goes a hand's breadth in this time
-LONG_STEP_MS = 1000  # ms: in a WHILE it is looked at again after so long
-LONG_AFTER_MS = 5000  # ms: it was looked at once before so long a move
+LONG_MOVE_MS = 500  # time in ms in which a robot moves a hand's breadth
+LONG_STEP_MS = 1000  # time in ms after which a WHILE checks again
+LONG_AFTER_MS = 5000  # length in ms of a move whose condition was checked only before it
 _GREATER_COMPARATORS = ("GT", "GE")
 _INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Act)
-_LIKELY_TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
-_LIKELY_POWERS = range(20_000, 100_001)  # and a power
+_LIKELY_TIMES = range(1, 10_001)  # times that `M(2, 80)` may mean
+_LIKELY_POWERS = range(20_000, 100_001)  # powers that `M(2, 80)` may mean
 
 
 def report_late_conditions(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
@@ -142,7 +142,7 @@ class _LateConditions:
                 if move.direction == "B" and asks_if_near(condition, self._kit):
                     if gap == "move":
                         break
-                    return  # it drives away from what is near
+                    return  # the robot drives away from the obstacle
                 values = self._idle_stop_values(stop, move, gap, branch)
                 if values["fix"]:
                     values |= self._replacement_values(body, move, branch)
@@ -168,7 +168,7 @@ class _LateConditions:
         condition = branch.arms[0].condition
         can_become_true = can_come_true(condition, move.direction, self._kit)
         if move.direction == "B" and self._distance_in(condition) is not None:
-            can_become_true = False  # what is behind the robot is not seen
+            can_become_true = False  # sensors do not see behind the robot
         condition_text = (
             self._context.condition_text(branch.arms[0].span, "IF") if can_become_true else ""
         )
@@ -179,7 +179,7 @@ class _LateConditions:
         return values
 
     def _replacement_values(self, body: ir.Body, move: ir.Move, branch: ir.If) -> dict[str, str]:
-        """Return what the move with its UNTIL takes the place of: all of it, or the move alone."""
+        """Return the values that replace the move by one with an UNTIL: with the loop, or alone."""
         first_span, last_span = sorted((move.span, branch.span))
         first_line, if_line, last_line = (
             str(self._source.position(offset)[0])
@@ -208,7 +208,7 @@ class _LateConditions:
         return {"first": first_line, "last": last_line}
 
     def _is_blind(self, move: ir.Move, least_ms: int) -> bool:
-        """Whether a move lasts long, and looks at nothing."""
+        """Return whether a move takes long and checks no sensor."""
         time = _time_of(move)
         if move.direction not in ("F", "B") or move.until is not None:
             return False
@@ -234,7 +234,7 @@ def _time_of(move: ir.Move) -> int | None:
 
 
 def _can_change(condition: ir.Expression) -> bool:
-    """Whether an answer may be another one while the robot moves: only sensors and numbers."""
+    """Return whether a condition may change while the robot moves, through sensors and numbers."""
     ops = [term.op for term in condition]
     return "SENSOR" in ops and "VARIABLE" not in ops and "RANDOM" not in ops
 
@@ -270,7 +270,7 @@ def report_unseen_motors(body: ir.Body, body_context: BodyContext, context: Lint
         if isinstance(next_statement, ir.If) and all(map(_is_instant, (next_statement, *rest))):
             next_statement = None
         if isinstance(next_statement, ir.Motors) and next_statement[:2] == motors[:2]:
-            continue  # they are set again to the same
+            continue  # the motors are set to the same values again
         values = {"found": source[motors.span]}
         if isinstance(next_statement, (ir.Motors, ir.Stop)) or (
             isinstance(next_statement, ir.Move)

@@ -25,10 +25,10 @@ from tiniscript.syntax.operators import SIGN_OF
 
 SECOND_MS = 1000  # ms
 LONG_TIME_MS = 20 * SECOND_MS  # a power was meant, where the power is a time
-LONG_DRIVE_MS = 30 * SECOND_MS  # no classroom is so long: centimetres or degrees were meant
+LONG_DRIVE_MS = 30 * SECOND_MS  # longer than any classroom: centimetres or degrees were meant
 LONGEST_DRIVE_MS = 60 * SECOND_MS  # … also where the number is no round one
 LONG_WAIT_MS = 100 * SECOND_MS
-USUAL_SPEED = 30 * SECOND_MS  # cm in a second, of a robot whose kit does not say it
+USUAL_SPEED = 30 * SECOND_MS  # cm per second, of a robot whose kit has no speed
 FAR_DISTANCE = (
     300 * SECOND_MS * 100 * SECOND_MS * SECOND_MS
 )  # 3 m, as a product of speed, power and time
@@ -38,15 +38,15 @@ VERY_LONG_TIME_MS = (
 LONG_BEEP_MS = 100 * SECOND_MS
 LOW_HERTZ = 100_000  # thousandths: a power was meant
 ANGLES = (360 * SECOND_MS, 720 * SECOND_MS)
-TURN_PART = 45 * SECOND_MS  # turns of more than one round have such parts
+TURN_PART = 45 * SECOND_MS  # parts of turns of more than one round
 _LENGTHS = ("cm", "mm", "m")
 _LEADING_ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing after its 0
 _LEADING_ZERO_OF_TURN = re.compile(r"(?i)[LR]\s*\(\s*(0[1-9])\s*,\s*[1-9]")  # `L(03, 60)`
-# `R(90`, with brackets in a calculation, and what is after it: the power, and UNTIL.
+# `R(90`, with brackets in a calculation, and the text after it: the power, and UNTIL.
 _FIRST_VALUE = re.compile(
     r"\w+\s*\((\s*(?:[^(),/]|/(?!/)|\((?:[^()]|\([^()]*\))*\))*?)(\s*[,)].*)", re.S
 )
-_UNTIL_CLAUSE = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its condition
+_UNTIL_CLAUSE = re.compile(r"(?is)\s*\bUNTIL\b.*")  # an UNTIL with its condition
 _TOKENS_TO_SECOND_VALUE = 4  # tokens after its word, up to the second value
 LITTLE_POWER = 10_000  # thousandths of a percent
 
@@ -74,7 +74,7 @@ def check_clock(
 
 
 def _clock_span(statement: ir.Statement | ir.Task, limit: str, context: LintContext) -> Span:
-    """Return the place of a comparison of the clock as it is written, or else its statement."""
+    """Return the place of a comparison of the clock as written, or else its statement."""
     pattern = rf"(?i)\bTIME\b[ \t]*[<>=]+[ \t]*{limit}\b|\b{limit}[ \t]*[<>=]+[ \t]*TIME\b"
     clock_match = re.compile(pattern).search(context.source.text, *statement.span)
     return Span(*clock_match.span()) if clock_match else statement.span
@@ -84,7 +84,7 @@ def check_times(loop: ir.Loop, body_context: BodyContext, context: LintContext) 
     """`LOOP(0)`, `LOOP(-1)`, which other languages take for one without an end; `LOOP(4.5)`."""
     times = known_value(loop.times)
     header_span = Span(loop.span.start, loop.span.start + len("LOOP"))
-    if times is not None and times < 500:  # it is rounded
+    if times is not None and times < 500:  # a number below 0.5 is rounded
         context.report(codes.NEVER_REPEATS, header_span, times=as_text(times))
     elif times is not None and times % 1000:
         context.report(
@@ -226,7 +226,7 @@ def _warn_of_long_time(
     first_text, rest_text = call_match.groups() if call_match else ("", f", {power_text})")
     extent_call = (
         first_text and f"{word}({first_text} {UNIT_OF.get(word, '')}{rest_text}"
-    )  # not after a note
+    )  # a beep after a note is different
     speed = kit.speed or USUAL_SPEED
     is_far_drive = is_round and time >= LONG_TIME_MS and speed * (power or 0) * time >= FAR_DISTANCE
     if is_turn and _is_turn(time, kit, is_long) and not (is_very_long and time % TURN_PART):
@@ -266,13 +266,13 @@ def check_act(act: Act, body_context: BodyContext, context: LintContext) -> None
     hertz = known_value(act.values[1]) if act.word.has_tone else None
     if time is None or hertz is None or time < LONG_BEEP_MS:
         return
-    # of an Arduino: `tone(pin, hertz, milliseconds)`; or in this order, with milliseconds
+    # Arduino's `tone(pin, hertz, milliseconds)`, or this order with milliseconds.
     rival = f"{word}({as_text(time // 1000)}, {as_text(hertz)})"
     fix = f"{word}({as_text(hertz // 1000)}, {as_text(time)})"
     sound = ""
     if time % (100 * SECOND_MS) == 0:  # a round time, and no note's hertz
         fix, rival = rival if hertz % 100_000 else "", ""
-    elif hertz <= LOW_HERTZ:  # `BEEP(440, 80)`: how long it lasts is not said
+    elif hertz <= LOW_HERTZ:  # `BEEP(440, 80)`: the duration is missing
         fix, rival, sound = "", "", f"{word}(seconds, {as_text(time)})"
     elif time % (50 * SECOND_MS) == 0 and hertz % 50_000:  # `BEEP(250, 440)`
         fix, rival = rival, fix
@@ -322,7 +322,7 @@ def report_swapped_names(move: Move, body_context: BodyContext, context: LintCon
 
 
 def _is_right_order(first_name: str, second_name: str) -> bool:
-    """Whether no name of `F(first, second)` says that it is in the other's place."""
+    """Return whether the names in `F(first, second)` do not suggest the reverse order."""
     if is_time(first_name) or is_power(second_name):
         return True
     return not is_power(first_name) and not is_time(second_name)

@@ -17,11 +17,11 @@ from tiniscript.semantics import ir
 from tiniscript.semantics.lint.context import LintContext
 
 _LONG_STATEMENTS = (ir.Loop, ir.While, ir.Call)
-_SEEN_STATEMENTS = (ir.Move, ir.Act, ir.Motors)  # or heard
+_SEEN_STATEMENTS = (ir.Move, ir.Act, ir.Motors)  # statements with a visible or audible effect
 
 
 def report_asked_once(context: LintContext, remote: AbstractSet[int]) -> None:
-    """Report the first of these readings: what is repeated around it has the others in it, too."""
+    """Report the first of these readings: a loop around it contains the others, too."""
     program = context.program
     for body in (program.body, *(task.body for task in program.tasks if task.until is None)):
         is_before_loop = True
@@ -43,7 +43,7 @@ def report_asked_once(context: LintContext, remote: AbstractSet[int]) -> None:
             if not isinstance(statement, ir.If) and remote & ir.referenced_numbers(
                 "SENSOR", statements
             ):
-                break  # it has been waited for
+                break  # the program has waited for it
             is_long = ir.takes_time(statement) or isinstance(statement, _LONG_STATEMENTS)
             is_before_loop = is_before_loop and not is_long
 
@@ -89,7 +89,7 @@ def _diagnostic(
 
 
 def _loop_repair(span: Span, body: ir.Body, context: LintContext) -> Repair | None:
-    """Put a loop around what is read once and all that follows, where the rest takes time."""
+    """Put a loop around a single reading and everything after it, if the rest takes time."""
     later_statements = [statement for statement in body if statement.span.end > span.start]
     if not any(
         isinstance(statement, _SEEN_STATEMENTS)

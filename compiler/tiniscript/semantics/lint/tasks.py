@@ -70,7 +70,9 @@ class _MotorUse:
         self._procedures = program.procedures
 
     def keeps_motors(self, body: ir.Body) -> bool:
-        """Whether a task surely drives for ever at its end, and never lets the motors go there."""
+        """Return whether a task certainly drives forever at its end without releasing the
+        motors.
+        """
         endless_part = _endless_part(body)
         if not any(
             isinstance(statement, ir.Motors) or (_is_move(statement) and _takes_time(statement))
@@ -83,7 +85,7 @@ class _MotorUse:
         )
 
     def _wants_motors_after(self, body: ir.Body, is_wanted: bool) -> bool | None:
-        """Return whether the motors are wanted after a body, None where it may let them go."""
+        """Return whether the motors are wanted after a body, None if it may let them go."""
         is_wanted_now: bool | None = is_wanted
         for statement in body:
             if is_wanted_now is None or isinstance(statement, ir.Break):
@@ -114,7 +116,7 @@ class _MotorUse:
             return None
         takes_time = after_one_turn or any(
             map(_takes_time, body)
-        )  # else a turn of it waits for 1 ms
+        )  # otherwise a turn of the loop waits for 1 ms
         return is_wanted and after_one_turn if takes_time else None
 
 
@@ -150,7 +152,9 @@ def _repeats(statement: ir.Statement) -> bool:
 
 
 def _single_run_diagnostic(task: ir.Task, source: Source) -> Diagnostic:
-    """It says to write a loop around all of it, on lines of its own where the TASK has them."""
+    """Return the diagnostic that suggests a loop around a TASK, on own lines if the TASK has
+    them.
+    """
     text = source[task.span]
     end_match = re.search(r"\w+\Z", text)
     assert end_match is not None
@@ -211,7 +215,7 @@ def _report_resumed_move(
 
 
 def _endless_part(body: ir.Body) -> ir.Body:
-    """Return what a body does for ever at its end: a move, or what a loop repeats."""
+    """Return the part of a body that repeats forever at its end: a move, or a loop's body."""
     last_statement = body[-1] if body else None
     if isinstance(last_statement, ir.Loop) and last_statement.times is None:
         return last_statement.body
@@ -230,7 +234,7 @@ def _is_move(statement: ir.Statement) -> bool:
 
 
 def _takes_time(statement: ir.Statement) -> bool:
-    """Whether a statement surely takes time."""
+    """Return whether a statement certainly takes time."""
     if isinstance(statement, ir.Move) and (statement.time is None or statement.until is not None):
         return statement.until is None
     if not isinstance(statement, (ir.Move, ir.Act)) or not ir.takes_time(statement):

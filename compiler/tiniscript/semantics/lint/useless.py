@@ -1,4 +1,4 @@
-"""Warns of what is written for nothing: the robot never does it, or nothing comes of it.
+"""Warns of useless code: the robot never executes it, or it has no effect.
 
 Instructions after an endless loop or in a note, a DEF that nobody calls, a variable or a reading
 that nobody uses, a loop that only repeats, a block with nothing inside.
@@ -20,7 +20,7 @@ from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.cursor import INSTRUCTION_ENDS
 from tiniscript.syntax.lexer import NEWLINE, Token
 
-_SEEN_STATEMENTS = (ir.Move, ir.Act, ir.Motors)  # or heard
+_SEEN_STATEMENTS = (ir.Move, ir.Act, ir.Motors)  # statements with a visible or audible effect
 _NOTE_BEHIND = r"[ \t;]{0,99}//"
 MOST_EXAMPLE_INSTRUCTIONS = 12  # instructions that an example has
 _CALL = (
@@ -31,7 +31,7 @@ _CALL = (
 # Few programs have notes: these are not compiled before there are some.
 _CALLS = rf"(?i)/+\s*(?:{_CALL})(?:[;\s]*(?:{_CALL}|STOP|S))*[;\s]*"
 _CALL_IN_IT = rf"(?i)(?:{_CALL})|STOP|S"
-# What may stand between such calls.
+# Tokens allowed between such calls.
 _HEADER_OR_END = r"(?i)(?:LOOP|IF|ELSEIF|WHILE|WHEN|SHOW)\s*\([^();]+\)|ELSE|TASK|END_?[A-Z]+"
 MOST_NOTE_CHARACTERS = 200  # characters of a note that is looked at
 
@@ -40,7 +40,7 @@ MOST_NOTE_CHARACTERS = 200  # characters of a note that is looked at
 
 
 def report_never_reached(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
-    """What stands after a loop without an end, or after BREAK."""
+    """Report instructions after an endless loop or after BREAK."""
     for statement, next_statement in pairwise(body):
         if not ir.falls_through((statement,)):
             values = {"found": context.source[next_statement.span].split("\n")[0]}
@@ -104,7 +104,7 @@ def _report_all_notes(notes: Sequence[Token], context: LintContext) -> None:
 def swallowed_instructions(note: str) -> list[str]:
     """Return the instructions after the words of a note: `// voy; W(2) // compro`.
 
-    None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
+    None if a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
     first_part, *other_parts = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
     instructions = [
@@ -120,7 +120,7 @@ def swallowed_instructions(note: str) -> list[str]:
 
 
 def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
-    """Whether an instruction stands before the token at `end`, not a header or `SI|`."""
+    """Return whether an instruction precedes the token at `end`, not a header or `SI|`."""
     k = end - 1
     while k >= 0 and tokens[k].kind == ";":
         k -= 1
@@ -143,7 +143,7 @@ def report_busy_loop(
     """`WHILE(TRUE);X = DISTANCE;END_WHILE`: it never ends, and nothing in it takes time."""
     procedures = context.program.procedures
     if (
-        context.program.tasks  # there each turn of a loop takes time
+        context.program.tasks  # with tasks, each turn of a loop takes time
         or not _is_forever(loop)
         or ir.breaks_out(loop.body)
         or any(
@@ -232,7 +232,7 @@ def report_unused_variables(context: LintContext) -> None:
     owners = {k: procedure for procedure in program.procedures for k in procedure.values}
     for statement in context.statements:
         if isinstance(statement, ir.Assign) and statement.variable not in variables_used:
-            variables_used.add(statement.variable)  # said once
+            variables_used.add(statement.variable)  # reported once
             name = program.variables[statement.variable]
             device = name if lexicon_meaning(name, "device") else ""
             values = {"name": name, "device": device, "example": use_of(name)}
@@ -242,11 +242,11 @@ def report_unused_variables(context: LintContext) -> None:
 
 
 def report_unused_readings(context: LintContext) -> None:
-    """`SI|DISTANCE`, where nothing asks for the distance: it is measured, and nobody sees it."""
+    """`SI|DISTANCE`, if nothing asks for the distance: it is measured, and nobody sees it."""
     sensors_asked = ir.referenced_numbers("SENSOR", context.statements)
     for statement in context.statements:
         if isinstance(statement, ir.Read) and statement.sensor not in sensors_asked:
-            sensors_asked.add(statement.sensor)  # said once
+            sensors_asked.add(statement.sensor)  # reported once
             name = context.kit.readings[statement.sensor].name
             context.report(codes.UNUSED_READING, statement.span, name=name, fix=f"SHOW({name})")
 

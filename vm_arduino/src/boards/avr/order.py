@@ -1,4 +1,5 @@
-"""Has the linker place functions and tables as `order.ld` says; `platformio.ini` names this file.
+"""Makes the linker place functions and tables in the order of `order.ld`; `platformio.ini` names
+this file.
 
 The C library's start is replaced by `vectors.S`. The sketch is compiled as one piece: in parts, as
 is usual, the compiler finds 6 bytes less.

@@ -14,7 +14,7 @@ env.Append(
     CPPDEFINES=[
         ("ARDUINO", 10808),
         "ARDUINO_ARCH_AVR",
-        # the core wants what avr-gcc 5.4 leaves out of float.h in C++
+        # The core needs definitions that avr-gcc 5.4 omits from float.h in C++.
         ("DECIMAL_DIG", "__DECIMAL_DIG__"),
     ],
     CPPPATH=[core, variant],
