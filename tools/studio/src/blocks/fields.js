@@ -29,6 +29,8 @@ function reportTakenBack(field, onKey) {
   if (value !== valueBefore) Blockly.Events.fire(new Blockly.Events.BlockChange(field.getSourceBlock(), 'field', field.name ?? null, valueBefore, value));
 }
 
+const THOUSANDS = /^\s*[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?\s*$/;
+
 /** A number with at most three decimals; what a person types is made to fit, what a text says stays. */
 export class NumberField extends Blockly.FieldNumber {
   /** @param {string | number} value */
@@ -37,12 +39,20 @@ export class NumberField extends Blockly.FieldNumber {
     this.setPrecision(0.001);
   }
 
-  /** @param {any} value */
+  /** A comma is a decimal sign, unless it separates thousands. @param {any} value */
   doClassValidation_(value) {
-    const validNumber = super.doClassValidation_(value);
+    const typed = String(value ?? '');
+    const validNumber = super.doClassValidation_(THOUSANDS.test(typed) ? typed : typed.replaceAll(',', '.'));
     if (validNumber === null || !this.isBeingEdited_) return validNumber;
     const { low, high } = rangeAt(this.getSourceBlock());
     return Math.min(high, Math.max(low, validNumber));
+  }
+
+  /** A phone shows keys of digits, which lack a minus on some. */
+  widgetCreate_() {
+    const input = super.widgetCreate_();
+    if (rangeAt(this.getSourceBlock()).low >= 0) input.inputMode = 'decimal';
+    return input;
   }
 
   /** Whether it is how high a tone is. */

@@ -1,0 +1,40 @@
+"""The number that is typed into a block, with the decimal sign of the person who types."""
+
+from __future__ import annotations
+
+import json
+import random
+from pathlib import Path
+
+from tests.support.node import in_node, page_data
+
+__all__ = ["page_data"]
+
+SCRIPT = Path(__file__).with_name("number_field_in_node.mjs")
+
+
+def test_a_comma_and_a_point_are_decimal_signs_and_groups_of_thousands_may_have_commas(
+    page_data: Path,
+) -> None:
+    rng = random.Random(1)
+    rows: list[tuple[str, float]] = []
+    for _ in range(2000):
+        decimals = rng.randint(0, 3)
+        number = round(rng.choice([1, 100, 1_000_000]) * rng.uniform(-2, 2), decimals)
+        written = f"{number:.{decimals}f}"
+        rows += [(written, number), (f" {number:,.{decimals}f}", number)]
+        if decimals in (1, 2) or abs(number) < 1:
+            rows.append((written.replace(".", ","), number))
+    given = "".join(f"{json.dumps(written)}\n" for written, _ in rows)
+    for (written, number), row in zip(
+        rows, in_node(SCRIPT, str(page_data), given=given), strict=True
+    ):
+        value, text = json.loads(row)
+        assert value == number and float(text) == number, written
+
+
+def test_what_is_no_number_changes_nothing(page_data: Path) -> None:
+    typed = ["1.2.3", "1,2,3", "1,000,5", "2,5.5", "dos", "1.5,0", "--1", "1,00,000"]
+    given = "".join(f"{json.dumps(text)}\n" for text in typed)
+    for text, row in zip(typed, in_node(SCRIPT, str(page_data), given=given), strict=True):
+        assert json.loads(row)[0] == 7, text
