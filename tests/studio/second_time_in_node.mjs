@@ -697,6 +697,7 @@ const PARTS = {
     let late = () => 5;
     let verdict = '';
     let parts = 0;
+    const isRightOn = (robot, text) => ['', robot].includes(/tinibot|liner|$/.exec(text)[0]);
     const python = {
       tryAgain() {},
       async ask(request, bytes) {
@@ -705,7 +706,7 @@ const PARTS = {
         await later(late());
         if (request.do === 'lesson_titles') return { lessons: LESSONS };
         if (request.do === 'lesson_steps') return { steps: [{ blocks: [{ kind: 'program', rows: [[`F(${request.number})`]] }], hint: '' }], block_steps: [], taught: [] };
-        if (request.do === 'check') return { image: ['', request.robot].includes(/tinibot|liner|$/.exec(new TextDecoder().decode(bytes))[0]) ? '00' : '' };
+        if (request.do === 'check') return { image: isRightOn(request.robot, new TextDecoder().decode(bytes)) ? '00' : '' };
         return { verdict: isLast ? own : '', seed: 1, worlds: 2, said: ['said'], block_said: ['said'], spoken: {}, run: isLast && own === 'failed' ? { seed: 1, until_ms: 9 } : null };
       },
     };
@@ -714,7 +715,14 @@ const PARTS = {
     const work = { text: '', robot: '', name: '', lesson: '', own: null };
     pageState.view.set('text');
     pageState.robotName.subscribe((robot) => { work.robot = robot; });
-    pageState.programText.subscribe((text) => { work.text = text; });
+    pageState.programText.subscribe((text) => {
+      work.text = text;
+      if (!pageState.groupName.value) return;
+      hasGroupText = true;
+      mine = '';
+    });
+    let hasGroupText = false;
+    const openLesson = () => LESSONS[page.byId('lesson_page').dataset.lesson - 1];
     const opens = ({ text, robot, name, lesson = '' }) => {
       pageState.robotName.set(robot);
       Object.assign(work, { name, lesson, own: lesson ? work.own : null });
@@ -723,13 +731,19 @@ const PARTS = {
     const inEditor = () => JSON.stringify([work.text, work.robot, work.name]);
     let mine = ''; // the own program, which has stepped back
     const given = (program) => {
+      if (pageState.groupName.value) wrong ||= 'a lesson takes the program of a group';
+      if (program.lesson && program.lesson !== openLesson().name) wrong ||= `the program of ${program.lesson} comes beside ${openLesson().name}`;
       if (program.lesson) mine ||= inEditor();
       opens(program);
       if (program.lesson) return;
-      if (inEditor() !== mine) throw new Error(`${inEditor()} comes back in place of ${mine}`);
+      if (inEditor() !== mine) wrong ||= `${inEditor()} comes back in place of ${mine}`;
       mine = '';
     };
-    const lessons = new Lessons({ python, simulatorPanel: driving, put: given, exchange: given, work });
+    const exchanges = (program) => {
+      if (program.lesson && !program.text && (!isRightOn(work.robot, work.text) || isRightOn(program.robot, work.text))) wrong ||= `${inEditor()} goes from a ${program.robot}`;
+      given(program);
+    };
+    const lessons = new Lessons({ python, simulatorPanel: driving, put: (program) => (pageState.groupName.value ? opens(program) : given(program)), exchange: exchanges, work });
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
     await passes(500);
@@ -740,6 +754,22 @@ const PARTS = {
       end: () => page.byId('lesson_end').click(),
       edit: () => pageState.programText.set('F(1)'),
     };
+    const kept = () => JSON.parse(window.localStorage.getItem('tiniscript.lesson_programs') ?? '{}');
+    let keptBefore = {};
+    let wrong = '';
+    let chosen = ''; // the newest, in this language
+    /** What is kept of lessons: what was written at each, and nothing of what a group writes. */
+    const checkKept = () => {
+      if (wrong) throw new Error(wrong);
+      const isGroup = pageState.groupName.value !== '';
+      if (isGroup && JSON.stringify(kept()) !== JSON.stringify(keptBefore)) throw new Error(`a group has written ${JSON.stringify(kept())}`);
+      if (isGroup && hasGroupText && work.lesson) throw new Error(`a group's program is that of ${work.lesson}`);
+      if (!isGroup && work.lesson && work.text && kept()[work.lesson] !== work.text) throw new Error(`of ${work.lesson} is kept ${kept()[work.lesson]}, and not ${work.text}`);
+    };
+    const rests = async () => {
+      await passes(3000);
+      if (chosen && String(1 + LESSONS.indexOf(openLesson())) !== chosen) throw new Error(`${openLesson().name} is seen, and ${chosen} was chosen`);
+    };
     const written = (chance) => `F(${chance.below(1000)}) ${chance.of(['', '// tinibot', '// liner'])}`; // and where it is right
     const goesTo = (side) => {
       page.byId('lessons').hidden = side !== 'side_lessons';
@@ -748,16 +778,45 @@ const PARTS = {
     };
     const takes = { // lessons, in any order
       chooses(chance) {
-        page.byId('lesson').value = String(1 + chance.below(LESSONS.length));
+        chosen = page.byId('lesson').value = String(1 + chance.below(LESSONS.length));
         page.byId('lesson').dispatchEvent(new Event('change'));
       },
       uses: () => page.byId('lesson_step').children[0].children[1].click(),
-      writes: (chance) => pageState.programText.set(written(chance)),
+      writes(chance) { // a lesson's program, which is then that of the lesson that is seen
+        const { lesson } = work, wanted = lesson && (pageState.groupName.value ? '' : pageState.sideId.value === 'side_lessons' ? openLesson().name : lesson);
+        pageState.programText.set(written(chance));
+        if (work.lesson !== wanted) throw new Error(`what was written at ${wanted || 'no lesson'} is of ${work.lesson}`);
+      },
       empties: () => pageState.programText.set(''),
       robot: (chance) => pageState.robotName.set(chance.of(['tinibot', 'liner'])),
       goes: (chance) => goesTo(chance.of(['side_lessons', 'side_virtual'])),
       checks: () => acts.check(),
       leaves: () => lessons.leave(),
+      joins(chance) { // its program is nobody's own, and no lesson's
+        if (pageState.groupName.value) return;
+        keptBefore = kept();
+        hasGroupText = false;
+        pageState.groupName.set('red');
+        if (chance() < 0.5) pageState.programText.set(written(chance)); // else it is on its way
+      },
+      async wavers(chance) { // before the lesson has said whether the program is for its robot
+        goesTo('side_lessons');
+        takes.erases();
+        takes[chance.of(['opens', 'writes'])](chance);
+        takes.chooses(chance);
+        await passes(chance.below(500));
+        takes[chance.of(['chooses', 'writes', 'robot'])](chance);
+      },
+      erases() { // whoever else uses this device
+        if (pageState.groupName.value) return;
+        window.localStorage.removeItem('tiniscript.lesson_programs');
+        pageState.programText.set(work.text);
+      },
+      speaks() {
+        chosen = '';
+        pageState.language.set('en');
+      },
+      quits: () => pageState.groupName.set(''),
       opens(chance) {
         mine = '';
         opens({ text: written(chance), robot: chance.of(['tinibot', 'liner']), name: `${chance.below(9)}.ts` });
@@ -785,11 +844,14 @@ const PARTS = {
       await passes(3000);
       seen.push(said());
       late = () => 5 + chance.below(300);
-      for (let k = 5 + chance.below(25); k > 0; k -= 1) {
-        takes[chance.of(['chooses', 'uses', 'writes', ...Object.keys(takes)])](chance);
-        await passes(chance.below(1000));
+      for (let k = 10 + chance.below(40); k > 0; k -= 1) {
+        await takes[chance.of(['chooses', 'writes', ...Object.keys(takes)])](chance);
+        checkKept();
+        await (chance() < 0.15 ? rests() : passes(chance.below(chance.of([50, 100, 1000]))));
+        checkKept();
       }
-      await passes(3000);
+      await rests();
+      takes.quits();
       lessons.leave();
       if (mine || work.lesson || work.own) throw new Error(`after all lessons there is ${work.lesson} ${inEditor()}, and the own program is ${mine}`);
       return { ends: [end], seen };
@@ -2221,7 +2283,13 @@ const PARTS = {
     const { text: textOf } = await page.load('page/texts.js');
     const { FIRST_PROGRAM } = await page.load('start/beginnings.js');
     const work = { text: FIRST_PROGRAM, robot: 'tinibot', world: 'obstacles', language: 'en', name: '', view: 'text', level: 'few', words: false, sound: true };
-    const programs = new Programs({ python: { ask: async () => ({ text: 'a line' }) }, work, put: (program) => Object.assign(work, program), makePicture() {} });
+    const lineOf = (text) => `line ${text.length} ${text.slice(0, 9)}`;
+    let late = () => 0;
+    const ask = async (_, bytes) => {
+      await later(late());
+      return { text: lineOf(new TextDecoder().decode(bytes)) };
+    };
+    const programs = new Programs({ python: { ask }, work, put: (program) => Object.assign(work, program), makePicture() {} });
     let count = 0;
     let now_ms = 1e12;
     Date.now = () => (now_ms += 1);
@@ -2232,6 +2300,13 @@ const PARTS = {
     list.append(document.createElement('li')); // with the button for a new one
     const inForm = (versions) => JSON.stringify(versions.map(({ text, robot, name }) => [text, robot, name]));
     const store = window.localStorage;
+    /** It shows the program that is in the editor then, and nothing that was asked of another one. */
+    const opens = () => {
+      page.byId('my_programs').click();
+      const shown = [page.byId('share').open, page.byId('programs').dataset.shared, page.byId('program_name').value, page.byId('public').value];
+      const wanted = [false, undefined, work.name.replace(/\.ts$/, ''), store.getItem('tiniscript.public') ?? ''];
+      if (JSON.stringify(shown) !== JSON.stringify(wanted)) throw new Error(`the window shows ${JSON.stringify(shown)} in place of ${JSON.stringify(wanted)}`);
+    };
     const fits = (versions) => versions.length <= 40 && JSON.stringify(versions).length <= store.roomFor('tiniscript.versions')
       && (versions.length < 2 || versions.reduce((sum, { text }) => sum + text.length, 0) <= MOST_CHARACTERS);
     /** The newest are kept, as many as there is room for; where not even one is, all stay that were there. @returns whether this one is there */
@@ -2251,16 +2326,46 @@ const PARTS = {
     };
     return async (chance, isGood) => {
       const ends = new Set();
+      late = () => chance.below(chance.of([1, 300]));
       const acts = {
         writes: () => { work.text = `// ${(count += 1)}\n${'F(1);'.repeat(1 + chance.below(chance.of([20, 30_000, 90_000])))}`; },
         again: () => { work.text = chance.of(loadVersions())?.text ?? work.text; },
         blank: () => { work.text = ' '; },
         run: () => page.byId('run').click(),
-        opens: () => page.byId('my_programs').click(),
+        opens,
         new: () => page.byId('new').click(),
+        publishes() { // another tab does
+          const { room } = store;
+          store.room = Infinity;
+          store.setItem('tiniscript.public', chance.of([`http://there.example/${(count += 1)}/`, 'nowhere']));
+          store.room = room;
+        },
+        closes: () => page.byId('programs_close').click(),
+        async shares() { // what is asked last, of what is seen then
+          if (!page.byId('programs').open) opens();
+          page.byId('share').open = true;
+          page.byId('share').dispatchEvent(new Event('toggle'));
+          const form = chance.of(['link', 'line']);
+          for (const each of [chance.of(['link', 'line']), form]) {
+            page.byId(`share_${each}`).click();
+            if (page.byId('programs').dataset.shared !== 'asked' || !page.byId('shared').hidden) throw new Error('what was asked before is there still');
+            if (chance() < 0.3) await passes(chance.below(100));
+          }
+          const address = store.getItem('tiniscript.public') ?? location.href;
+          const wanted = form === 'line' ? lineOf(work.text) : address === 'nowhere' ? '' : await makeLink(work, address) ?? '';
+          for (let k = 0; page.byId('programs').dataset.shared === 'asked' && k < 50_000; k += 1) await passes(1); // it waits for the real clock
+          await passes(500);
+          const shared = page.byId('shared');
+          if (shared.value !== wanted || shared.hidden !== !wanted || page.byId('programs').dataset.shared !== (wanted ? 'done' : 'wrong')) throw new Error(`${shared.value} is shared in place of ${wanted}`);
+        },
+        async asks() { // and what comes of it nobody waits for
+          if (!page.byId('programs').open) return;
+          page.byId('share_line').click();
+          await passes(chance.below(100));
+        },
         lesson: () => programs.replaceProgram({ text: `S; // ${(count += 1)}`, robot: chance.of(['tinibot', 'liner']), name: '' }),
         older: () => {
-          page.byId('my_programs').click();
+          opens();
           chance.of([...list.children, null])?.children[0]?.click();
         },
         names: () => {
