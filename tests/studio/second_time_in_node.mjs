@@ -383,9 +383,34 @@ const PARTS = {
     pageState.robotName.set('tinibot');
     pageState.checkResult.set(PROGRAM);
     let robot = null;
+    let isSeen = false; // what runs is what is seen
+    let offsetsOf = new Map(); // where what runs stops, by each breakpoint
+    let told = [];
+    const stopsAt = (points) => {
+      offsetsOf = new Map(points.map(({ point, line }) => [point, isSeen ? (line === 1 ? [0] : []) : offsetsOf.get(point) ?? []]));
+    };
+    const setsPoints = (points) => {
+      stopsAt(points);
+      pageState.breakpoints.set(points);
+    };
+    const types = (text) => { // breakpoints go with their lines
+      pageState.programText.set(text);
+      isSeen = false;
+      setsPoints(pageState.breakpoints.value.map((each) => ({ ...each, line: each.line + 1 })));
+    };
+    const checkPoints = () => {
+      const wanted = [...new Set([...offsetsOf.values()].flat())];
+      if (['running', 'paused'].includes(document.documentElement.dataset['phase']) && `${told}` !== `${wanted}`) throw new Error(`what runs stops at ${told} in place of ${wanted}`);
+    };
     const python = {
       async ask(request) {
         if (request.do === 'speak') return {}; // which a page asks once
+        if (request.do === 'power_on') {
+          isSeen = true;
+          offsetsOf = new Map();
+          stopsAt(pageState.breakpoints.value);
+        }
+        if ('breakpoints' in request) told = request.breakpoints;
         notes.push(['python', { ...request }]);
         await later(0); // so that a run has the same pictures, whatever it stops
         if (robot.breaks()) throw new Broken();
@@ -402,16 +427,23 @@ const PARTS = {
     return async (chance, isGood) => {
       notes.splice(0);
       robot = virtualRobot(chance, isGood);
-      pageState.programText.set('F(9)');
+      types('F(9)');
+      setsPoints(chance.of([[], [{ line: 1, column: 1, point: {} }]]));
       page.byId('run').click();
       if (!isGood && robot.does === 'runs' && chance() < 0.2) page.byId('run').click(); // twice
       for (let k = chance.below(6); k > 0; k -= 1) {
         await passes(100 + chance.below(300));
         marked.length = 0;
         notes.push(seen());
-        if (chance() < 0.1) {
-          pageState.programText.set(`F(${chance.below(9)})`);
+        if (chance() < 0.3) {
+          setsPoints(chance.of([[], [{ line: 1, column: 1, point: {} }], [...pageState.breakpoints.value, { line: 1, column: 1, point: {} }]]));
+          await passes(50);
+          checkPoints();
+        }
+        if (chance() < 0.2) {
+          types(`F(${chance.below(9)})`);
           await passes(200);
+          checkPoints();
           if (pageState.virtualRun.value.ranges.length) throw new Error('it runs in another text');
         }
         notes.push([...marked]);
@@ -928,30 +960,6 @@ const PARTS = {
       await passes(120_000);
       if (open) throw new Error(`${open} never end: ${notes}`);
       return { ends: [end], seen: [...notes] };
-    };
-  },
-
-  // A program is shared as a line or as a link, whichever was asked for last.
-  async sharing() {
-    const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
-    playsNavigator({});
-    await learns(page);
-    const { Programs } = await page.load('programs/programs.js');
-    let late = () => 5;
-    const python = { ask: async () => { await later(late()); return { text: 'a line' }; } };
-    new Programs({ python, work: { text: 'F(1)', robot: 'tinibot', name: '' }, put() {}, makePicture() {} });
-    const { dataset } = page.byId('programs');
-    return async (chance, isGood) => {
-      late = () => (isGood ? 5 : 5 + chance.below(900));
-      let end = '';
-      for (let k = 1 + chance.below(isGood ? 1 : 4); k > 0; k -= 1) {
-        end = chance.of(['share_line', 'share_link']);
-        page.byId(end).click();
-        await passes(isGood ? 10 : chance.below(300));
-      }
-      while (isGood && dataset['shared'] === 'asked') await settles(); // packing takes as long as the computer is busy
-      await passes(isGood ? 2000 : 0);
-      return { ends: [end], seen: isGood && [page.byId('shared').value, page.byId('shared_told').textContent, dataset['shared'], page.byId('share_link').attributes] };
     };
   },
 
@@ -1897,6 +1905,7 @@ const PARTS = {
           return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, has_remote: true, ...info };
         }
         async ask(request) {
+          if (request.do === 'upload') [this.hasText, this.wanted] = [true, pageState.breakpoints.value.length ? '3' : ''];
           if (this.isBusy && /FOREVER/.test(request.image)) wrong = 'sensors are watched in the place of a program';
           this.isBusy ||= request.do === 'upload' || request.do === 'start';
           const asked = { at_ms: now(), request };
@@ -1979,8 +1988,15 @@ const PARTS = {
     pageState.robotName.set('tinibot');
     pageState.sideId.set('side_real');
     pageState.programText.set('X = DISTANCE;\nSHOW(X)');
-    const program = { ...PROGRAM, program: 'ff', bytes: 9, places: [[0, 1, 1, 1, 13], [3, 2, 1, 2, 8]], halts: [0, 3], findings: [], start: 'SI' };
-    pageState.checkResult.set(program);
+    let moved = 0; // lines, by what was written before them
+    const types = (lines) => {
+      moved = lines;
+      pageState.checkResult.set(null);
+      pageState.programText.set(`${'\n'.repeat(moved)}X = DISTANCE;\nSHOW(X)`);
+      pageState.breakpoints.set(pageState.breakpoints.value.map((each) => ({ ...each, line: 2 + moved })));
+      pageState.checkResult.set({ ...PROGRAM, program: 'ff', bytes: 9, places: [[0, 1 + moved, 1, 1 + moved, 13], [3, 2 + moved, 1, 2 + moved, 8]], halts: [0, 3], findings: [], start: 'SI' });
+    };
+    types(0);
     const checks = async (_, bytes) => {
       const image = new TextDecoder().decode(bytes);
       await later(late());
@@ -2008,9 +2024,13 @@ const PARTS = {
       watch: () => robot.open.size || presses('link_watch'),
       stop: () => page.byId('stop').click(),
       points(chance) {
-        const breakpoints = chance() < 0.4 ? [] : [{ line: 2, column: 1, point: {} }];
-        robot.wanted = breakpoints.length ? '3' : '';
+        const breakpoints = chance() < 0.4 ? [] : [{ line: 2 + moved, column: 1, point: {} }];
+        robot.wanted = breakpoints.length && robot.hasText ? '3' : '';
         pageState.breakpoints.set(breakpoints);
+      },
+      types(chance) { // the robot has its breakpoints where they were
+        types(1 + chance.below(3));
+        robot.hasText = false;
       },
       async line() {
         if (robot.open.size) return;
@@ -2035,6 +2055,7 @@ const PARTS = {
         await answered();
         await acts.line();
         if (chance() < 0.5) await answered();
+        if (chance() < 0.5) acts.types(chance);
         robot.tell({ event: 'DONE' });
         acts.start();
         await answered();
@@ -2100,16 +2121,18 @@ const PARTS = {
       window.localStorage.removeItem('tiniscript.watches');
       if (chance() < 0.4) window.localStorage.setItem('tiniscript.watches', 'on');
       pageState.breakpoints.set([]);
+      types(0);
       info = { has_breakpoints: chance() < 0.8, has_readings: chance() < 0.5, ...chance.of([{ is_running: true, is_idle: false }, { is_running: false, is_idle: true }, { is_running: false, is_idle: false }]) };
       panel.connectByHost('p');
       const all = [seen()];
       await settles();
       robot.points = robot.wanted = '';
-      let end = '';
+      const ends = new Set();
       await passes(isGood ? 50 : chance.below(400));
       if (chance() < 0.6) acts.upload();
       for (let k = 4 + chance.below(12); k > 0; k -= 1) {
-        end = chance.of(['starts', 'halts', 'shows', 'shows', ...Object.keys(acts)]);
+        const end = chance.of(['starts', 'halts', 'shows', 'shows', ...Object.keys(acts)]);
+        ends.add(end);
         await acts[end](chance);
         all.push([seen(), page.byId('link_shown').textContent]);
         await passes(chance.below(chance.of([50, 400])));
@@ -2131,7 +2154,7 @@ const PARTS = {
       }
       robot.end(chance.of(['left', 'unheard']));
       await passes(isGood ? 50 : chance.below(200));
-      return { ends: [end], seen: all };
+      return { ends: [...ends], seen: all };
     };
   },
 
@@ -2353,10 +2376,12 @@ const PARTS = {
           }
           const address = store.getItem('tiniscript.public') ?? location.href;
           const wanted = form === 'line' ? lineOf(work.text) : address === 'nowhere' ? '' : await makeLink(work, address) ?? '';
-          for (let k = 0; page.byId('programs').dataset.shared === 'asked' && k < 50_000; k += 1) await passes(1); // it waits for the real clock
+          while (page.byId('programs').dataset.shared === 'asked') await passes(1); // what is packed waits for the real clock
           await passes(500);
           const shared = page.byId('shared');
           if (shared.value !== wanted || shared.hidden !== !wanted || page.byId('programs').dataset.shared !== (wanted ? 'done' : 'wrong')) throw new Error(`${shared.value} is shared in place of ${wanted}`);
+          const isLine = page.byId('share_line').attributes['aria-pressed'] === 'true', told = page.byId('shared_told').textContent;
+          if (isLine !== (form === 'line') || told.startsWith(textOf('share_line_told')) !== isLine) throw new Error(`of a ${form} it says: ${told}`);
         },
         async asks() { // and what comes of it nobody waits for
           if (!page.byId('programs').open) return;
@@ -3813,6 +3838,81 @@ const PARTS = {
     };
   },
 
+  // A phone: what somebody wants of the sheet with mistakes holds until the program is right, and no longer. Run leads to what
+  // is to be seen, and runs the robot that is seen.
+  async phone() {
+    const page = freshPage();
+    const phone = Object.assign(new EventTarget(), { matches: false });
+    globalThis.matchMedia = () => phone;
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { showSide } = await page.load('page/sides.js');
+    const { Phone } = await page.load('page/phone.js');
+    let real = 0, virtual = 0; // runs
+    new Phone(() => { real += 1; });
+    page.byId('run').addEventListener('click', () => { virtual += 1; });
+    const root = document.documentElement;
+    const is = { image: '00', count: 0, isAway: null };
+    const says = (image, count) => {
+      Object.assign(is, { image, count }, !count && { isAway: null });
+      pageState.checkResult.set({ image, findings: Array(count).fill({}) });
+    };
+    const isAway = () => is.isAway ?? (pageState.view.value === 'blocks' && is.image !== '' && pageState.checkResult.value !== null);
+    const turns = (isPhone) => {
+      phone.matches = isPhone;
+      phone.dispatchEvent(new Event('change'));
+    };
+    const seen = () => [page.byId('writing').dataset.sheet, page.byId('sheet').hidden, page.byId('sheet').attributes['aria-expanded'], root.dataset.half, page.byId('other_name').textContent, 'phone' in root.dataset, page.byId('bar').children.length, real, virtual];
+    const acts = {
+      wrong: () => says('', 1),
+      warned: () => says('00', 1),
+      right: () => says('00', 0),
+      checks: () => pageState.checkResult.set(null),
+      sheet() {
+        if (page.byId('sheet').hidden) return;
+        is.isAway = !isAway();
+        page.byId('sheet').click();
+      },
+      run() {
+        const { half, side } = root.dataset, isReal = phone.matches && side === 'side_real' && half === 'robot';
+        const isWrong = pageState.checkResult.value?.image === '', before = [real, virtual];
+        if (phone.matches && !isReal && isWrong) is.isAway = false;
+        page.byId('run').click();
+        if (`${[real, virtual]}` !== `${[before[0] + Number(isReal), before[1] + Number(!isReal)]}`) throw new Error('another robot runs');
+        const wanted = !phone.matches || isReal ? [half, side] : isWrong ? ['program', side] : ['robot', side === 'side_lessons' ? side : 'side_virtual'];
+        if (`${[root.dataset.half, root.dataset.side]}` !== `${wanted}`) throw new Error(`${[root.dataset.half, root.dataset.side]} is seen in place of ${wanted}`);
+      },
+      other: () => page.byId('other').click(),
+      speaks: () => pageState.language.set('en'),
+      view: (chance) => pageState.view.set(chance.of(['blocks', 'text'])),
+      side: (chance) => showSide(chance.of(['side_virtual', 'side_lessons', 'side_real'])),
+      turns: (chance) => turns(chance() < 0.7),
+    };
+    says('00', 0);
+    return async (chance, isGood) => {
+      if (isGood) {
+        turns(true);
+        for (const part of [page.byId('controls'), page.byId('bar')]) part.children = [];
+        says('00', 0);
+        pageState.view.set('blocks');
+        showSide('side_virtual');
+        if (root.dataset.half !== 'program') page.byId('other').click();
+        [real, virtual] = [0, 0];
+      }
+      const ends = new Set(), all = [];
+      for (let k = 4 + chance.below(12); k > 0; k -= 1) {
+        const act = chance.of(['wrong', 'sheet', ...Object.keys(acts)]);
+        ends.add(act);
+        acts[act](chance);
+        all.push([act, seen()]);
+        if (act !== 'checks' && pageState.checkResult.value && (page.byId('writing').dataset.sheet === 'away') !== isAway()) throw new Error(`after ${act} the sheet is ${page.byId('writing').dataset.sheet}`);
+        if (page.byId('sheet').hidden !== !is.count) throw new Error('there is no way to what is said, or one to nothing');
+        if ('phone' in root.dataset !== phone.matches || (phone.matches && page.byId('run').parent !== page.byId('bar'))) throw new Error('Run is out of reach');
+      }
+      return { ends: [...ends], seen: all };
+    };
+  },
+
   // A tab is loaded again and again, by an address with a code or without one, while other users' workers may read what it
   // asks, answers are lost and nothing can be kept: it asks with the token of its newest code, or says why it has none.
   async entering() {
@@ -3892,21 +3992,24 @@ const PARTS = {
     let startsAfterStop = false;
     let begun = 0;
     let worker = Promise.resolve(); // it does one thing after the other
+    const program = { ...PROGRAM, places: [[0, 1, 1, 1, 9], [3, 2, 1, 2, 9]] };
+    let told = []; // where what runs stops
     const python = {
       ask(request) {
+        told = request.breakpoints ?? told;
         if (request.do === 'power_on') {
           startsAfterStop ||= !wants;
           begun += 1;
         }
         const asked = robot;
-        worker = worker.then(() => later(late())).then(() => (request.do === 'check' ? PROGRAM : asked.answer(request)));
+        worker = worker.then(() => later(late())).then(() => (request.do === 'check' ? program : asked.answer(request)));
         return worker;
       },
     };
     const whenCompiled = async () => {
       await later(late());
-      pageState.checkResult.set(PROGRAM);
-      return PROGRAM;
+      pageState.checkResult.set(program);
+      return program;
     };
     robot = virtualRobot(chanceOf(1), true);
     page.byId('arena').checkVisibility = () => true;
@@ -3923,6 +4026,7 @@ const PARTS = {
         stop: () => page.byId('stop').click(),
         escape: () => dispatchEvent(Object.assign(new Event('keydown'), { key: 'Escape' })),
         edits: () => pageState.checkResult.set(null),
+        points: () => pageState.breakpoints.set([1, 2].map((line) => ({ line, column: 1, point: {} }))),
       };
       let end = '';
       for (let k = 3 + chance.below(8); k > 0; k -= 1) {
@@ -3947,11 +4051,19 @@ const PARTS = {
         const before = begun;
         open += 1;
         panel.tryAlone('F(1)', true, () => {}).then(() => { open -= 1; });
-        await passes(1500);
+        await passes(600);
+        pageState.breakpoints.set(pageState.breakpoints.value.slice(1));
+        await passes(900);
+        if (isToRun && (told.length || pageState.virtualRun.value.ranges.length)) throw new Error(`a block that is tried stops at ${told}, or is seen in the text`);
         if ((begun > before) !== isToRun) throw new Error(isToRun ? 'a block that is tried does not run' : 'it runs in the place of the whole program');
       };
       wants = true;
       await tries(true);
+      panel.play({ lesson: 1, seed: 1, until_ms: 900 });
+      await passes(600);
+      ways.points();
+      await passes(600);
+      if (told.length) throw new Error(`a run that is shown stops at ${told}`);
       ways.stop();
       await passes(1500);
       if (open) throw new Error('a block that was tried never ends');
