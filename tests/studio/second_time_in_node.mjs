@@ -2597,6 +2597,7 @@ const PARTS = {
     recorder.addProgram({ program: 'aa', places: [], shows: [], variables: [] });
     let own = []; // what the newest run of ours has told, and when
     let isOpen = false;
+    let hasUnread = false; // what a sensor of the newest run has read, and nobody knows
     let began = null; // by the clock that stands in a halt; null before the first row of a run by the button
     let halted = null;
     const tells = (event) => {
@@ -2615,6 +2616,7 @@ const PARTS = {
     const begins = (at) => {
       own = [];
       isOpen = true;
+      hasUnread = false;
       began = at;
       halted = null;
     };
@@ -2631,11 +2633,26 @@ const PARTS = {
         ends('STOPPED');
         recorder.onEvent({ event: 'STARTED', program: 'bb', is_program: false });
       },
+      unknown() { // of which this page has nothing
+        ends('STOPPED');
+        [own, hasUnread] = [[], false];
+        recorder.onEvent({ event: 'STARTED', program: 'cc', is_program: true });
+      },
       shows(chance) {
         if (halted !== null) return; // it stands
         const value = String(chance.below(1000));
         if (isOpen) tells(`SHOW ${value}`);
         recorder.onEvent({ event: 'SHOW', value });
+      },
+      reads(chance) { // in the robot's own time
+        const at_ms = now() - (began ?? now() - 5), row = [Math.round(at_ms), chance.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])];
+        if (halted !== null) return;
+        if (isOpen) {
+          began ??= now() - row[0];
+          own.push(row);
+          hasUnread ||= row[1].startsWith('UNREAD');
+        }
+        recorder.onEvent({ event: 'READING', rows: [row] });
       },
       ends(chance) {
         const event = chance.of(['DONE', 'STOPPED', 'MISSED', 'LOST', 'RESTARTED']);
@@ -2663,9 +2680,11 @@ const PARTS = {
         end = chance.of(['shows', 'shows', 'shows', ...Object.keys(acts)]);
         acts[end](chance);
         await passes(chance.below(300));
-        if (page.byId('record_play').hidden) continue;
+        if (page.byId('record_play').hidden !== !own.length) throw new Error(`what can be played is ${own}`);
+        if (!own.length) continue;
         const told = runs.newestFirst[0].rows;
         if (`${told}` !== `${own}`) throw new Error(`${told} in place of ${own}`);
+        if (page.byId('record_lacks').hidden === hasUnread) throw new Error(`that not all was read is ${hasUnread ? 'not ' : ''}said`);
       }
       return { ends: [end], seen: isGood && [...own] };
     };

@@ -48,7 +48,7 @@ ENDS = {
     "arena": {"long", "short"},
     "curves": {"long", "short"},
     "steps": {"came", "failed"},
-    "recording": {"theirs", "shows", "ends", "waits", "gone", "halts"},
+    "recording": {"theirs", "shows", "ends", "waits", "gone", "halts", "reads"},
     "giving": {"chosen", "gone", "alike", "nobody"},
     "sure": {"sure", "once"},
     "cable": {"closed", "opening", "open", "over"},
