@@ -837,7 +837,7 @@ const PARTS = {
         takes[chance.of(['opens', 'writes'])](chance);
         takes.chooses(chance);
         await passes(chance.below(500));
-        takes[chance.of(['chooses', 'writes', 'robot'])](chance);
+        takes[chance.of(['chooses', 'writes', 'robot', 'joins'])](chance);
       },
       erases() { // whoever else uses this device
         if (pageState.groupName.value) return;

@@ -320,7 +320,7 @@ export class Lessons {
       /** @param {string} robotName */
       const isRightOn = async (robotName) => Boolean((await this.#page.python.ask({ do: 'check', robot: robotName, language }, programBytes)).image);
       const isForOther = await isRightOn(robotName) && !(await isRightOn(lesson.robot));
-      if (programText === pageState.programText.value && robotName === pageState.robotName.value) return isForOther; // else that was another one
+      if (programText === pageState.programText.value && robotName === pageState.robotName.value) return isForOther && !pageState.groupName.value; // else that was another one
     }
   }
 
