@@ -383,9 +383,34 @@ const PARTS = {
     pageState.robotName.set('tinibot');
     pageState.checkResult.set(PROGRAM);
     let robot = null;
+    let isSeen = false; // what runs is what is seen
+    let offsetsOf = new Map(); // where what runs stops, by each breakpoint
+    let told = [];
+    const stopsAt = (points) => {
+      offsetsOf = new Map(points.map(({ point, line }) => [point, isSeen ? (line === 1 ? [0] : []) : offsetsOf.get(point) ?? []]));
+    };
+    const setsPoints = (points) => {
+      stopsAt(points);
+      pageState.breakpoints.set(points);
+    };
+    const types = (text) => { // breakpoints go with their lines
+      pageState.programText.set(text);
+      isSeen = false;
+      setsPoints(pageState.breakpoints.value.map((each) => ({ ...each, line: each.line + 1 })));
+    };
+    const checkPoints = () => {
+      const wanted = [...new Set([...offsetsOf.values()].flat())];
+      if (['running', 'paused'].includes(document.documentElement.dataset['phase']) && `${told}` !== `${wanted}`) throw new Error(`what runs stops at ${told} in place of ${wanted}`);
+    };
     const python = {
       async ask(request) {
         if (request.do === 'speak') return {}; // which a page asks once
+        if (request.do === 'power_on') {
+          isSeen = true;
+          offsetsOf = new Map();
+          stopsAt(pageState.breakpoints.value);
+        }
+        if ('breakpoints' in request) told = request.breakpoints;
         notes.push(['python', { ...request }]);
         await later(0); // so that a run has the same pictures, whatever it stops
         if (robot.breaks()) throw new Broken();
@@ -402,16 +427,23 @@ const PARTS = {
     return async (chance, isGood) => {
       notes.splice(0);
       robot = virtualRobot(chance, isGood);
-      pageState.programText.set('F(9)');
+      types('F(9)');
+      setsPoints(chance.of([[], [{ line: 1, column: 1, point: {} }]]));
       page.byId('run').click();
       if (!isGood && robot.does === 'runs' && chance() < 0.2) page.byId('run').click(); // twice
       for (let k = chance.below(6); k > 0; k -= 1) {
         await passes(100 + chance.below(300));
         marked.length = 0;
         notes.push(seen());
-        if (chance() < 0.1) {
-          pageState.programText.set(`F(${chance.below(9)})`);
+        if (chance() < 0.3) {
+          setsPoints(chance.of([[], [{ line: 1, column: 1, point: {} }], [...pageState.breakpoints.value, { line: 1, column: 1, point: {} }]]));
+          await passes(50);
+          checkPoints();
+        }
+        if (chance() < 0.2) {
+          types(`F(${chance.below(9)})`);
           await passes(200);
+          checkPoints();
           if (pageState.virtualRun.value.ranges.length) throw new Error('it runs in another text');
         }
         notes.push([...marked]);
@@ -697,6 +729,7 @@ const PARTS = {
     let late = () => 5;
     let verdict = '';
     let parts = 0;
+    const isRightOn = (robot, text) => ['', robot].includes(/tinibot|liner|$/.exec(text)[0]);
     const python = {
       tryAgain() {},
       async ask(request, bytes) {
@@ -705,7 +738,7 @@ const PARTS = {
         await later(late());
         if (request.do === 'lesson_titles') return { lessons: LESSONS };
         if (request.do === 'lesson_steps') return { steps: [{ blocks: [{ kind: 'program', rows: [[`F(${request.number})`]] }], hint: '' }], block_steps: [], taught: [] };
-        if (request.do === 'check') return { image: ['', request.robot].includes(/tinibot|liner|$/.exec(new TextDecoder().decode(bytes))[0]) ? '00' : '' };
+        if (request.do === 'check') return { image: isRightOn(request.robot, new TextDecoder().decode(bytes)) ? '00' : '' };
         return { verdict: isLast ? own : '', seed: 1, worlds: 2, said: ['said'], block_said: ['said'], spoken: {}, run: isLast && own === 'failed' ? { seed: 1, until_ms: 9 } : null };
       },
     };
@@ -714,7 +747,14 @@ const PARTS = {
     const work = { text: '', robot: '', name: '', lesson: '', own: null };
     pageState.view.set('text');
     pageState.robotName.subscribe((robot) => { work.robot = robot; });
-    pageState.programText.subscribe((text) => { work.text = text; });
+    pageState.programText.subscribe((text) => {
+      work.text = text;
+      if (!pageState.groupName.value) return;
+      hasGroupText = true;
+      mine = '';
+    });
+    let hasGroupText = false;
+    const openLesson = () => LESSONS[page.byId('lesson_page').dataset.lesson - 1];
     const opens = ({ text, robot, name, lesson = '' }) => {
       pageState.robotName.set(robot);
       Object.assign(work, { name, lesson, own: lesson ? work.own : null });
@@ -723,13 +763,19 @@ const PARTS = {
     const inEditor = () => JSON.stringify([work.text, work.robot, work.name]);
     let mine = ''; // the own program, which has stepped back
     const given = (program) => {
+      if (pageState.groupName.value) wrong ||= 'a lesson takes the program of a group';
+      if (program.lesson && program.lesson !== openLesson().name) wrong ||= `the program of ${program.lesson} comes beside ${openLesson().name}`;
       if (program.lesson) mine ||= inEditor();
       opens(program);
       if (program.lesson) return;
-      if (inEditor() !== mine) throw new Error(`${inEditor()} comes back in place of ${mine}`);
+      if (inEditor() !== mine) wrong ||= `${inEditor()} comes back in place of ${mine}`;
       mine = '';
     };
-    const lessons = new Lessons({ python, simulatorPanel: driving, put: given, exchange: given, work });
+    const exchanges = (program) => {
+      if (program.lesson && !program.text && (!isRightOn(work.robot, work.text) || isRightOn(program.robot, work.text))) wrong ||= `${inEditor()} goes from a ${program.robot}`;
+      given(program);
+    };
+    const lessons = new Lessons({ python, simulatorPanel: driving, put: (program) => (pageState.groupName.value ? opens(program) : given(program)), exchange: exchanges, work });
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
     await passes(500);
@@ -740,6 +786,22 @@ const PARTS = {
       end: () => page.byId('lesson_end').click(),
       edit: () => pageState.programText.set('F(1)'),
     };
+    const kept = () => JSON.parse(window.localStorage.getItem('tiniscript.lesson_programs') ?? '{}');
+    let keptBefore = {};
+    let wrong = '';
+    let chosen = ''; // the newest, in this language
+    /** What is kept of lessons: what was written at each, and nothing of what a group writes. */
+    const checkKept = () => {
+      if (wrong) throw new Error(wrong);
+      const isGroup = pageState.groupName.value !== '';
+      if (isGroup && JSON.stringify(kept()) !== JSON.stringify(keptBefore)) throw new Error(`a group has written ${JSON.stringify(kept())}`);
+      if (isGroup && hasGroupText && work.lesson) throw new Error(`a group's program is that of ${work.lesson}`);
+      if (!isGroup && work.lesson && work.text && kept()[work.lesson] !== work.text) throw new Error(`of ${work.lesson} is kept ${kept()[work.lesson]}, and not ${work.text}`);
+    };
+    const rests = async () => {
+      await passes(3000);
+      if (chosen && String(1 + LESSONS.indexOf(openLesson())) !== chosen) throw new Error(`${openLesson().name} is seen, and ${chosen} was chosen`);
+    };
     const written = (chance) => `F(${chance.below(1000)}) ${chance.of(['', '// tinibot', '// liner'])}`; // and where it is right
     const goesTo = (side) => {
       page.byId('lessons').hidden = side !== 'side_lessons';
@@ -748,16 +810,45 @@ const PARTS = {
     };
     const takes = { // lessons, in any order
       chooses(chance) {
-        page.byId('lesson').value = String(1 + chance.below(LESSONS.length));
+        chosen = page.byId('lesson').value = String(1 + chance.below(LESSONS.length));
         page.byId('lesson').dispatchEvent(new Event('change'));
       },
       uses: () => page.byId('lesson_step').children[0].children[1].click(),
-      writes: (chance) => pageState.programText.set(written(chance)),
+      writes(chance) { // a lesson's program, which is then that of the lesson that is seen
+        const { lesson } = work, wanted = lesson && (pageState.groupName.value ? '' : pageState.sideId.value === 'side_lessons' ? openLesson().name : lesson);
+        pageState.programText.set(written(chance));
+        if (work.lesson !== wanted) throw new Error(`what was written at ${wanted || 'no lesson'} is of ${work.lesson}`);
+      },
       empties: () => pageState.programText.set(''),
       robot: (chance) => pageState.robotName.set(chance.of(['tinibot', 'liner'])),
       goes: (chance) => goesTo(chance.of(['side_lessons', 'side_virtual'])),
       checks: () => acts.check(),
       leaves: () => lessons.leave(),
+      joins(chance) { // its program is nobody's own, and no lesson's
+        if (pageState.groupName.value) return;
+        keptBefore = kept();
+        hasGroupText = false;
+        pageState.groupName.set('red');
+        if (chance() < 0.5) pageState.programText.set(written(chance)); // else it is on its way
+      },
+      async wavers(chance) { // before the lesson has said whether the program is for its robot
+        goesTo('side_lessons');
+        takes.erases();
+        takes[chance.of(['opens', 'writes'])](chance);
+        takes.chooses(chance);
+        await passes(chance.below(500));
+        takes[chance.of(['chooses', 'writes', 'robot', 'joins'])](chance);
+      },
+      erases() { // whoever else uses this device
+        if (pageState.groupName.value) return;
+        window.localStorage.removeItem('tiniscript.lesson_programs');
+        pageState.programText.set(work.text);
+      },
+      speaks() {
+        chosen = '';
+        pageState.language.set('en');
+      },
+      quits: () => pageState.groupName.set(''),
       opens(chance) {
         mine = '';
         opens({ text: written(chance), robot: chance.of(['tinibot', 'liner']), name: `${chance.below(9)}.ts` });
@@ -785,11 +876,14 @@ const PARTS = {
       await passes(3000);
       seen.push(said());
       late = () => 5 + chance.below(300);
-      for (let k = 5 + chance.below(25); k > 0; k -= 1) {
-        takes[chance.of(['chooses', 'uses', 'writes', ...Object.keys(takes)])](chance);
-        await passes(chance.below(1000));
+      for (let k = 10 + chance.below(40); k > 0; k -= 1) {
+        await takes[chance.of(['chooses', 'writes', ...Object.keys(takes)])](chance);
+        checkKept();
+        await (chance() < 0.15 ? rests() : passes(chance.below(chance.of([50, 100, 1000]))));
+        checkKept();
       }
-      await passes(3000);
+      await rests();
+      takes.quits();
       lessons.leave();
       if (mine || work.lesson || work.own) throw new Error(`after all lessons there is ${work.lesson} ${inEditor()}, and the own program is ${mine}`);
       return { ends: [end], seen };
@@ -866,30 +960,6 @@ const PARTS = {
       await passes(120_000);
       if (open) throw new Error(`${open} never end: ${notes}`);
       return { ends: [end], seen: [...notes] };
-    };
-  },
-
-  // A program is shared as a line or as a link, whichever was asked for last.
-  async sharing() {
-    const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
-    playsNavigator({});
-    await learns(page);
-    const { Programs } = await page.load('programs/programs.js');
-    let late = () => 5;
-    const python = { ask: async () => { await later(late()); return { text: 'a line' }; } };
-    new Programs({ python, work: { text: 'F(1)', robot: 'tinibot', name: '' }, put() {}, makePicture() {} });
-    const { dataset } = page.byId('programs');
-    return async (chance, isGood) => {
-      late = () => (isGood ? 5 : 5 + chance.below(900));
-      let end = '';
-      for (let k = 1 + chance.below(isGood ? 1 : 4); k > 0; k -= 1) {
-        end = chance.of(['share_line', 'share_link']);
-        page.byId(end).click();
-        await passes(isGood ? 10 : chance.below(300));
-      }
-      while (isGood && dataset['shared'] === 'asked') await settles(); // packing takes as long as the computer is busy
-      await passes(isGood ? 2000 : 0);
-      return { ends: [end], seen: isGood && [page.byId('shared').value, page.byId('shared_told').textContent, dataset['shared'], page.byId('share_link').attributes] };
     };
   },
 
@@ -1835,6 +1905,7 @@ const PARTS = {
           return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, has_remote: true, ...info };
         }
         async ask(request) {
+          if (request.do === 'upload') [this.hasText, this.wanted] = [true, pageState.breakpoints.value.length ? '3' : ''];
           if (this.isBusy && /FOREVER/.test(request.image)) wrong = 'sensors are watched in the place of a program';
           this.isBusy ||= request.do === 'upload' || request.do === 'start';
           const asked = { at_ms: now(), request };
@@ -1917,8 +1988,15 @@ const PARTS = {
     pageState.robotName.set('tinibot');
     pageState.sideId.set('side_real');
     pageState.programText.set('X = DISTANCE;\nSHOW(X)');
-    const program = { ...PROGRAM, program: 'ff', bytes: 9, places: [[0, 1, 1, 1, 13], [3, 2, 1, 2, 8]], halts: [0, 3], findings: [], start: 'SI' };
-    pageState.checkResult.set(program);
+    let moved = 0; // lines, by what was written before them
+    const types = (lines) => {
+      moved = lines;
+      pageState.checkResult.set(null);
+      pageState.programText.set(`${'\n'.repeat(moved)}X = DISTANCE;\nSHOW(X)`);
+      pageState.breakpoints.set(pageState.breakpoints.value.map((each) => ({ ...each, line: 2 + moved })));
+      pageState.checkResult.set({ ...PROGRAM, program: 'ff', bytes: 9, places: [[0, 1 + moved, 1, 1 + moved, 13], [3, 2 + moved, 1, 2 + moved, 8]], halts: [0, 3], findings: [], start: 'SI' });
+    };
+    types(0);
     const checks = async (_, bytes) => {
       const image = new TextDecoder().decode(bytes);
       await later(late());
@@ -1946,9 +2024,13 @@ const PARTS = {
       watch: () => robot.open.size || presses('link_watch'),
       stop: () => page.byId('stop').click(),
       points(chance) {
-        const breakpoints = chance() < 0.4 ? [] : [{ line: 2, column: 1, point: {} }];
-        robot.wanted = breakpoints.length ? '3' : '';
+        const breakpoints = chance() < 0.4 ? [] : [{ line: 2 + moved, column: 1, point: {} }];
+        robot.wanted = breakpoints.length && robot.hasText ? '3' : '';
         pageState.breakpoints.set(breakpoints);
+      },
+      types(chance) { // the robot has its breakpoints where they were
+        types(1 + chance.below(3));
+        robot.hasText = false;
       },
       async line() {
         if (robot.open.size) return;
@@ -1973,6 +2055,7 @@ const PARTS = {
         await answered();
         await acts.line();
         if (chance() < 0.5) await answered();
+        if (chance() < 0.5) acts.types(chance);
         robot.tell({ event: 'DONE' });
         acts.start();
         await answered();
@@ -2038,16 +2121,18 @@ const PARTS = {
       window.localStorage.removeItem('tiniscript.watches');
       if (chance() < 0.4) window.localStorage.setItem('tiniscript.watches', 'on');
       pageState.breakpoints.set([]);
+      types(0);
       info = { has_breakpoints: chance() < 0.8, has_readings: chance() < 0.5, ...chance.of([{ is_running: true, is_idle: false }, { is_running: false, is_idle: true }, { is_running: false, is_idle: false }]) };
       panel.connectByHost('p');
       const all = [seen()];
       await settles();
       robot.points = robot.wanted = '';
-      let end = '';
+      const ends = new Set();
       await passes(isGood ? 50 : chance.below(400));
       if (chance() < 0.6) acts.upload();
       for (let k = 4 + chance.below(12); k > 0; k -= 1) {
-        end = chance.of(['starts', 'halts', 'shows', 'shows', ...Object.keys(acts)]);
+        const end = chance.of(['starts', 'halts', 'shows', 'shows', ...Object.keys(acts)]);
+        ends.add(end);
         await acts[end](chance);
         all.push([seen(), page.byId('link_shown').textContent]);
         await passes(chance.below(chance.of([50, 400])));
@@ -2069,7 +2154,7 @@ const PARTS = {
       }
       robot.end(chance.of(['left', 'unheard']));
       await passes(isGood ? 50 : chance.below(200));
-      return { ends: [end], seen: all };
+      return { ends: [...ends], seen: all };
     };
   },
 
@@ -2221,7 +2306,13 @@ const PARTS = {
     const { text: textOf } = await page.load('page/texts.js');
     const { FIRST_PROGRAM } = await page.load('start/beginnings.js');
     const work = { text: FIRST_PROGRAM, robot: 'tinibot', world: 'obstacles', language: 'en', name: '', view: 'text', level: 'few', words: false, sound: true };
-    const programs = new Programs({ python: { ask: async () => ({ text: 'a line' }) }, work, put: (program) => Object.assign(work, program), makePicture() {} });
+    const lineOf = (text) => `line ${text.length} ${text.slice(0, 9)}`;
+    let late = () => 0;
+    const ask = async (_, bytes) => {
+      await later(late());
+      return { text: lineOf(new TextDecoder().decode(bytes)) };
+    };
+    const programs = new Programs({ python: { ask }, work, put: (program) => Object.assign(work, program), makePicture() {} });
     let count = 0;
     let now_ms = 1e12;
     Date.now = () => (now_ms += 1);
@@ -2232,6 +2323,13 @@ const PARTS = {
     list.append(document.createElement('li')); // with the button for a new one
     const inForm = (versions) => JSON.stringify(versions.map(({ text, robot, name }) => [text, robot, name]));
     const store = window.localStorage;
+    /** It shows the program that is in the editor then, and nothing that was asked of another one. */
+    const opens = () => {
+      page.byId('my_programs').click();
+      const shown = [page.byId('share').open, page.byId('programs').dataset.shared, page.byId('program_name').value, page.byId('public').value];
+      const wanted = [false, undefined, work.name.replace(/\.ts$/, ''), store.getItem('tiniscript.public') ?? ''];
+      if (JSON.stringify(shown) !== JSON.stringify(wanted)) throw new Error(`the window shows ${JSON.stringify(shown)} in place of ${JSON.stringify(wanted)}`);
+    };
     const fits = (versions) => versions.length <= 40 && JSON.stringify(versions).length <= store.roomFor('tiniscript.versions')
       && (versions.length < 2 || versions.reduce((sum, { text }) => sum + text.length, 0) <= MOST_CHARACTERS);
     /** The newest are kept, as many as there is room for; where not even one is, all stay that were there. @returns whether this one is there */
@@ -2251,16 +2349,48 @@ const PARTS = {
     };
     return async (chance, isGood) => {
       const ends = new Set();
+      late = () => chance.below(chance.of([1, 300]));
       const acts = {
         writes: () => { work.text = `// ${(count += 1)}\n${'F(1);'.repeat(1 + chance.below(chance.of([20, 30_000, 90_000])))}`; },
         again: () => { work.text = chance.of(loadVersions())?.text ?? work.text; },
         blank: () => { work.text = ' '; },
         run: () => page.byId('run').click(),
-        opens: () => page.byId('my_programs').click(),
+        opens,
         new: () => page.byId('new').click(),
+        publishes() { // another tab does
+          const { room } = store;
+          store.room = Infinity;
+          store.setItem('tiniscript.public', chance.of([`http://there.example/${(count += 1)}/`, 'nowhere']));
+          store.room = room;
+        },
+        closes: () => page.byId('programs_close').click(),
+        async shares() { // what is asked last, of what is seen then
+          if (!page.byId('programs').open) opens();
+          page.byId('share').open = true;
+          page.byId('share').dispatchEvent(new Event('toggle'));
+          const form = chance.of(['link', 'line']);
+          for (const each of [chance.of(['link', 'line']), form]) {
+            page.byId(`share_${each}`).click();
+            if (page.byId('programs').dataset.shared !== 'asked' || !page.byId('shared').hidden) throw new Error('what was asked before is there still');
+            if (chance() < 0.3) await passes(chance.below(100));
+          }
+          const address = store.getItem('tiniscript.public') ?? location.href;
+          const wanted = form === 'line' ? lineOf(work.text) : address === 'nowhere' ? '' : await makeLink(work, address) ?? '';
+          while (page.byId('programs').dataset.shared === 'asked') await passes(1); // what is packed waits for the real clock
+          await passes(500);
+          const shared = page.byId('shared');
+          if (shared.value !== wanted || shared.hidden !== !wanted || page.byId('programs').dataset.shared !== (wanted ? 'done' : 'wrong')) throw new Error(`${shared.value} is shared in place of ${wanted}`);
+          const isLine = page.byId('share_line').attributes['aria-pressed'] === 'true', told = page.byId('shared_told').textContent;
+          if (isLine !== (form === 'line') || told.startsWith(textOf('share_line_told')) !== isLine) throw new Error(`of a ${form} it says: ${told}`);
+        },
+        async asks() { // and what comes of it nobody waits for
+          if (!page.byId('programs').open) return;
+          page.byId('share_line').click();
+          await passes(chance.below(100));
+        },
         lesson: () => programs.replaceProgram({ text: `S; // ${(count += 1)}`, robot: chance.of(['tinibot', 'liner']), name: '' }),
         older: () => {
-          page.byId('my_programs').click();
+          opens();
           chance.of([...list.children, null])?.children[0]?.click();
         },
         names: () => {
@@ -2467,6 +2597,7 @@ const PARTS = {
     recorder.addProgram({ program: 'aa', places: [], shows: [], variables: [] });
     let own = []; // what the newest run of ours has told, and when
     let isOpen = false;
+    let hasUnread = false; // what a sensor of the newest run has read, and nobody knows
     let began = null; // by the clock that stands in a halt; null before the first row of a run by the button
     let halted = null;
     const tells = (event) => {
@@ -2485,6 +2616,7 @@ const PARTS = {
     const begins = (at) => {
       own = [];
       isOpen = true;
+      hasUnread = false;
       began = at;
       halted = null;
     };
@@ -2501,11 +2633,26 @@ const PARTS = {
         ends('STOPPED');
         recorder.onEvent({ event: 'STARTED', program: 'bb', is_program: false });
       },
+      unknown() { // of which this page has nothing
+        ends('STOPPED');
+        [own, hasUnread] = [[], false];
+        recorder.onEvent({ event: 'STARTED', program: 'cc', is_program: true });
+      },
       shows(chance) {
         if (halted !== null) return; // it stands
         const value = String(chance.below(1000));
         if (isOpen) tells(`SHOW ${value}`);
         recorder.onEvent({ event: 'SHOW', value });
+      },
+      reads(chance) { // in the robot's own time
+        const at_ms = now() - (began ?? now() - 5), row = [Math.round(at_ms), chance.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])];
+        if (halted !== null) return;
+        if (isOpen) {
+          began ??= now() - row[0];
+          own.push(row);
+          hasUnread ||= row[1].startsWith('UNREAD');
+        }
+        recorder.onEvent({ event: 'READING', rows: [row] });
       },
       ends(chance) {
         const event = chance.of(['DONE', 'STOPPED', 'MISSED', 'LOST', 'RESTARTED']);
@@ -2533,9 +2680,11 @@ const PARTS = {
         end = chance.of(['shows', 'shows', 'shows', ...Object.keys(acts)]);
         acts[end](chance);
         await passes(chance.below(300));
-        if (page.byId('record_play').hidden) continue;
+        if (page.byId('record_play').hidden !== !own.length) throw new Error(`what can be played is ${own}`);
+        if (!own.length) continue;
         const told = runs.newestFirst[0].rows;
         if (`${told}` !== `${own}`) throw new Error(`${told} in place of ${own}`);
+        if (page.byId('record_lacks').hidden === hasUnread) throw new Error(`that not all was read is ${hasUnread ? 'not ' : ''}said`);
       }
       return { ends: [end], seen: isGood && [...own] };
     };
@@ -3708,6 +3857,81 @@ const PARTS = {
     };
   },
 
+  // A phone: what somebody wants of the sheet with mistakes holds until the program is right, and no longer. Run leads to what
+  // is to be seen, and runs the robot that is seen.
+  async phone() {
+    const page = freshPage();
+    const phone = Object.assign(new EventTarget(), { matches: false });
+    globalThis.matchMedia = () => phone;
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { showSide } = await page.load('page/sides.js');
+    const { Phone } = await page.load('page/phone.js');
+    let real = 0, virtual = 0; // runs
+    new Phone(() => { real += 1; });
+    page.byId('run').addEventListener('click', () => { virtual += 1; });
+    const root = document.documentElement;
+    const is = { image: '00', count: 0, isAway: null };
+    const says = (image, count) => {
+      Object.assign(is, { image, count }, !count && { isAway: null });
+      pageState.checkResult.set({ image, findings: Array(count).fill({}) });
+    };
+    const isAway = () => is.isAway ?? (pageState.view.value === 'blocks' && is.image !== '' && pageState.checkResult.value !== null);
+    const turns = (isPhone) => {
+      phone.matches = isPhone;
+      phone.dispatchEvent(new Event('change'));
+    };
+    const seen = () => [page.byId('writing').dataset.sheet, page.byId('sheet').hidden, page.byId('sheet').attributes['aria-expanded'], root.dataset.half, page.byId('other_name').textContent, 'phone' in root.dataset, page.byId('bar').children.length, real, virtual];
+    const acts = {
+      wrong: () => says('', 1),
+      warned: () => says('00', 1),
+      right: () => says('00', 0),
+      checks: () => pageState.checkResult.set(null),
+      sheet() {
+        if (page.byId('sheet').hidden) return;
+        is.isAway = !isAway();
+        page.byId('sheet').click();
+      },
+      run() {
+        const { half, side } = root.dataset, isReal = phone.matches && side === 'side_real' && half === 'robot';
+        const isWrong = pageState.checkResult.value?.image === '', before = [real, virtual];
+        if (phone.matches && !isReal && isWrong) is.isAway = false;
+        page.byId('run').click();
+        if (`${[real, virtual]}` !== `${[before[0] + Number(isReal), before[1] + Number(!isReal)]}`) throw new Error('another robot runs');
+        const wanted = !phone.matches || isReal ? [half, side] : isWrong ? ['program', side] : ['robot', side === 'side_lessons' ? side : 'side_virtual'];
+        if (`${[root.dataset.half, root.dataset.side]}` !== `${wanted}`) throw new Error(`${[root.dataset.half, root.dataset.side]} is seen in place of ${wanted}`);
+      },
+      other: () => page.byId('other').click(),
+      speaks: () => pageState.language.set('en'),
+      view: (chance) => pageState.view.set(chance.of(['blocks', 'text'])),
+      side: (chance) => showSide(chance.of(['side_virtual', 'side_lessons', 'side_real'])),
+      turns: (chance) => turns(chance() < 0.7),
+    };
+    says('00', 0);
+    return async (chance, isGood) => {
+      if (isGood) {
+        turns(true);
+        for (const part of [page.byId('controls'), page.byId('bar')]) part.children = [];
+        says('00', 0);
+        pageState.view.set('blocks');
+        showSide('side_virtual');
+        if (root.dataset.half !== 'program') page.byId('other').click();
+        [real, virtual] = [0, 0];
+      }
+      const ends = new Set(), all = [];
+      for (let k = 4 + chance.below(12); k > 0; k -= 1) {
+        const act = chance.of(['wrong', 'sheet', ...Object.keys(acts)]);
+        ends.add(act);
+        acts[act](chance);
+        all.push([act, seen()]);
+        if (act !== 'checks' && pageState.checkResult.value && (page.byId('writing').dataset.sheet === 'away') !== isAway()) throw new Error(`after ${act} the sheet is ${page.byId('writing').dataset.sheet}`);
+        if (page.byId('sheet').hidden !== !is.count) throw new Error('there is no way to what is said, or one to nothing');
+        if ('phone' in root.dataset !== phone.matches || (phone.matches && page.byId('run').parent !== page.byId('bar'))) throw new Error('Run is out of reach');
+      }
+      return { ends: [...ends], seen: all };
+    };
+  },
+
   // A tab is loaded again and again, by an address with a code or without one, while other users' workers may read what it
   // asks, answers are lost and nothing can be kept: it asks with the token of its newest code, or says why it has none.
   async entering() {
@@ -3787,21 +4011,24 @@ const PARTS = {
     let startsAfterStop = false;
     let begun = 0;
     let worker = Promise.resolve(); // it does one thing after the other
+    const program = { ...PROGRAM, places: [[0, 1, 1, 1, 9], [3, 2, 1, 2, 9]] };
+    let told = []; // where what runs stops
     const python = {
       ask(request) {
+        told = request.breakpoints ?? told;
         if (request.do === 'power_on') {
           startsAfterStop ||= !wants;
           begun += 1;
         }
         const asked = robot;
-        worker = worker.then(() => later(late())).then(() => (request.do === 'check' ? PROGRAM : asked.answer(request)));
+        worker = worker.then(() => later(late())).then(() => (request.do === 'check' ? program : asked.answer(request)));
         return worker;
       },
     };
     const whenCompiled = async () => {
       await later(late());
-      pageState.checkResult.set(PROGRAM);
-      return PROGRAM;
+      pageState.checkResult.set(program);
+      return program;
     };
     robot = virtualRobot(chanceOf(1), true);
     page.byId('arena').checkVisibility = () => true;
@@ -3818,6 +4045,7 @@ const PARTS = {
         stop: () => page.byId('stop').click(),
         escape: () => dispatchEvent(Object.assign(new Event('keydown'), { key: 'Escape' })),
         edits: () => pageState.checkResult.set(null),
+        points: () => pageState.breakpoints.set([1, 2].map((line) => ({ line, column: 1, point: {} }))),
       };
       let end = '';
       for (let k = 3 + chance.below(8); k > 0; k -= 1) {
@@ -3842,11 +4070,19 @@ const PARTS = {
         const before = begun;
         open += 1;
         panel.tryAlone('F(1)', true, () => {}).then(() => { open -= 1; });
-        await passes(1500);
+        await passes(600);
+        pageState.breakpoints.set(pageState.breakpoints.value.slice(1));
+        await passes(900);
+        if (isToRun && (told.length || pageState.virtualRun.value.ranges.length)) throw new Error(`a block that is tried stops at ${told}, or is seen in the text`);
         if ((begun > before) !== isToRun) throw new Error(isToRun ? 'a block that is tried does not run' : 'it runs in the place of the whole program');
       };
       wants = true;
       await tries(true);
+      panel.play({ lesson: 1, seed: 1, until_ms: 900 });
+      await passes(600);
+      ways.points();
+      await passes(600);
+      if (told.length) throw new Error(`a run that is shown stops at ${told}`);
       ways.stop();
       await passes(1500);
       if (open) throw new Error('a block that was tried never ends');

@@ -200,7 +200,10 @@ async function opens(stores) {
   await passes(500);
   const { pageState } = await page.load('page/page_state.js');
   const { summaryOf } = await page.load('writing/messages.js');
-  return { page, pageState, summaryOf, python, seen, phone };
+  const versions = await page.load('programs/versions.js');
+  const { isShippedProgram } = await page.load('start/beginnings.js');
+  const { countAllStars } = await page.load('lesson/progress.js');
+  return { page, pageState, summaryOf, versions, isShippedProgram, countAllStars, python, seen, phone };
 }
 
 // -- what somebody does
@@ -358,6 +361,8 @@ function diagnosticLines() {
   return lines;
 }
 
+const saidOf = (part) => (typeof part === 'string' ? part : [part.textContent, part.children.map(saidOf)].flat(9).join(''));
+
 const keptWork = () => JSON.parse(window.sessionStorage.getItem('tiniscript.work'));
 
 /** What changes neither the program nor how large the robot is seen; and what may change the program a while later. */
@@ -367,7 +372,7 @@ const LATER = ['', 'builds', 'undo', 'redo', 'start_lessons', 'side_lessons', 'l
 /** What an act changes, and what it does not. @returns what is checked once it is done, and later on */
 function expects(tab) {
   const { dataset } = document.documentElement;
-  const before = { full: 'full' in dataset, side: dataset.side, isLesson: keptWork().lesson !== '', text: view.state.doc.toString(), begins: tab.seen.blocks?.begins };
+  const before = { screen: dataset.screen, robot: keptWork().robot, full: 'full' in dataset, side: dataset.side, isLesson: keptWork().lesson !== '', text: view.state.doc.toString(), begins: tab.seen.blocks?.begins };
   return (did) => {
     const text = view.state.doc.toString();
     if (PASSIVE.includes(did) && before.full !== 'full' in dataset) throw new Error(`${did} makes the robot small`);
@@ -376,6 +381,10 @@ function expects(tab) {
     if (['new', 'bar_new'].includes(did) && (text || keptWork().lesson || keptWork().own)) throw new Error(`${did} is of ${keptWork().lesson}`);
     if (['new', 'bar_new'].includes(did) && before.begins !== undefined && tab.seen.blocks.begins === before.begins) throw new Error(`after ${did} the blocks stand as those of before`);
     if (did === 'start_write' && dataset.half !== 'program') throw new Error('the program is not seen');
+    if (['start_lessons', 'start_robot'].includes(did) && dataset.half !== 'robot') throw new Error('what was chosen is not seen');
+    if (did === 'Add it to the program' && keptWork().lesson !== LESSONS[at('lesson_page').dataset.lesson - 1].name) throw new Error(`a lesson's program is of ${keptWork().lesson || 'nobody'}`);
+    const wasLeft = before.screen === 'program' && dataset.screen === 'start' && before.text.trim() !== '' && !tab.isShippedProgram(before.text);
+    if (wasLeft && !tab.versions.loadVersions().some(tab.versions.sameProgramAs(before))) throw new Error(`${before.text} is lost at the start screen`);
     if (['world', 'bar_new', 'new'].includes(did) && 'big' in dataset) throw new Error(`after ${did} the robot is seen as in a run`);
     if (LATER.includes(did)) tab.isComing = true;
     if (!PASSIVE.includes(did) || tab.isComing) tab.stays = null;
@@ -390,7 +399,7 @@ function checkStays({ stays }) {
 }
 
 /** What has to be said and shown of the program, whoever has done what; nothing is under way. */
-function checksRest({ pageState, summaryOf, seen }) {
+function checksRest({ pageState, summaryOf, versions, countAllStars, seen }) {
   const { checkResult, virtualRun, robotName, programText, fault, breakpoints } = pageState;
   const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
   const { phase, state, screen } = document.documentElement.dataset;
@@ -406,6 +415,12 @@ function checksRest({ pageState, summaryOf, seen }) {
   is(at('robot').value, robotName.value, 'the robot');
   is(at('pause').disabled, !['running', 'paused'].includes(phase), 'Pause');
   if (screen === 'start' && (['running', 'paused'].includes(phase) || 'full' in document.documentElement.dataset || 'big' in document.documentElement.dataset || keptWork().own)) throw new Error(`behind the start screen is ${JSON.stringify([document.documentElement.dataset, keptWork()])}`);
+  const earlier = versions.loadVersions();
+  if (screen === 'start') {
+    const titles = earlier.map((version, k) => versions.versionTitle(version, earlier.length - k));
+    is(at('start_programs').querySelectorAll('strong').map(saidOf), titles.slice(0, 6), 'the programs at the start');
+    is([at('start_badge').hidden, /★ (\d+)/.exec(saidOf(at('start_badge')))?.[1]], [!countAllStars(), String(countAllStars())], 'the stars at the start');
+  }
   const work = keptWork();
   is([work.text, work.robot], [view.state.doc.toString(), robotName.value], 'what is kept');
   is(programText.value, work.text, 'the program');
@@ -431,7 +446,6 @@ async function checksLate(tab) {
 function seenIn({ seen }) {
   const isText = at('writing').dataset.view === 'text';
   const parts = document.querySelectorAll('[id]').filter((each) => !each.children.length || ['messages', 'values', 'versions', 'start_programs', 'world', 'robot', 'lesson'].includes(each.id)).filter((each) => each.id !== 'link_said' && each.checkVisibility() && isOpen(each));
-  const saidOf = (part) => (typeof part === 'string' ? part : [part.textContent, part.children.map(saidOf)].flat(9).join(''));
   const { dataset } = document.documentElement;
   return JSON.parse(JSON.stringify([
     Object.entries({ ...dataset, halt: '', link: '' }).sort(), document.querySelectorAll('dialog').filter(({ open }) => open).map(({ id }) => id), view.state.doc.toString(), diagnosticLines(), runningLines(), seen.arena.seen, !isText && seen.blocks && [seen.blocks.form, seen.blocks.has],

@@ -291,7 +291,7 @@ export class Lessons {
 
   /** Has the lesson's robot and world seen. */
   async #enterLesson() {
-    const requestNumber = this.#requestCount, lesson = /** @type {Lesson} */ (this.#lessons[this.#lessonNumber - 1]);
+    const lesson = /** @type {Lesson} */ (this.#lessons[this.#lessonNumber - 1]);
     const keptText = loadProgram(lesson.name);
     if (keptText && this.#page.work.lesson !== lesson.name && !pageState.groupName.value) {
       if (keptText !== pageState.programText.value) {
@@ -302,7 +302,7 @@ export class Lessons {
       return;
     }
     const isForOtherRobot = await this.#isForOtherRobot(lesson);
-    if (requestNumber !== this.#requestCount) return;
+    if (lesson.name !== this.#lessons[this.#lessonNumber - 1]?.name) return; // another one is seen now
     if (isForOtherRobot) {
       const notice = text(this.#page.work.lesson ? 'lesson_before' : 'lesson_own');
       this.#page.exchange(this.#lendProgram(lesson, ''));
@@ -313,12 +313,15 @@ export class Lessons {
 
   /** Whether the program in the editor is right on its robot and wrong on a lesson's. @param {Lesson} lesson */
   async #isForOtherRobot(lesson) {
-    const programText = pageState.programText.value, robotName = pageState.robotName.value;
-    if (robotName === lesson.robot || pageState.isRobotNamed.value || pageState.groupName.value || !programText.trim()) return false;
-    const programBytes = new TextEncoder().encode(programText), language = currentLanguage();
-    /** @param {string} robotName */
-    const isRightOn = async (robotName) => Boolean((await this.#page.python.ask({ do: 'check', robot: robotName, language }, programBytes)).image);
-    return await isRightOn(robotName) && !(await isRightOn(lesson.robot)) && programText === pageState.programText.value;
+    for (;;) {
+      const programText = pageState.programText.value, robotName = pageState.robotName.value;
+      if (robotName === lesson.robot || pageState.isRobotNamed.value || pageState.groupName.value || !programText.trim()) return false;
+      const programBytes = new TextEncoder().encode(programText), language = currentLanguage();
+      /** @param {string} robotName */
+      const isRightOn = async (robotName) => Boolean((await this.#page.python.ask({ do: 'check', robot: robotName, language }, programBytes)).image);
+      const isForOther = await isRightOn(robotName) && !(await isRightOn(lesson.robot));
+      if (programText === pageState.programText.value && robotName === pageState.robotName.value) return isForOther && !pageState.groupName.value; // else that was another one
+    }
   }
 
   /** Keeps a lesson's program; one that is changed beside another lesson is that one's from then on. */

@@ -87,7 +87,8 @@ export class SimulatorPanel {
   #isReadingNext = false; // what is measured, not where the program is
   /** @type {CheckResult['places']} */
   #places = [];
-  #stops = new StopOffsets();
+  /** Where what runs stops; a run that is shown again stops nowhere. @type {StopOffsets | null} */
+  #stops = null;
   /** @type {CheckResult['variables']} */
   #variables = [];
   #runButton = element('run', HTMLButtonElement);
@@ -468,13 +469,10 @@ export class SimulatorPanel {
 
   /** The program is to stop elsewhere. */
   #breakpointsChanged() {
+    if (!this.#stops) return;
     const offsetsBefore = this.#stops.offsets.join();
-    this.#findStops();
-    if (this.#stops.offsets.join() !== offsetsBefore) this.#simulator.setBreakpoints(this.#stops.offsets);
-  }
-
-  #findStops() {
     this.#stops.update(pageState.breakpoints.value, this.#places);
+    if (this.#stops.offsets.join() !== offsetsBefore) this.#simulator.setBreakpoints(this.#stops.offsets);
   }
 
   /**
@@ -515,14 +513,14 @@ export class SimulatorPanel {
     this.#isAlone = partProgram !== null;
     this.#places = partProgram ? [] : program.places; // which are those of another text
     this.#variables = program.variables;
-    this.#findStops();
+    this.#stops = judgedRun || replay ? null : new StopOffsets();
+    this.#stops?.update(pageState.breakpoints.value, this.#places);
     this.#remoteWords = judgedRun || replay ? [] : program.remote;
     const worldRequest = judgedRun ?? this.#worldChoice.request;
     const run = this.#newestRun = this.#makeRun(program, worldRequest, replay, partProgram?.text);
     run.isJudged = judgedRun !== null;
     this.#timeLine.begin(run);
-    const breakpoints = judgedRun || replay || partProgram ? [] : this.#stops.offsets;
-    const beginning = this.#simulator.begin(program, pageState.robotName.value, worldRequest, breakpoints, isPaused, leastSpeed, replay !== null, pose);
+    const beginning = this.#simulator.begin(program, pageState.robotName.value, worldRequest, this.#stops?.offsets, isPaused, leastSpeed, replay !== null, pose);
     if (!partProgram && !(judgedRun && isStill())) this.#stage.enlarge(); // it sees nothing of the run before
     await beginning;
   }
