@@ -151,7 +151,7 @@ BREAKS = [
      "time: UNTIL begins 21 ms late"),
     ("machine", "(self.now - self.clock) % WRAP // 20", "(self.now - self.clock) // 20",
      "time: UNTIL past 2^32 ms"),
-    ("machine", "self.stack.append(taken[0])\n ", "self.stack.append(1)\n ",
+    ("machine", "self.stack.append(popped_values[0])\n ", "self.stack.append(1)\n ",
      "OR_ELSE leaves its value"),
     ("machine", "within(1000 * whole(value),", "within(value,", "An actuator gets whole numbers"),
     ("machine", "answer(value) if actuator", "answer(value == 1) if actuator",

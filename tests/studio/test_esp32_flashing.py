@@ -79,7 +79,7 @@ def test_a_new_board_gets_the_whole_firmware_and_starts_it(board: str) -> None:
 )
 def test_a_board_that_is_not_the_one_stays_as_it_is(how: dict[str, Any], ended_text: str) -> None:
     outcome = flash("esp32dev", image("esp32dev", 20_000), **how)
-    assert (outcome["ended_text"], outcome["is_untouched"]) == (ended_text, True)
+    assert (outcome["ended"], outcome["is_untouched"]) == (ended_text, True)
 
 
 @pytest.mark.sampled("how", "ended_text")
