@@ -126,7 +126,7 @@ def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page)
     in_phase(page, "ended")
     page.focus("#time_at")
     page.keyboard.press("Home")
-    part, *values = doing(page).split("   ")
+    part, *values = doing(page).split(" · ")
     assert part == "Looking back: at 0.0 s line 2 ran, F(1, 60) UNTIL(DISTANCE < NEAR)"
     assert values[0].startswith("DISTANCE ") and values[1:] == ["NEAR 30"]
 

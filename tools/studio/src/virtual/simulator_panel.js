@@ -719,10 +719,10 @@ export class SimulatorPanel {
   #pastText(state) {
     const seconds = secondsOf(state), range = this.#shownRange();
     const reasons = this.#isWhyAsked ? [this.#whyText(state)] : [];
-    if (!range) return [text('looked_back', { seconds }), ...reasons].join('   ');
+    if (!range) return [text('looked_back', { seconds }), ...reasons].join(' ');
     const part = this.#partText(range), names = new Set(part.toUpperCase().match(/\w+/g));
     const values = this.#valuesOf(state).filter(([name]) => names.has(name)).map(([name, value]) => `${this.#nameOf(name)} ${value}`);
-    return [this.#say('looked_back_at', 'looked_back_block', { seconds, line: range.line, part }, part), ...values, ...reasons].join('   ');
+    return [this.#say('looked_back_at', 'looked_back_block', { seconds, line: range.line, part }, part), ...values, ...reasons].join(' · ');
   }
 
   /** @param {import('../writing/editor.js').Range} range of the program that is seen */
@@ -753,7 +753,7 @@ export class SimulatorPanel {
     const joiner = new Intl.ListFormat(currentLanguage());
     const sentences = conditions.flatMap(({ line, condition, values: conditionValues, is: isTrue }) => [
       this.#say('why_asks', 'why_asks_block', { line, condition }, condition),
-      conditionValues.length ? `${joiner.format(conditionValues.map(([name, value]) => text('why_value', { name: this.#nameOf(name), value })))}.` : '',
+      conditionValues.length ? asSentence(joiner.format(conditionValues.map(([name, value]) => text('why_value', { name: this.#nameOf(name), value })))) : '',
       isTrue === null ? '' : text(isTrue ? 'why_yes' : 'why_no'),
     ]).filter(Boolean);
     const { driver } = state, tasks = blocksOf(run.origin.text, places, /^(?:TASK|WHEN)\b/i);
@@ -814,6 +814,11 @@ function partingText({ what: key, agreed, line, robot, virtual, sensor, began_ms
 /** Whether nothing is to move that need not: a run that was judged is seen at its end. */
 function isStill() {
   return matchMedia('(prefers-reduced-motion: reduce)').matches;
+}
+
+/** @param {string} statement of which a block's words may be the first */
+function asSentence(statement) {
+  return `${statement.charAt(0).toLocaleUpperCase(currentLanguage())}${statement.slice(1)}.`;
 }
 
 /** How long the program has run. @param {import('../python.js').RobotState} state */
