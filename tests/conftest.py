@@ -42,7 +42,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """In CI, deprecations of pytest and in our own code are failures.
 
-    What is collected stays: looking for garbage in it would take two of five seconds.
+    Collected tests stay in memory: searching them for garbage would take two of five seconds.
     """
     gc.disable()
     if os.environ.get("CI"):
@@ -91,7 +91,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 def pytest_sessionfinish(session: pytest.Session) -> None:
     """In CI, skipped tests are failures, because everything is installed there."""
     reporter = session.config.pluginmanager.get_plugin("terminalreporter")
-    # A worker has none, because one process gets all reports.
+    # A worker has none, because one process receives all reports.
     if reporter is None or not os.environ.get("CI"):
         return
     skipped_tests = [report.nodeid for report in reporter.stats.get("skipped", [])]
@@ -106,10 +106,10 @@ def own_cache(
     tmp_path_factory: pytest.TempPathFactory,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """No test reads or writes what the person who runs it keeps, or follows their language.
+    """No test reads or writes the user's own files, or follows the user's language.
 
-    The folders are in the test's own. Most tests have none and keep nothing: for them nothing is
-    made, since pytest looks at all folders of a run for the name of the next one.
+    The folders are in the test's own. Most tests need none and store nothing, so they get no
+    folder: pytest scans all folders of a run for the name of the next one.
     """
     if "tmp_path" in request.fixturenames:
         own = request.getfixturevalue("tmp_path")

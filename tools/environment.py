@@ -1,7 +1,7 @@
-"""Makes the virtual environment `.venv` beside this folder, on each system, with Python alone.
+"""Creates the virtual environment `.venv` next to this folder, on each system, with Python alone.
 
-`try.py` uses it, and `venv.sh` calls it as `environment.py "[test]"`. What is wrong is said in a
-sentence, and the exit code is then 2. Knows pip and venv; does not know what is done with them.
+`try.py` uses it, and `venv.sh` calls it as `environment.py "[test]"`. Errors are printed as a
+sentence, with exit code 2. It knows pip and venv, but not the purpose of the environment.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def find_sentence(key: str, **values: str) -> str:
 
 
 def in_language(sentences: tuple[str, ...], **values: str) -> str:
-    """Return the sentence of the person's language, else the English one."""
+    """Return the sentence in the person's language, or in English."""
     language_code = language()
     return sentences[LANGUAGES.index(language_code) if language_code in LANGUAGES else 0].format(
         **values
@@ -97,9 +97,9 @@ def make(extras: str, root: Path = ROOT) -> Path:
     python = python_of(root / ".venv")
     if not _runs(python, "-m", "pip", "--version"):
         _make_empty(root / ".venv")
-    # What was installed, and from where: times of files say neither in the second of a change, nor
-    # where a folder has been moved or an older state of it has been taken out. While pip works, and
-    # after it was cut off, nothing is.
+    # The installed packages and their origin: file times miss changes within the same second, a
+    # moved folder, and an older checkout. While pip runs, and after an interruption, none counts as
+    # installed.
     stamp_file = root / ".venv" / "installed"
     source = f"{hashlib.sha256((root / 'pyproject.toml').read_bytes()).hexdigest()} {root}"
     installed_source, *installed_extras = (

@@ -1,12 +1,12 @@
 """Brings all languages in step with the English texts: `python -m tools.languages`.
 
 These are in `languages/en/*.toml`, those of `names` in other `.toml` files of the package. A
-translation follows its English text to another key, and what is gone goes. With codes, `pt fr`, it
-makes their folders. `--check` writes nothing, and lists what is wrong, and each translation of what
-the English text was before. `--seen pt` notes of which English texts the new translations are, and
-with keys after it, `--seen pt no_verb "TS005/*"`, of stale ones, too, which somebody has looked at.
-`--po pt` writes `pt.po` for translators' tools, and `--po pt.po` reads it. `--pseudo` makes a
-language that shows where longer texts do not fit.
+translation follows its English text to another key, and texts without an English one are removed.
+With codes, `pt fr`, it creates their folders. `--check` writes nothing, and lists problems and
+stale translations. `--seen pt` notes of which English texts the new translations are, and with keys
+after it, `--seen pt no_verb "TS005/*"`, of stale ones, too, which somebody has looked at. `--po pt`
+writes `pt.po` for translators' tools, and `--po pt.po` reads it. `--pseudo` makes a language that
+shows where longer texts do not fit.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from tools.translation_files import Translation, about_text, print_problems
 
 PSEUDO = "qps"  # conventional code for a pseudo-language
 ROBOT_SIGNS = 40
-# Kinds of a lexicon that English has no word of: what its commands are short for is English.
+# Kinds of a lexicon without English words: the commands are short for English ones.
 NOT_IN_ENGLISH = ("short", "initial", "turtle")
 ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")
 
@@ -49,8 +49,8 @@ ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")
 def sources() -> dict[str, Catalogue]:
     """Return the English catalogues by name.
 
-    Beside a message, and what to try, stands the wrong program of its code: beside the last text,
-    which is the one without a special case.
+    A message, and the text of what to try, show the wrong program of their code, next to the last
+    text, which is the one without a special case.
     """
     paths = [path for path in (FOLDER / SOURCE_LANGUAGE).glob("*.toml") if path.name != ABOUT_FILE]
     catalogues = {path.stem: catalogue_source.load_catalogue(path) for path in paths}
@@ -202,8 +202,8 @@ def update_language(
 ) -> int:
     """Update a language, and print its problems; return their number.
 
-    `seen_patterns` are those of the keys whose stale translations somebody has looked at; without
-    them no text is noted as seen.
+    `seen_patterns` are patterns of keys whose stale translations were reviewed; without them, no
+    text is recorded as seen.
     """
     folder = FOLDER / language
     if not folder.is_dir() and not is_check:
@@ -233,7 +233,7 @@ def _heading(language: str) -> str:
 
 
 def missing_rows(entries: Iterable[Entry]) -> Iterator[tuple[int, str]]:
-    """Yield what has no translation, with the line of the one before, after which it goes."""
+    """Yield the texts without a translation, with the line after which each belongs."""
     line = 1
     for entry in entries:
         if entry.translation:

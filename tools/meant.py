@@ -1,7 +1,8 @@
 """The effect of `--fix` on wrong programs: `python -m tools.meant FOLDER` prints two figures.
 
-The folder has programs, `NAME.ts`, and beside those whose meaning is known what was meant,
-`NAME.meant.ts`. A program that is right after `--fix` and does something else than that is harmful.
+The folder contains programs, `NAME.ts`, and for those whose meaning is known also the meant
+program, `NAME.meant.ts`. A program that is correct after `--fix` but behaves differently from that
+one is harmful.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class Figures(NamedTuple):
 
 
 def compile_image(text: str) -> bytes:
-    """Return the code of a program for the robot that it names, nothing for a wrong one."""
+    """Return the code of a program for the robot that it names, or no bytes for a wrong one."""
     robot = robot_of(text.encode(), robots.load(robots.DEFAULT))
     return compile_source(text.encode(), robot, "", is_strict=True).image
 

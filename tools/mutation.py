@@ -3,12 +3,12 @@
 `python -m tools.mutation 150 --seed 1` draws 150 mutants, the same number of every module that
 still has some, and runs the tests of each one's module until one fails, two mutants at a time.
 `--file PATTERN` draws from less, `--list` only shows them, and `--first-tier` runs no long test.
-What was tried is kept in the cache folder, so an interrupted run goes on. Exit code 1: mutants
+Results are kept in the cache folder, so an interrupted run continues. Exit code 1: mutants
 survived.
 
-A survivor gets a test, and a row in `tests/project/known_mutants.py`, which CI tries; or a
-row in `tools/equivalent_mutants.json`, if nothing can notice it. Knows how the languages
-are written here (formatters put blanks around binary operators), not what the code does.
+A survivor gets a test, and a row in `tests/project/known_mutants.py`, which CI tries; or a row in
+`tools/equivalent_mutants.json`, if nothing can notice it. It knows how the languages are formatted
+here (formatters put blanks around binary operators), not what the code does.
 """
 
 from __future__ import annotations
@@ -329,7 +329,7 @@ class Copy:
         failure = self.find_noticing_test(mutant, tests_of(mutant.file))
         match = FAILED_TEST.match(
             failure
-        )  # a test that also fails without the mutant proves nothing
+        )  # a test that also fails without the mutant does not count
         if match and (why := self.first_failure([match[1]], is_page=mutant.file.endswith(".js"))):
             return f"undecided, without it, too: {why}"
         return failure

@@ -1,8 +1,7 @@
 """The readers of a wrong program: `python -m tools.readers 'SI|REPEAT 4;F(1, 50);END'`.
 
-Follows a text through `recovery.told`: each reader that finds something, what the lines that it
-reads as a whole become step by step, the codes that this is told with, and what people are told in
-the end, when the laws have been kept.
+Follows a text through `recovery.told`: each reader that finds something, the steps in which it
+rewrites lines, the resulting codes, and the final messages after the laws.
 """
 
 from __future__ import annotations

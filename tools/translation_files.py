@@ -102,7 +102,7 @@ class Translation:
                 self._note(name, row.key, [entry.seen_hash for entry in group])
 
     def pair_texts(self, name: str, key: str) -> list[Entry]:
-        """Return the texts of a key with their translations, none if that is not possible."""
+        """Return the texts of a key with their translations, or none if that is impossible."""
         texts = self.own_files[name].texts.get(key, [])
         group = [without_translation(entry) for entry in self.groups[name].get(key, [])]
         unknown = [UNKNOWN_HASH] * len(texts)
@@ -151,7 +151,7 @@ class Translation:
         return [pattern for pattern in patterns if pattern in unused_names]
 
     def put_entries(self, name: str, key: str, group: list[Entry]) -> None:
-        """Take what these entries say as the texts of a key."""
+        """Store the translations of these entries as the texts of a key."""
         translation_file, texts = (
             self.own_files[name],
             _without_end([entry.translation for entry in group]),

@@ -1,8 +1,8 @@
 """Exchanges a language with translators' tools, as a catalogue of gettext: `pt.po`.
 
-Its contexts are `command/no_verb`: a file's name and a key. A translation that comes back is of the
-English text beside it: one that is marked as fuzzy, or empty, is left out, and so is one whose
-English text is another one now.
+Its contexts are `command/no_verb`: a file's name and a key. A returned translation belongs to the
+English text next to it: it is left out if it is marked as fuzzy or empty, or if its English text
+has changed since.
 """
 
 from __future__ import annotations
@@ -120,7 +120,7 @@ def _forms(message: Message, language: Language) -> Forms:
 
 
 def _take_text(message: Message, forms: Forms, translation: Translation) -> str:
-    """Take one text; return why that is not possible, or nothing."""
+    """Accept one text; return the reason why that is impossible, or an empty text."""
     english, *plural = [message.id] if isinstance(message.id, str) else message.id
     name, _, key = (message.context or "").partition("/")
     key = key if name != NAMES_CATALOGUE else english

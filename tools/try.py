@@ -1,8 +1,8 @@
 """README's first command, on each system: `py tools\\try.py`, `python3 tools/try.py`.
 
 Sets TiniScript up in `.venv`; then a program is compiled, uploaded to the virtual robot, and drives
-around the obstacles. Ends by itself, or, for somebody at a terminal who wants it, with the studio.
-Needs no rights but those of its user.
+around the obstacles. It ends by itself or, for a person at a terminal who wants it, with the
+studio. Needs no rights but those of its user.
 """
 
 from __future__ import annotations

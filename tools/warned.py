@@ -1,7 +1,7 @@
-"""Which warnings programs get: `python -m tools.warned FOLDER` counts them, rarest first.
+"""Counts the warnings that programs get, the rarest first: `python -m tools.warned FOLDER`.
 
 The folder has programs, `NAME.ts`; without one it takes the right answers of the lessons. A warning
-that no program gets is listed, too: `docs/develop/decisions.md` says what such a one is for.
+that no program gets is listed, too: `docs/develop/decisions.md` explains its purpose.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
     python -m tools.webkit
 
-Needs the packages `webkit2gtk-driver` and `xvfb`, the built page and the robot of the tests. What
-it drives is what a pupil does; it has a mouse and keys, and no fingers. It prints a row for each.
+Needs the packages `webkit2gtk-driver` and `xvfb`, the built page and the robot of the tests. It
+acts as a pupil would; it has a mouse and keys, but no touch. It prints a row for each.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ EDITOR = "document.querySelector('#editor').shadowRoot.querySelector('.cm-conten
 
 
 class StepFailed(Exception):
-    """A page has not come to what a step waits for."""
+    """A page has not reached the state that a step waits for."""
 
 
 class Browser:
@@ -189,7 +189,7 @@ def stop_robot(page: Browser, robot: PtyRobot) -> None:
 
 @contextmanager
 def browsers() -> Iterator[Callable[[], Browser]]:
-    """Yield what opens a browser on a screen that nobody sees."""
+    """Yield a function that opens a browser on a virtual screen."""
     binary = next(Path("/usr/lib").glob("*/webkit2gtk-4.*/MiniBrowser"), None)
     if binary is None or not shutil.which(DRIVER) or not shutil.which(SCREEN):
         sys.exit(f"webkit: apt-get install {PACKAGES}")

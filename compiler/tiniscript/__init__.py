@@ -1,8 +1,8 @@
 """TiniScript: from a line of text to what a robot does.
 
 For programs in Python there are `compile`, `check`, `run`, `show`, `connect` and `virtual_robot`:
-`docs/en/api.md`. They are in `library/`, and are imported when they are used. So is `compile_text`,
-the whole road from text to image: `library/compiling.py`.
+`docs/en/api.md`. They are in `library/`, and are imported when they are used. The same holds for
+`compile_text`, the whole way from text to image: `library/compiling.py`.
 """
 
 from __future__ import annotations

@@ -159,7 +159,7 @@ def test_the_link_of_an_example_conforms(
 
 
 def test_platformio_packs_it(built_library: Path, tmp_path: Path) -> None:
-    """Its list of licences comes from the internet, so one stands in for it."""
+    """Its list of licences comes from the internet, so a stub replaces it."""
     pytest.importorskip("platformio")
     code = (
         "import json, sys\n"

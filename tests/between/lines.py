@@ -23,9 +23,9 @@ FOREVER_MS = 10**9
 class Fault(NamedTuple):
     """The effect on bytes: delayed by `late_ms` each way, `rate` a second, a share `lost`.
 
-    From a moment on, and for `held_ms`, none come through; then they do, all at once, or they are
-    lost where `drops`. `ways`: to the robot, and back. `pulls`, `resets` and `suspends` happen to
-    the port, the robot and the command.
+    Starting at some moment, none pass for `held_ms`; then all pass at once, or with `drops` they
+    are lost. `ways`: to the robot, and back. `pulls`, `resets` and `suspends` happen to the port,
+    the robot and the command.
     """
 
     name: str
@@ -138,7 +138,7 @@ class BehindBadLine(PtyRobot):
         return to_computer.take_arrived(FOREVER_MS if self._is_mended else self._line_ms)
 
     def _begin(self, count: int) -> None:
-        """Begin what the fault does from a moment on."""
+        """Begin the fault."""
         self._after -= count
         if count and self._since_ms is None:
             self._since_ms = self._line_ms

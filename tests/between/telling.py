@@ -83,7 +83,7 @@ class Teller(Terminal):
         super().interrupt()
 
     def end(self) -> int:
-        """End it, if it goes on; return its exit code."""
+        """End it, if it is still running; return its exit code."""
         if self.process.poll() is None:
             self.process.kill()
         self._reader.join()

@@ -3,8 +3,8 @@ contradicts or repeats earlier output, and the next try works.
 
 `python -m tests.between.test_commands 100 --seed 1` draws commands, faults and moments, and prints
 how long each command was silent, and how long it took; a second figure is that of the line that is
-right. With `--whole` each command meets each fault, once for each seed; with `--clients` those of
-a shared port alone, with `--esp32` those with an ESP32.
+right. With `--whole`, each command meets each fault, once for each seed; with `--clients`, only
+those of a shared port; with `--esp32`, those with an ESP32.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ WORKERS = 8
 ENDS_S = 45.0  # the longest search for a robot, a request of 20 s, and a stop
 SLOW_ENDS_S = 240.0  # over a line that lets little through
 STOPS_S = 12.0  # time from Ctrl-C to the end
-DRIVES_ON_S = 3.0  # time after which a robot without a computer stands
+DRIVES_ON_S = 3.0  # time after which a robot without a computer stops
 SHORT = "SI|F(0.3, 80)"
 CONFIRMED = re.compile(r"[Ss]topped the robot.*confirmed it|has confirmed|: stopped")
 UNCONFIRMED = re.compile(r"has not confirmed the stop")
@@ -58,7 +58,7 @@ class Words(NamedTuple):
     words: tuple[str, ...]
     stays: bool = False
     takes_s: float = 0.0  # time that the command takes by itself
-    may_fail: bool = False  # whatever the line does
+    may_fail: bool = False  # whatever the state of the line
     is_client: bool = False
     robot: tuple[str, ...] = ()
 
@@ -320,7 +320,7 @@ def test_a_second_ctrl_c_ends_the_wait_and_is_no_second_word(
 
 
 SAMPLE = 6
-ROOM_CI_S = 2.0  # processes begin slowly beside others
+ROOM_CI_S = 2.0  # processes start slowly when others run
 
 
 if __name__ == "__main__":

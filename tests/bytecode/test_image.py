@@ -78,7 +78,7 @@ def test_every_changed_bit_is_noticed(image: bytes) -> None:
 
 
 def test_the_first_reason_that_applies_is_said() -> None:
-    """Each change before the other one: in the order of the table, whatever is wrong besides."""
+    """Each reason takes precedence over later ones in the table, whatever else is wrong."""
     bad_start, bad_needs = change_byte(4, 3), change_byte(14, 4)
     both = change_byte(4, 3, bad_needs)
     damaged_bytes = both[:-1] + bytes([both[-1] ^ 1])
@@ -97,7 +97,7 @@ def test_the_first_reason_that_applies_is_said() -> None:
 
 
 def test_an_image_of_version_1_says_which_it_is() -> None:
-    """Whole, cut or damaged: compiling again is what helps."""
+    """This holds for whole, cut and damaged images: the remedy is to compile again."""
     for data in (OLD, OLD[:9], OLD + b"?", OLD[:-1] + b"?", OLD[:4]):
         with pytest.raises(ImageRefused) as exception_info:
             unpack(data)
@@ -117,7 +117,7 @@ def test_it_has_the_lowest_version_that_has_all_of_it() -> None:
 
 
 def test_each_instruction_counts_for_the_version(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whichever is the newest, and wherever it stands."""
+    """This holds for whichever instruction is the newest, at any position."""
     for op in (op for op in OPS if not op.needs):
         others = b"".join(
             other.opcode + bytes(other.size - 1) for other in OPS if not other.needs | other.since
@@ -142,7 +142,7 @@ def test_an_image_that_uses_no_device_runs_anywhere() -> None:
         load_image(used, Kit((), ()))
     with pytest.raises(Refused, match="NO_SUCH_DEVICE"):
         load_image(compile_text("PAD_Y", KIT).image, Kit(KIT.sensors * 3))
-    # The code uses none, though the header claims some.
+    # The code uses none, but the header claims some.
     with pytest.raises(ImageRefused, match="OTHER_KIT"):
         load_image(pack("SI", 1, CODE), KIT)
 
@@ -199,7 +199,7 @@ def test_the_polynomial_is_primitive() -> None:
 
 
 def test_the_spec_has_an_example_of_hashes() -> None:
-    """The lines that are hashed, and what comes out, as `bytecode_spec.md` has it."""
+    """The hashed lines and the result are those of `bytecode_spec.md`."""
     text = SPEC.read_text(encoding="utf-8")
     kit = robots.load("grabber").kit
     rows = re.findall(

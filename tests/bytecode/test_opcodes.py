@@ -1,4 +1,4 @@
-"""The table keeps its word: every stack effect is what the machine really does."""
+"""The table is right: every stack effect is that of the machine."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Nothing:
 
 
 def code_with(op: Op, value: int) -> bytes:
-    """Return code that pushes what `op` takes, and runs it with its smallest operands."""
+    """Return code that pushes the arguments of `op`, and runs it with its smallest operands."""
     pushes = bytes([BY_NAME["PUSH_TRUE" if value else "PUSH_FALSE"].code]) * op.pops
     operands = b"".join(
         max(operand.kind.low, 0).to_bytes(operand.kind.size, "little") for operand in op.operands
@@ -81,7 +81,8 @@ def machine_for(op: Op, code: bytes) -> Machine:
 
 
 def left_by(op: Op, value: int) -> tuple[int, str]:
-    """Push what an instruction takes, and run it: how many values it leaves, and its fault."""
+    """Push an instruction's arguments and run it; return the number of values that it leaves, and
+    its fault."""
     code = code_with(op, value)
     machine = machine_for(op, code)
     task = machine.task
@@ -240,7 +241,7 @@ def test_what_is_no_disassembly_is_refused(text: str) -> None:
 
 
 def test_an_instruction_that_comes_after_a_release_has_a_later_version() -> None:
-    """Else a machine that lacks it would take an image for one that it can run."""
+    """Otherwise a machine that lacks it would accept an image that it cannot run."""
     for minor, ranges in RELEASED.items():
         codes: set[int] = set()
         for first, _, last in (part.partition("-") for part in ranges.split()):

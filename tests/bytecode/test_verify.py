@@ -1,7 +1,7 @@
 """The verifier: every rule has a disassembly that breaks it.
 
-That it says of any code what the one in C++ says, and that what both accept runs alike and safely,
-`tests/vm/test_cpp_agreement.py` shows.
+`tests/vm/test_cpp_agreement.py` shows that it agrees with the verifier in C++ for any code, and
+that code which both accept runs identically and safely.
 """
 
 from __future__ import annotations

@@ -52,7 +52,7 @@ def at_a_terminal(robot: PtyRobot, program: Path, *lines: int) -> Terminal:
 
 
 def halt_output(terminal: Terminal) -> list[str]:
-    """Wait for the end; return what it has printed of the halts and after them."""
+    """Wait for the end; return the output about the halts and after them."""
     assert terminal.end() == 0
     lines = [line for line in terminal.whole() if line]
     first = next(k for k, line in enumerate(lines) if line.startswith("Halted"))
@@ -215,7 +215,7 @@ SEQUENCES = ["\x1b[A", "\x1bOA", "\x1b[1;5C", *(f"\x1bO{last}" for last in "PQRS
 
 @pytest.mark.parametrize("seed", range(50))
 def test_no_key_of_several_characters_steps_or_goes_on(seed: int) -> None:
-    """F4 ends with an S. What is typed between such keys counts."""
+    """F4 ends with an S. Text typed between such keys counts."""
     rng = random.Random(seed)
     pressed_keys = [rng.choice([*SEQUENCES, *(STEP_KEYS + GO_KEYS)]) for _ in range(8)]
     assert letters_of("".join(pressed_keys)) == "".join(

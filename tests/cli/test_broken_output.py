@@ -1,4 +1,4 @@
-"""When the reader of tsc's output is gone, there is one exit code, and no robot drives unseen."""
+"""When the reader of tsc's output has gone, there is one exit code, and no robot drives unseen."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_upload_into_a_pipe_that_closes_stops_the_robot(
 
 
 def test_a_program_that_prints_nothing_is_stopped_too(pty_robot: PtyRobot) -> None:
-    """The program has no end, and tsc has nothing to write that could fail."""
+    """The program is endless, and tsc has no output whose writing could fail."""
     port_option = ("--port", pty_robot.port)
     for words in (("upload", "-e", FOREVER), ("start",)):
         code, err = after_lines(1, *words, *port_option)
@@ -86,7 +86,7 @@ def test_a_slow_reader_and_a_file_are_none_that_has_gone(
 
 
 def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
-    """The program drives without a pause, so nothing is saved before the stop."""
+    """The program drives without a pause, so saving waits for the stop."""
     drives = "".join(f"M({k}, 50);W(0.01);" for k in range(1, 50))
     words = ["upload", "-e", f"SI|LOOP(FOREVER);{drives}SHOW(1);END_LOOP", "--port", pty_robot.port]
     code, err = after_lines(1, *words)
@@ -174,7 +174,7 @@ def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
      ["check", "-e", "F(1"], ["complie"]],
 )  # fmt: skip
 def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
-    """Nothing of its output is read: text, bytes, or mistakes."""
+    """None of its output is read: text, bytes, or mistakes."""
     ours, theirs = os.pipe()
     os.close(ours)
     try:
@@ -215,7 +215,7 @@ def test_a_port_that_vanishes_is_no_bug(
 def test_a_robot_that_is_busy_for_too_long_is_not_lost(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The user is told that it saves, and what to do."""
+    """The user is told that it is saving, and the next step."""
 
     def busy(name: str, payload: bytes) -> Reply[SentReply] | None:
         reply = reply_of(name, payload)
@@ -231,14 +231,14 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
             )
 
 
-# -- an output that nobody reads ------------------------------------------------------------------
+# -- an output without a reader --------------------------------------------------------------------
 
 TALKS = "SI|LOOP(FOREVER);M(40, 40);SHOW(12345);W(0.01);END_LOOP"
 PIPE_BYTES = 4096
 
 
 def unread(*words: str) -> Command:
-    """Return a command that stands in front of a full pipe."""
+    """Return a command that writes to a full pipe."""
     command = Command(*words)
     pipe = command.process.stdout
     assert pipe

@@ -147,7 +147,7 @@ def test_fix_writes_the_sure_repairs_and_says_what_is_left(folder: Path, tsc: Ts
 
 @pytest.mark.parametrize("option", ["--diff", "--dry-run"])
 def test_a_difference_alone_writes_nothing(folder: Path, tsc: Tsc, option: str) -> None:
-    """Without a file the program is printed."""
+    """Without a file, the program is printed."""
     for options in ([option], ["--fix", option]):
         result = tsc("check", *options, "b.ts")
         assert (folder / "b.ts").read_text("utf-8") == WRONG

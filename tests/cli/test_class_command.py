@@ -1,4 +1,4 @@
-"""`tsc class` as processes: robots with an ESP32 at Mosquitto, and what else is there.
+"""`tsc class` as processes: robots with an ESP32 at Mosquitto, and other devices there.
 
 One process keeps its connection to a broker.
 """
@@ -177,7 +177,7 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
 
 @drawn
 def test_who_only_looks_changes_nothing(room: Class) -> None:
-    """Also where the command stood still for longer than a driver may be silent."""
+    """This holds even if the command was suspended for longer than a driver may be silent."""
     text = "SI|LOOP(FOREVER); F(0.3, 80); SHOW(5); END_LOOP"
     tsc(room, "upload", "-e", text, "--detach").gives(0)
     command = Command("class", "show", *room.access, data=SECRET + b"\n")
@@ -270,8 +270,8 @@ def test_the_times_of_all_robots_count_from_one_start() -> None:
 def test_what_became_of_the_robots_is_the_exit_code(
     monkeypatch: pytest.MonkeyPatch, verb: str, code: int
 ) -> None:
-    """Ctrl-C is the usual end of `class show`, and of nothing else. 1 is a program with a mistake,
-    which no robot gets."""
+    """Ctrl-C is the usual end of `class show`, and of no other command. 1 is a program with a
+    mistake, which no robot gets."""
     own = SimpleNamespace(json=True, csv=None, max_time="1" if "second" in verb else None,
                           robot=None)  # fmt: skip
     room = cast(Classroom, SimpleNamespace(
@@ -296,8 +296,8 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
     gone: tuple[bool | None, ...], is_there: bool,
 ) -> None:  # fmt: skip
-    """All of them are tried, and then each robot is asked whether it stands; if none can be,
-    it is said that a message has gone, if one has."""
+    """All of them are tried, and then each robot is asked whether it has stopped; if none can be
+    asked, the output reports whether a message was sent."""
     rest, asked = [*gone], []
 
     def stop(group: str) -> bool:
@@ -370,7 +370,7 @@ def test_a_robots_broker_is_told_in_words_that_make_sense(words: list[str]) -> N
 
 
 def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
-    """Its firmware refuses the step: the sentence about a bad value would help nobody."""
+    """Its firmware refuses the step: the sentence about a bad value would not help."""
     connection = SimpleNamespace(
         name="Tini",
         begin_request=lambda make: None,

@@ -1,4 +1,4 @@
-"""The command: what a person types, what they see, and the exit code."""
+"""The command: typed input, visible output, and the exit code."""
 
 from __future__ import annotations
 
@@ -219,7 +219,8 @@ def test_sensor_of_another_robot(tsc: Tsc) -> None:
 
 @pytest.mark.parametrize("verb", ["run", "show", "upload"])
 def test_damaged_images_are_refused_by_name(tsc: Tsc, tmp_path: Path, verb: str) -> None:
-    """An image of 0.1.0 says what to do; code that breaks a rule is refused by its number."""
+    """For an image of 0.1.0, the message gives the next step; code that breaks a rule is refused
+    with its number."""
     target = tmp_path / "a.bin"
     tsc("compile", "-e", OBSTACLE, "-o", target)
     whole = target.read_bytes()

@@ -1,4 +1,4 @@
-"""Completion: what the scripts offer in a real shell, and that they know every verb and option."""
+"""Completion: the scripts' offers in a real shell, with every verb and option."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ def test_tab_in_zsh(tmp_path: Path) -> None:
 
 
 def test_brackets_and_quotes_of_powershell_close() -> None:
-    """There is no PowerShell here to read the script. A quote of print would close a text, too."""
+    """No PowerShell is available to read the script. A quote of print would close a text, too."""
     script = help_completion.SCRIPTS["powershell"]
     assert not set("‘’‚‛“”„") & set(script)
     code = [re.sub(r"'(?:[^']|'')*'", "''", line) for line in script.splitlines()]

@@ -199,7 +199,7 @@ def test_wrong_use_and_no_such_port(tsc: Tsc) -> None:
 
 @pytest.fixture
 def cable(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyEnd]:
-    """A pseudo-terminal is no cable: here its name does not tell."""
+    """A pseudo-terminal is no cable: its name does not show that here."""
     monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO_TERMINALS", ())
     monkeypatch.setattr("tiniscript.doctor.linux._using_programs", lambda system, port: [])
     with PtyEnd(Firmware()) as pty_end:

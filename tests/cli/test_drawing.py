@@ -1,6 +1,6 @@
-"""`tsc run --show` on a real pseudo-terminal: what a person sees, and what a file gets.
+"""`tsc run --show` on a real pseudo-terminal: the visible output, and the content of a file.
 
-Nothing here measures time: what depends on it has a clock of its own.
+No test here measures time: code that depends on it gets its own clock.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def plain(*arguments: str) -> str:
 
 
 def row(lines: list[str], name: str) -> list[str]:
-    """The words of the line that begins with `name`, of all that stands beside the way."""
+    """Return the words of the line that begins with `name`, among the text next to the path."""
     return next(line[line.index(name) :].split() for line in lines if f"{name} " in line)
 
 
@@ -57,14 +57,15 @@ def picture(lines: list[str]) -> list[str]:
     return lines[max(k for k, line in enumerate(lines) if line.startswith("──")) :]
 
 
-# ---- what is drawn
+# ---- drawing
 
 
 @pytest.mark.parametrize(
     ("pace", "size"), [("0", (80, 24)), ("20", (80, 24)), ("20", (40, 15)), ("20", (24, 6))]
 )
 def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) -> None:
-    """Which shows the way in color and the values, beside it or below; the cursor comes back."""
+    """The picture shows the path in color, and the values next to it or below; the cursor
+    reappears."""
     terminal = run_to_end("-e", OBSTACLES, *SEEN, "--pace", pace, size=size)
     written_bytes, lines = terminal.written, terminal.whole()
     if pace != "0":  # in that case the picture is drawn once

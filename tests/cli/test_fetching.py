@@ -1,6 +1,6 @@
 """Missing parts of a clone that can be downloaded: their size, the question, and errors.
 
-Node, pip and the build of the page are stand-ins; `tests/studio/test_build.py` has the real ones.
+Node, pip and the build of the page are stand-ins; `tests/studio/test_build.py` uses the real ones.
 """
 
 from __future__ import annotations
@@ -205,7 +205,7 @@ def begin(clone: Clone) -> Iterator[Begin]:
 def test_a_page_that_is_missing_is_built_after_a_yes(
     clone: Clone, begin: Begin, words: list[str], size: str, asks: str, yes: str, expected: str
 ) -> None:
-    """Nothing happens without a yes; without a person it prints the instructions."""
+    """Without a yes, nothing happens; without a person, it prints the instructions."""
     clone.install_node()
     clone.works("time.sleep(0.5)")
     clone.run_without_terminal(clone.studio(*words)).gives(2, expected, "--yes", size, out="")
@@ -393,7 +393,7 @@ def test_pip_without_a_network_has_a_sentence(clone: Clone) -> None:
     assert "descargando PlatformIO de PyPI" in result.err
 
 
-# -- what is fetched
+# -- fetching
 
 
 @pytest.mark.parametrize(

@@ -40,7 +40,7 @@ def test_the_folders_are_where_platformdirs_has_them(monkeypatch: pytest.MonkeyP
 
 
 def test_no_folder_on_windows_is_in_one_of_an_author(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Who is asked for one names the author there like the program: tiniscript\\tiniscript."""
+    """Such folders would repeat the program's name as the author: tiniscript\\tiniscript."""
     asked: list[tuple[str, object]] = []
 
     def path(name: str, appauthor: object = None) -> Path:
@@ -75,7 +75,7 @@ def test_a_new_file_has_the_mode_of_the_umask_and_another_keeps_its_own(tmp_path
 
 
 def test_another_hard_link_keeps_the_old_content_and_a_pipe_stays_one(tmp_path: Path) -> None:
-    """A file is never written in its place; what has no old content is."""
+    """A file is never overwritten in place, but a path without old content is written directly."""
     (tmp_path / "x").write_bytes(b"1")
     os.link(tmp_path / "x", tmp_path / "y")
     files.replace(tmp_path / "x", b"2")
@@ -215,7 +215,7 @@ def test_one_place_replaces_files() -> None:
                 assert word not in text, f"{path.name}: {word}"
 
 
-# -- what killed commands leave -----------------------------------------------------------------
+# -- remains of killed commands --------------------------------------------------------------------
 
 
 def test_abandoned_files_of_the_cache_go(tsc: Tsc, tmp_path: Path) -> None:

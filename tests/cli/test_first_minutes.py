@@ -110,7 +110,7 @@ def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
 
 @pytest.mark.parametrize("hurry", [1.0, 20.0, 0.0])
 def test_time_ends_to_the_millisecond(hurry: float) -> None:
-    """The robot stands then, whatever its firmware still does, and says nothing more."""
+    """The robot then stands still, whatever its firmware does, and sends nothing more."""
     transports = Transports()
     simulator = Simulator(robot_in(), transports, hurry)
     simulator.duration_ms = 1500
@@ -312,7 +312,7 @@ def test_the_robot_that_answers_says_which_kit_it_has() -> None:
         assert result.err == "El robot conectado: liner. tsc compila para él.\n"
         # a program of the default robot would be for another kit than the robot has
         inside("upload", "-e", "SHOW(DISTANCE)").gives(1, "liner has no DISTANCE")
-        # Nothing is printed for a program of any robot, and slips do not suggest a robot.
+        # Programs that suit any robot print nothing, and slips do not suggest a robot.
         assert inside("upload", "-e", "SI|S").err == ""
         assert "TS103" in inside("upload", "-e", "SHOW(LIN)").err
         # A robot named by the user is used.

@@ -1,5 +1,5 @@
-"""Ctrl-C while a program goes to many robots: at any stage of each, and with late connections,
-nothing starts afterwards, and all robots stand.
+"""Ctrl-C during an upload to many robots: at any stage of each, and with late connections, no
+program starts afterwards, and all robots are stopped.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from tiniscript.library import opening
 from tiniscript.library.client import Client
 
 TINIBOT = robots.load("tinibot").kit
-# Where the thread of a robot may be.
+# The stages that the thread of a robot may have reached.
 OPENING, OPENED, ASKING, ASKED, SENDING, DRIVING = range(6)
 # It begins to drive once: that it drives on is no start.
 ENDLESS, DRIVES = "SI|M(80, 80);LOOP(FOREVER);W(1);END_LOOP", "MOTORS 80 80"
@@ -126,7 +126,7 @@ class Watched:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, presses_s: list[float]) -> None:
         self.now_s = 0.0
         self.presses_s = [*presses_s]
-        self.stopped: list[float] = []  # when each robot was told to stop
+        self.stopped: list[float] = []  # when each robot got its stop
         monkeypatch.setattr(fleet_of, "monotonic", lambda: self.now_s)
         monkeypatch.setattr(streams, "drop_unread_output", lambda: None)
         options = Namespace(verb="upload", detach=True, json=False)
@@ -154,7 +154,7 @@ class Watched:
 def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_none(
     monkeypatch: pytest.MonkeyPatch, how: str, presses: int
 ) -> None:
-    """Whenever they come; with nobody who presses twice it ends by itself."""
+    """They may come at any time; without a second press, it ends by itself."""
     for seed in range(10):
         chance = random.Random(seed)
         times = [5.0]

@@ -93,7 +93,7 @@ def test_the_image_that_nobody_names_spares_a_foreign_file(tsc: Tsc, tmp_path: P
     ],
 )  # fmt: skip
 def test_a_pipe_in_a_folder_is_no_file(words: list[str], tmp_path: Path) -> None:
-    """Nobody writes to the pipe, so opening it would block forever."""
+    """The pipe has no writer, so opening it would block forever."""
     for name in ("pipe", "pipe.ts", "pipe.toml", "lesson.toml"):
         (tmp_path / name).unlink(missing_ok=True)
         os.mkfifo(tmp_path / name)

@@ -35,7 +35,7 @@ class Terminal:
         self.stream = pyte.Stream(self.screen)
 
     def draw(self, lines: list[Text], above: str = "") -> str:
-        """Draw it; return what was written."""
+        """Draw it; return the output."""
         self.written.seek(0)
         self.written.truncate()
         self.frame.draw(lines, above)

@@ -254,7 +254,7 @@ def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) 
 
 @pytest.fixture(autouse=True)
 def no_pager(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Remove a pager chosen by the person who runs the tests."""
+    """Remove the pager setting of the person who runs the tests."""
     for name in ("PAGER", "LESS"):
         monkeypatch.delenv(name, raising=False)
 
@@ -337,7 +337,7 @@ time.sleep(1000)
 def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
     tmp_path: Path, how: str, output: str
 ) -> None:
-    """`less` goes on after Ctrl-C, `more` ends. A shell between would miss a signal sometimes."""
+    """`less` continues after Ctrl-C, `more` ends. A shell between would miss a signal sometimes."""
     (tmp_path / "pager.py").write_text(PAGER)
     words = shlex.join([sys.executable, str(tmp_path / "pager.py"), how])
     terminal = on_terminal("help upload --lang en", PAGER=f"exec {words}")

@@ -1,4 +1,4 @@
-"""The command and whatever comes: any input, any stream, any locale gets an answer."""
+"""The command answers any input, on any stream, in any locale."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from tiniscript.link import known_ports
 from tiniscript.link.sharing import registry
 from tiniscript.virtual import directory
 
-# -- anything whatever --------------------------------------------------------------------------
+# -- arbitrary input -----------------------------------------------------------------------------
 
 
 def hostile(many: int) -> dict[str, bytes]:
-    """Return inputs that nobody has thought of, most of so many parts."""
+    """Return unusual inputs, of at most this many parts."""
     return {
         "empty": b"",
         "binary": bytes(range(256)) * 100,
@@ -97,7 +97,7 @@ def test_files_that_are_none_or_may_not_be_read(
     def refuse(*_: object, **__: object) -> None:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(Path, "open", refuse)  # root may read everything, so nothing else would do
+    monkeypatch.setattr(Path, "open", refuse)  # root may read everything, so no file would do
     tsc(verb, program).gives(2, "no permission to read")
 
 
@@ -125,7 +125,7 @@ def test_the_language_comes_from_the_locale(tsc: Tsc, monkeypatch: pytest.Monkey
     (">/dev/full", "S", 2),
 ])  # fmt: skip
 def test_closed_and_full_streams(closed_text: str, program: str, code: int) -> None:
-    """Without any output there is still an exit code, and the trace is complete."""
+    """Without any output, there is still an exit code, and the trace is complete."""
     if "full" in closed_text and not Path("/dev/full").exists():
         pytest.skip("this system has no full device")
     command = f"{shlex.join(TSC)} run -e {shlex.quote(program)} {closed_text}"
@@ -179,7 +179,7 @@ def test_input_that_is_no_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such files")
 @pytest.mark.parametrize("kind", ["pipe", "folder", "device", "circle", "huge"])
 def test_files_of_the_cache_may_be_anything(kind: str) -> None:
-    """No command waits for them, or reads forever: they say nothing."""
+    """No command waits for them or reads them forever: they are ignored."""
     port = "socket://127.0.0.1:4000"
     robot = directory._folder() / "4000.json"
     paths = [known_ports._path(), robot, registry._path(port), source_map._path(5)]

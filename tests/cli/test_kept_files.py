@@ -1,9 +1,8 @@
 """Files on the computer stay whole during changes: with a kill at any line, a full disk at any
 byte, two commands at once.
 
-A process of its own changes it, and is killed or held at a line of the code that writes. Whoever
-reads then finds what was kept before, with the change or without it; the next change finds it so,
-too.
+A process of its own changes it, and is killed or held at a line of the code that writes. A reader
+then finds the earlier content, with the change or without it, and so does the next change.
 """
 
 from __future__ import annotations

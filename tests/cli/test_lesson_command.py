@@ -92,7 +92,7 @@ def test_the_table_of_a_teacher_in_lima_is_spanish_and_may_be_written_again(
     assert cells[0] == ["archivo", "resultado", "mundo", "frase"]
     assert {row[1] for row in cells[1:]} == {"listo", "todavía no", "errores"}
     assert {len(row) for row in cells} == {4}
-    assert "a,'=1+1;'@x.ts" in [row[0] for row in cells]  # whatever ends a cell there
+    assert "a,'=1+1;'@x.ts" in [row[0] for row in cells]  # any possible end of a cell
     assert tsc("lesson", "check", "1", folder, "--csv", rows).code == 1  # the same in English
     assert rows.read_text("utf-8-sig").startswith("file,verdict,seed,sentence\n")
 
@@ -151,14 +151,14 @@ def test_wrong_use_says_the_next_step(
 
 
 def test_what_is_no_file_has_a_row(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
-    """A link in a circle, to nothing, a pipe, an image: nobody waits, and nobody is left out."""
+    """Circular and dangling links, a pipe, an image: none blocks, and none is left out."""
     (tmp_path / "a.bin").write_bytes(b"TS\x02")
     assert "its source" in tsc("lesson", "check", "1", tmp_path / "a.bin").err
     (folder / "image.ts").write_bytes(b"TS\x02\0")
     (folder / "circle.ts").symlink_to("circle.ts")
     (folder / "nothing.ts").symlink_to("gone")
     (folder / "above").symlink_to(".")
-    os.mkfifo(folder / "pipe.ts")  # nobody writes to the pipe
+    os.mkfifo(folder / "pipe.ts")  # no process writes to the pipe
     result = tsc("lesson", "check", "1", folder, "--json")
     rows = {row["file"]: row for row in json.loads(result.out)}
     assert (result.code, len(rows), rows["image.ts"]["verdict"]) == (1, 10, "unreadable")
@@ -186,7 +186,7 @@ def test_a_lesson_of_ones_own(tsc: Tsc, tmp_path: Path) -> None:
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("number", range(1, 15))
 def test_sheets_are_whole_pages(tsc: Tsc, number: int, language: str, tmp_path: Path) -> None:
-    """One file: nothing is downloaded, every element is closed, and the drawing is included."""
+    """A sheet is one file: it downloads nothing, closes every element, and includes the drawing."""
     for more in ([], ["--teacher"]):
         path = tmp_path / "sheet.html"
         tsc("lesson", "sheet", str(number), "-o", path, "--lang", language, *more).gives(0)
@@ -214,7 +214,7 @@ def test_a_word_of_another_robot_gets_no_option_that_lesson_lacks(tsc: Tsc) -> N
 
 
 def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None:
-    """Broken, empty, huge, binary and wrongly stored files have a row each, and no one is lost."""
+    """Broken, empty, huge, binary and wrongly stored files have a row each, and none is lost."""
     pupils = tmp_path / "class"
     pupils.mkdir()
     odd = {

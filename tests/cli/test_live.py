@@ -1,4 +1,4 @@
-"""`tsc live`: lines that a robot does at once, and what lives on between them."""
+"""`tsc live`: lines that a robot executes at once, and the state that persists between them."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ PLACES = {
 
 
 def test_ctrl_c_stops_what_the_robot_does_wherever_a_person_is(pty_robot: PtyRobot) -> None:
-    """Also what its button has started."""
+    """This includes a program that its button has started."""
     assert on(pty_robot, "upload", "-e", "SB|F(60, 80)").code == 0
     terminal = Terminal("live", "--port", pty_robot.port)
     terminal.until("tini>")

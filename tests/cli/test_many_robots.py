@@ -124,7 +124,7 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
 
 
 def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
-    """By `stop --all` from another terminal, by Ctrl-C, and by a kill."""
+    """They stop after `stop --all` from another terminal, after Ctrl-C, and after a kill."""
 
     def drive_all() -> Command:
         command = Command("upload", "-e", FOREVER, "--all")
@@ -245,8 +245,8 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
 def test_who_has_answered_among_many_is_known_and_none_of_them_is_used_last(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """So one that is silent the next time is missed, and the next command drives the robot that
-    this person has driven before."""
+    """So a robot that is silent the next time is reported missing, and the next command drives the
+    robot that this person has driven before."""
     monkeypatch.setattr(ports, "list_ports", list)
     known_ports.remember("own", "MINE")
     with RobotFleet([TINIBOT] * 2) as fleet:

@@ -1,4 +1,4 @@
-"""`tsc monitor` and a robot: what it prints, keeps and draws."""
+"""`tsc monitor` and a robot: its output, its files and its drawings."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def test_monitor_and_a_full_disk(pty_robot: PtyRobot, tmp_path: Path) -> None:
 def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
     capsys: pytest.CaptureFixture[str], seed: int
 ) -> None:
-    """However often it is lost, and however many searches nobody answers; each is found once."""
+    """This holds for any number of losses and unanswered searches; each robot is found once."""
     chance = Random(seed)
     searches: list[Any] = []
     is_there, losses, waits = True, 0, 0

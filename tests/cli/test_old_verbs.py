@@ -40,7 +40,7 @@ NOT_OURS = {".git", ".venv", ".pio", "node_modules", "__pycache__", "build", "di
 
 
 def files() -> Iterator[Path]:
-    """Yield the texts of the repository, and of what it has made for itself."""
+    """Yield the texts of the repository, and of its generated files."""
     for path in ROOT.rglob("*"):
         name = path.relative_to(ROOT)
         if not NOT_OURS & {*name.parts} and path.suffix[1:] in KINDS and path.is_file():
@@ -67,13 +67,13 @@ def test_what_is_searched_for_is_found() -> None:
         assert not NAMED.search(f"tsc {command_words(command)}"), command
 
 
-# -- what texts say that can be typed -------------------------------------------------------------
+# -- commands in texts ----------------------------------------------------------------------------
 
 
 def commands_in(text: str, is_document: bool, is_robots: bool = False) -> Iterator[str]:
     """Yield the commands of a text: between backticks, and in messages after two blanks, too.
 
-    A robot has neither: in what it says, and in what its sources say, a command ends at a sign.
+    A robot has neither: in its messages and sources, a command ends at a sign.
     """
     yield from re.findall(r"`tsc ([^`\n]+)`", text)
     yield from re.findall(r"^\$ tsc (.+)$", text, re.M)
@@ -123,7 +123,7 @@ def test_what_messages_say_to_type_is_a_command(language: str) -> None:
 
 
 def test_what_sources_of_robots_say_to_type_is_a_command() -> None:
-    """The compiler says it to who builds a firmware."""
+    """The compiler shows it to the person who builds a firmware."""
     count = 0
     for path in files():
         if path.suffix in (".cpp", ".h") and "src" in path.parts:

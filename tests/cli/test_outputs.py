@@ -24,7 +24,7 @@ WORLD = (worlds.FOLDER / "obstacles.toml").read_text(encoding="utf-8")
 TEXTS = {"program": PROGRAM, "robot": PROFILE, "world": WORLD, "memory": "m" * 1024}
 PARSERS = parsers()
 
-# every output of every verb beside everything that this verb reads, and beside its other outputs
+# each output of each verb, against everything that this verb reads, and against its other outputs
 PAIRS = [
     (verb, output, other)
     for verb, parser in PARSERS.items()
@@ -71,7 +71,7 @@ def test_every_option_that_takes_a_value_is_known_to_name_a_file_or_not() -> Non
 
 
 def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
-    """Anyone who writes a file elsewhere adds its option to `WRITES`, and then its line here."""
+    """A new option that writes a file must be added to `WRITES`, and then get a line here."""
     places = {
         "outputs.write_output(target,": "output",  # of compile
         "outputs.write_output(options.output,": "output",
@@ -217,7 +217,7 @@ def test_a_file_that_may_not_be_written(
     output = tmp_path / "x.bin"
     output.write_bytes(b"mine")
     real = os.access
-    monkeypatch.setattr(  # root may write everything, so nothing else would do
+    monkeypatch.setattr(  # root may write everything, so no file would do
         os, "access", lambda path, mode: Path(path) != output and real(path, mode)
     )
     assert tsc("compile", "-e", PROGRAM, "-o", output).code == 2

@@ -1,6 +1,6 @@
 """Owners at the command: claim, keys of others, text, the teacher's stop, and a shared port.
 
-The robot is the firmware in C++ behind a pseudo-terminal.
+The robot is the firmware in C++ on a pseudo-terminal.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ DRIVES = "SI|F(0.2, 80)"
 def test_a_slow_computer_has_asked_the_robot_when_it_says_hold(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The press is over before the command goes on."""
+    """The press is over before the command continues."""
 
     def slowly(words: str, file: object = None, flush: bool = False) -> None:
         if file is None:
@@ -176,7 +176,7 @@ def test_a_shared_port_has_the_authority_and_its_messages_no_key(
 def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
     pty_robot: PtyRobot,
 ) -> None:
-    """Whoever leads the connection there has a robot, and no key."""
+    """An attacker who redirects the connection has a robot, but no key."""
     claim_with_button(pty_robot).gives(0)
     pty_robot.switch_off()
     pty_robot._memory = EMPTY

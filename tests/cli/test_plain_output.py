@@ -184,7 +184,7 @@ def test_one_byte_is_no_bytes() -> None:
         assert expected not in text("info_program", language).format(code=11, **values)
 
 
-# -- what a robot says ----------------------------------------------------------------------------
+# -- a robot's messages ---------------------------------------------------------------------------
 
 # the cursor, a title, a new line, a bell, the direction, nothing to see, half a character
 ACTING = ("\x1b[2J", "\x9b2J", "\x1b]0;x\x07", "\r\n", "\b\b", "\u202e", "\u2066", "\u200b",

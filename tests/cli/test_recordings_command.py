@@ -280,7 +280,7 @@ def test_what_is_not_recorded_or_played_says_why(
 def record(
     file: Path, *events: tuple[str, str], began_s: float | None = None, end: str = ""
 ) -> tuple[Row, ...]:
-    """Record these events of a robot; return what the file has then."""
+    """Record these events of a robot; return the content of the file."""
     recorder = Recorder(str(file), HEAD, began_s=began_s)
     for event in events:
         recorder.add_event(7, *event)
@@ -382,7 +382,7 @@ def test_a_place_without_room_says_so(tmp_path: Path) -> None:
 
 
 def test_each_row_is_in_the_file_before_the_next_one_comes(tmp_path: Path) -> None:
-    """Whoever ends the command then, and however."""
+    """This holds however the command ends."""
     path, written = tmp_path / "rows.csv", "head\n"
     rows = Rows(str(path), written.encode())
     for k in range(4):

@@ -74,7 +74,7 @@ OTHERS = ("\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "é", "q", "\x04")
 
 @pytest.mark.parametrize("seed", range(50))
 def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
-    """Wherever keys are cut, and whatever came before: nothing of a key is left for the next."""
+    """Keys may be split anywhere, after any input: no part of a key is left for the next."""
     chance = random.Random(seed)
     whole, cut = HeldKeys(), HeldKeys()
     for k in range(20):

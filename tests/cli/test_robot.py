@@ -42,7 +42,7 @@ def test_a_port_that_another_program_uses_is_said(
 
 
 def test_however_a_command_ends_its_robot_stops(pty_robot: PtyRobot) -> None:
-    """By Ctrl-C, by the robot's button, by a kill, and by pulling the cable."""
+    """It stops after Ctrl-C, the robot's button, a kill, and an unplugged cable."""
     command = uploading(pty_robot)
     pressed_ms = pty_robot.robot_ms
     command.signal(signal.SIGINT)
@@ -75,7 +75,7 @@ def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: 
     assert (tmp_path / "new.bin").read_bytes() == old
 
 
-# -- who is there -------------------------------------------------------------------------------
+# -- presence of a robot --------------------------------------------------------------------------
 
 
 def test_a_robot_describes_itself_and_its_port_is_remembered(pty_robot: PtyRobot) -> None:
@@ -100,7 +100,7 @@ def test_the_level_of_text_is_that_of_two_bits(
     for features, level, expected in (
         (0, None, "no lee texto"),
         (1, "uno", "lee texto, nivel uno"),
-        (0xFFFE, "mega", "lee texto, nivel mega"),  # whatever else it is able to do
+        (0xFFFE, "mega", "lee texto, nivel mega"),  # whatever other abilities it has
         (0x3, "esp32", "lee texto, nivel esp32"),
     ):
 

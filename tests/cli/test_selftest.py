@@ -41,7 +41,7 @@ GOOD = (LIGHT, LIGHT, DISTANCE)
 
 
 def found_by(pty_robot: PtyRobot, *words: str) -> tuple[int, dict[str, dict[str, object]]]:
-    """Return the exit code, and each finding by what it is about."""
+    """Return the exit code, and each finding by its subject."""
     result = on(pty_robot, "doctor", "--selftest", "--yes", "--json", *words)
     rows = json.loads(result.out)["found"]
     return result.code, {
@@ -78,7 +78,7 @@ def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
 
 @pytest.mark.parametrize("name", [*robots.names()])
 def test_every_board_has_its_sensors_tested(name: str) -> None:
-    """Without `--robot`, too: the robot says which kit it has."""
+    """This works without `--robot`, too: the robot reports its kit."""
     kit = robots.load(name).kit
     with PtyRobot(kit) as robot:
         middle = [sensor.is_yes_no or (sensor.low + sensor.high) // 2 for sensor in kit.sensors]
@@ -155,7 +155,7 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
 @pytest.mark.sampled("kind")
 @pytest.mark.parametrize("kind", ["missing", "other speed", "locked", "silent radio"])
 def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str) -> None:
-    """With the causes, the evidence and the next step, so that no other command is needed."""
+    """It prints the causes, the evidence and the next step, so that no other command is needed."""
     with ExitStack() as stack:
         port = "/dev/not-there"
         if kind == "silent radio":
@@ -184,7 +184,7 @@ def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str)
 def test_only_the_port_of_the_self_test_is_opened(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The board of another group may be on the only other port: nobody has chosen it."""
+    """The board of another group may be on the only other port, which the user has not chosen."""
     monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO_TERMINALS", ())
     monkeypatch.setattr("tiniscript.doctor.linux._using_programs", lambda system, port: [])
     with PtyEnd(Firmware()) as end:
@@ -253,7 +253,7 @@ AS_THEY_SHOULD = Wires()
 def person(
     pty_robot: PtyRobot, wires: Wires = AS_THEY_SHOULD, is_noticed: bool = True, learns: str = "2"
 ) -> Callable[[str], str]:
-    """Return a person with a hand, who sees what the motors do."""
+    """Return a person with a hand, who watches the motors."""
 
     def answer(question: str) -> str:
         if "Now put a hand" in question and is_noticed:
@@ -298,7 +298,7 @@ def test_ctrl_c_stops_the_robot_whichever_motor_turns(pty_robot: PtyRobot, motor
 
 
 def test_what_a_person_sees_is_wrong(pty_robot: PtyRobot) -> None:
-    """Motors that turn wrong or not at all, and sensors that notice nothing."""
+    """The person reports motors that turn wrong or not at all, and sensors that notice nothing."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
     for wires, expected in (
         (Wires(is_exchanged=True), "tsc set trim"), (Wires(is_dead=True), "check its wires"),
@@ -353,7 +353,7 @@ WIRES = [Wires(*flags) for flags in product((False, True), repeat=3)]
 
 @pytest.mark.parametrize("wires", WIRES)
 def test_a_robot_learns_how_its_motors_are_wired(pty_robot: PtyRobot, wires: Wires) -> None:
-    """Whatever it has kept before; the rest of its trim stays."""
+    """Earlier values do not matter; the rest of its trim stays."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
     for before in ((), ("--exchange", "yes", "--reverse-left", "yes", "--balance", "7")):
         assert on(pty_robot, "set", "trim", *before, "--least", "3").code == 0
@@ -366,7 +366,7 @@ def test_a_robot_learns_how_its_motors_are_wired(pty_robot: PtyRobot, wires: Wir
 
 
 def test_once_more_turns_the_motor_again(pty_robot: PtyRobot) -> None:
-    """No number that is asked for moves nothing. And where the person leaves, nothing turns."""
+    """Without a requested number, no motor moves. If the person leaves, no motor turns either."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
     assert on(pty_robot, "doctor", "--selftest").code == 0
     assert not any("MOTORS" in line for line in pty_robot.actions)

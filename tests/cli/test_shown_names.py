@@ -24,7 +24,7 @@ LOOPS = "LOOP(FOREVER); SHOW({}); W(0.05); END_LOOP"
 
 
 def list_names(out: str) -> list[str]:
-    """Return the names of the values in JSON lines, nothing for one without."""
+    """Return the names of the values in JSON lines, or an empty text for a value without one."""
     events = [json.loads(line) for line in out.splitlines()]
     return [event.get("name", "") for event in events if event["event"] == "SHOW"]
 
@@ -56,7 +56,7 @@ def test_upload_names_what_its_program_shows(pty_robot: PtyRobot) -> None:
 def test_monitor_knows_a_program_by_its_checksum(pty_robot: PtyRobot, tmp_path: Path) -> None:
     """Also in the middle of a run; programs from elsewhere have no names.
 
-    Neither has what the robot still tells a client of before, until it has answered this one.
+    Values that the robot sends for an earlier client have no names until it has answered this one.
     """
     upload = ("upload", "-e", "SI|" + LOOPS.format("TIME > 1"), "--detach")
     on(pty_robot, *upload).gives(0)
@@ -152,7 +152,7 @@ def test_each_name_has_a_curve_of_its_own() -> None:
 
 @pytest.mark.parametrize("width", [3, 20, 79])
 def test_no_more_curves_than_colours(width: int) -> None:
-    """The one whose last value is oldest ends first; nobody else changes the colour."""
+    """The curve whose last value is oldest ends first; the others keep their colours."""
     plot = Plot()
     names = [f"X + {k}" for k in range(len(STYLES))]
     for k, name in enumerate(names):

@@ -1,4 +1,4 @@
-"""`tsc stop` as people use it: twice, at the same time, and if nobody answers."""
+"""`tsc stop` as people use it: twice, at the same time, and without an answer."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def suspend(command: Command) -> Command:
     return command
 
 
-# Who waits for bytes hears of them, and reads them a while later: others may have them by then.
+# A reader is woken for bytes and reads them a little later, when another one may have taken them.
 TOLD = """
 import select, sys, time
 from tiniscript.cli import main
@@ -206,7 +206,7 @@ while data := peer.recv(1000):
 
 
 def test_the_suspended_holder_of_an_address_is_woken(pty_robot: PtyRobot) -> None:
-    """Nobody else can reach the robot."""
+    """No other command can reach the robot."""
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     bridge = Command(pty_robot.port, code=BRIDGE)
     assert bridge.process.stdout

@@ -1,4 +1,4 @@
-"""`tsc upload`, what a robot keeps, `tsc start --previous`: a real port, the whole firmware."""
+"""`tsc upload`, the programs that a robot keeps, `tsc start --previous`: on the whole firmware."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def test_a_program_that_waits_ends_with_its_receipt(pty_robot: PtyRobot) -> None
 def test_a_longer_program_goes_in_pieces_and_comes_back(
     pty_robot: PtyRobot, tmp_path: Path
 ) -> None:
-    """Noise on the line costs time and nothing else."""
+    """Noise on the line costs only time."""
     ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
     ours.write_bytes(compile_text(LONG, KIT).image)
     for damages in (0, 211):
@@ -139,7 +139,7 @@ def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
 
 @pytest.mark.parametrize("is_many", [False, True])
 def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) -> None:
-    """After a power cycle, a program has not ended by itself, whoever started it."""
+    """After a power cycle, a program has not ended by itself, however it was started."""
     other = ("--port", "/dev/none") if is_many else ()
     command = Command("upload", "-e", "SI|F(200, 80)", "--port", pty_robot.port, *other)
     pty_robot.until(lambda: pty_robot.moves, "it drives")
@@ -149,7 +149,7 @@ def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) 
     assert "restarted, which ended its program" in result.out + result.err, result
 
 
-# -- what a robot keeps, and what is in the way of that -------------------------------------------
+# -- stored programs, and failures to store them ---------------------------------------------------
 
 WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
 

@@ -1,4 +1,4 @@
-"""The virtual robot on a real pseudo-terminal: what a person sees, and what keys do."""
+"""The virtual robot on a real pseudo-terminal: the visible output, and the effects of keys."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("is_wanted", [True, False])
 def test_without_a_robot_the_virtual_one_is_offered(is_wanted: bool) -> None:
-    """Without any port it asks; otherwise the robot is listed as a port."""
+    """Without any port, it asks; otherwise the robot is listed as a port."""
     terminal = Terminal("upload", "-e", "SI|F(0.1, 50)", size=SIZE)
     match = terminal.until(r"\[Y/n\]|(\d+) +\S[^\n]*\nNumber in the list:")
     if match[1]:
@@ -85,7 +85,7 @@ def test_the_button_of_a_program_that_waits_is_a_key() -> None:
     drawn_text = "\n".join(terminal.lines())
     assert re.search(r"motor izq\. +0 %", drawn_text)
     assert re.search(r"s +apagado", drawn_text)
-    assert "b: botón" not in drawn_text  # the key does nothing any more
+    assert "b: botón" not in drawn_text  # the key has no effect any more
 
 
 def test_a_program_that_waits_ends_when_it_has_ended_or_its_time_is_over() -> None:
@@ -95,7 +95,7 @@ def test_a_program_that_waits_ends_when_it_has_ended_or_its_time_is_over() -> No
     assert terminal.end() == 0
     assert "Done." in "\n".join(terminal.lines())
     terminal = Terminal("upload", "-e", "SB|F(0.2, 80)", "--virtual", "--for", "1", size=SIZE)
-    assert terminal.end() == 0  # nobody has pressed the button
+    assert terminal.end() == 0  # the button was not pressed
     assert "The virtual robot drove 0 cm in 0.0 s" in "\n".join(terminal.lines())
 
 

@@ -41,7 +41,7 @@ def looks_on(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def silent(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    """A port on which nobody is; the computer soon gives up."""
+    """A port without a robot; the computer soon gives up."""
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     monkeypatch.setattr(opening, "CABLE_ANSWER_TIMEOUT_MS", 200)
     with PtyEnd(Nobody()) as end:
@@ -51,7 +51,7 @@ def silent(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
 def test_who_waits_for_a_robot_is_told(
     tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Not for a moment, and no program that reads is."""
+    """A short wait prints nothing, and a program that reads the output sees nothing."""
     looks_on(monkeypatch)
     result = tsc("doctor", "--identify", "--port", silent, "--lang", "es").gives(3)
     assert result.err.startswith(f"Esperando al robot en {silent} …\n")
@@ -122,7 +122,7 @@ def test_a_stop_that_is_not_confirmed_is_waited_for_in_words(
 def test_waits_without_news_are_one_silence(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """However short each of them is; an event is news, and so is what a person types."""
+    """This holds however short each of them is; an event is news, and so is typed input."""
     now_s = 0.0
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
@@ -212,7 +212,7 @@ def test_nothing_is_said_of_a_wait_that_is_over(
 
 
 def test_a_thread_that_begins_late_ends_before_its_wait(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Else it may begin while Python ends, and take it down."""
+    """Otherwise it might begin while Python exits, and crash it."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     ends: list[str] = []
 

@@ -1,6 +1,6 @@
 """Lowering: the shortest instruction at the border of its operand, and jumps that just reach.
 
-What the instructions do, the cases show; `tests/cases/blocks.md` has whole disassemblies.
+The cases show the effects of instructions; `tests/cases/blocks.md` has whole disassemblies.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ def instructions(text: str) -> list[str]:
 @each_row(
     "text, expected",
     [
-        # a disassembly has numbers as they are in the code: whole ones, thousandths, tenths.
-        # What pushes a number, `tests/text/test_plain.py` has.
-        # a variable that gets a number, and one that a number is added to
+        # a disassembly has numbers as they are in the code: whole ones, thousandths, tenths. The
+        # tests of what pushes a number are in `tests/text/test_plain.py`. a variable that gets a
+        # number, and one that a number is added to
         ("X = -128; SHOW(X)", ["SET_VAR8 v0 -128", "PUSH_VAR_0", "SHOW"]),
         ("X = 100; SHOW(X)", ["PUSH_NUM_100", "SET_VAR_0", "PUSH_VAR_0", "SHOW"]),
         ("X = 128; SHOW(X)", ["PUSH8 128", "SET_VAR_0", "PUSH_VAR_0", "SHOW"]),
@@ -90,7 +90,7 @@ def instructions(text: str) -> list[str]:
         ("X = 11; IF(NOT X <= 3); S; ENDIF", ["SET_VAR8 v0 11", "IF_VAR8_GT v0 3 -> 0008", "STOP"]),
         ("X = 11; IF(X < 32768); S; ENDIF",
          ["SET_VAR8 v0 11", "PUSH_VAR_0", "PUSH32 32768000", "LT", "IF -> 000d", "STOP"]),
-        # each side of an AND has a branch of its own, whatever is in it
+        # each side of an AND has its own branch, whatever is in it
         ("IF((TIME > 5 OR TIME < 3) AND (TIME > 4 OR TIME < 2)); S; ENDIF",
          ["TIME", "PUSH_NUM_5", "GT", "OR_ELSE -> 0008", "TIME", "PUSH_NUM_3", "LT", "IF -> 0015",
           "TIME", "PUSH_NUM_4", "GT", "OR_ELSE -> 0012", "TIME", "PUSH_NUM_2", "LT", "IF -> 0015",
@@ -137,10 +137,10 @@ def test_the_right_side_of_an_and_is_skipped_where_it_matters(right: str, has_ju
 # -- relaxing branches ----------------------------------------------------------------------------
 
 # A text with a row of one-byte instructions, the most of them with which a jump over them is short,
-# and that jump: forward to the byte after what it skips, backward from just after itself.
+# and that jump: forward to the byte after the skipped code, backward from just after itself.
 JUMPS = [
     ("X = TRUE; IF(X); {} ENDIF", 255, "IF"),
-    ("X = TRUE; IF(X); {} ELSE; S; ENDIF", 253, "IF"),  # over the ELSE as well
+    ("X = TRUE; IF(X); {} ELSE; S; ENDIF", 253, "IF"),  # over the ELSE, too
     ("X = TRUE; IF(X); S; ELSE; {} ENDIF", 255, "ELSE"),
     ("X = TRUE; IF(NOT X); {} ENDIF", 255, "IF_NOT"),
     ("LOOP(3); {} END_LOOP", 253, "NEXT"),
@@ -169,7 +169,7 @@ def test_a_jump_is_short_as_long_as_it_reaches(text: str, most: int, name: str) 
 @pytest.mark.parametrize("count", [0, 249, 250, 252, 253, 254, 255, 256, 300, 700])
 @each_row("text", sorted({text for text, _, _ in JUMPS}))
 def test_jumps_go_to_the_beginning_of_an_instruction(text: str, count: int) -> None:
-    """Whatever has become longer in between; and each far jump is one that had to be."""
+    """This holds whatever has become longer in between; and each far jump is necessary."""
     code = compile_right_text(text.format("S;" * count)).code
     listed_rows = rows(code)
     starts = {row.offset for row in listed_rows} | {len(code)}
@@ -192,7 +192,7 @@ def test_jumps_go_to_the_beginning_of_an_instruction(text: str, count: int) -> N
     ],
 )
 def test_a_comparing_branch_has_no_far_form(condition: str, short: str, far: list[str]) -> None:
-    """Out of reach, it becomes the longer form, with the same reading."""
+    """If its target is too far, it becomes the longer form, with the same reading."""
     text = f"X = 3; LIGHT_R; LIGHT_L; IF({condition}); {{}} ENDIF; SHOW(X)"
     near = instructions(text.format("S;" * 255))
     assert [line for line in near if line.startswith(short)]

@@ -1,8 +1,8 @@
 """Machines with one fault each: modules of the machine in Python with something changed.
 
-Each fault of `faults.txt` breaks a sentence of `bytecode_spec.md`, as somebody may who has read it
-quickly. There a row `#` says what is done wrong, `=` which case must notice it, and `@` in which
-file of the package; then come changes as `diff` writes them, with an `@` between two.
+Each fault of `faults.txt` breaks a sentence of `bytecode_spec.md`, as a hasty reader might. A row
+`#` names the fault, `=` the case that must notice it, and `@` the file of the package; then come
+changes as `diff` writes them, with an `@` between two.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def faults() -> list[Fault]:
 
 @contextmanager
 def machine_with(fault: Fault) -> Iterator[dict[str, Any]]:
-    """Yield the names of the module with its fault, whose handlers are in force meanwhile."""
+    """Yield the names of the module with its fault, with its handlers in force."""
     handlers = dict(HANDLERS)
     try:
         yield vars(_module_with(fault))
@@ -60,6 +60,6 @@ def _module_with(fault: Fault) -> ModuleType:
     module = ModuleType(f"tiniscript.{name}")
     exec(compile(source, fault.says, "exec"), vars(module))
     if hasattr(module, "Refused"):
-        # Otherwise nothing would catch the module's own Refused.
+        # Otherwise no code would catch the module's own Refused.
         vars(module)["Refused"] = verify.Refused
     return module

@@ -1,4 +1,4 @@
-"""A machine for `tsc doctor --conform --machine`: what `tests/oracle` has of `bytecode_spec.md`.
+"""A machine for `tsc doctor --conform --machine`: that of `tests/oracle`.
 
 `python -m tests.conform.spec_machine` takes runs on standard input and prints their traces, as
 `docs/develop/conformance.md` says. It runs no tasks: it lacks all that an image says to need.

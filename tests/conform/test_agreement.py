@@ -100,8 +100,8 @@ UNREAD = "text: The dashes and spaces that phones put in are read"
 
 
 def test_the_oracles_say_the_same() -> None:
-    """The interpreter has the language reference alone. What has no text, and no task, is judged by
-    the machine that the specification alone has made, and all that is refused by its verifier."""
+    """The interpreter has the language reference alone. Code without text and tasks is judged by
+    the machine written from the specification alone, and all refused code by its verifier."""
     spec = Spec()
     spec.refuses_only = True
     judges = Counter[str]()

@@ -176,7 +176,7 @@ BREAKS = [
 
 
 def patch_oracle(name: str, old: str, becomes: str) -> ModuleType:
-    """Return a module of `tests/oracle` that says something else in one place."""
+    """Return a module of `tests/oracle` that is changed in one place."""
     module = ModuleType(f"tests.oracle.{name}")
     path = ROOT / "tests" / "oracle" / f"{name}.py"
     source, module.__file__ = path.read_text(encoding="utf-8"), str(path)

@@ -170,7 +170,7 @@ def test_json_names_the_checks(pty_robot: PtyRobot) -> None:
 
 @contextmanager
 def server(serve: Callable[[socket.socket], None]) -> Iterator[str]:
-    """Yield the port of somebody who is no robot."""
+    """Yield the port of a server that is not a robot."""
     with socket.create_server(("127.0.0.1", 0)) as listening:
 
         def work() -> None:

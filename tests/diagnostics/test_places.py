@@ -108,7 +108,7 @@ def test_of_a_long_line_a_window_is_shown() -> None:
     assert picture(exact, 99, 100)[0] == "line 1:  " + exact
 
 
-# -- any text whatever ----------------------------------------------------------------------------
+# -- arbitrary text -------------------------------------------------------------------------------
 
 PIECES = """
     SI| SB| PING| | ; ; ; , ( ) ( ) = == < > + - * / % F B L R M S W F( W( M( BEEP SHOW SHOW( IF IF(

@@ -29,7 +29,7 @@ def messages_of(program: str, language: str = "en") -> list[Message]:
 @each_row("word", "FBLR")
 @each_row("number", (1, 2, 19, 20, 30, 45, 60, 90, 100, 101, 180, 360))
 def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: int) -> None:
-    """As power, centimetres or degrees, and without a gap between the brackets."""
+    """The message shows power, centimetres or degrees, and no gap between the brackets."""
     (message,) = messages_of(f"{word}({number})", language)
     calls = re.findall(r"\b[FBLR]\([^()]*\d[^()]*\)", message.fix)
     assert calls or number < 20, message
@@ -137,7 +137,7 @@ def test_what_is_done_beside_is_a_task(program: str, wanted_text: str) -> None:
 
 
 def test_what_spanish_pupils_say_for_when_is_shown() -> None:
-    """SIEMPRE QUE may be a WHILE as well: it is shown, and nobody makes it."""
+    """SIEMPRE QUE may also mean WHILE: the repair is shown, but not applied."""
     (message,) = messages_of("SIEMPRE QUE DISTANCE < 9\nB(1, 60)\nFIN", "es")
     assert message.fix == "WHEN(DISTANCE < 9); B(1, 60); END_WHEN"
 

@@ -1,4 +1,4 @@
-"""Whatever is at the other end, and whatever a computer tells: there is an answer, and soon."""
+"""The doctor answers, and soon, whatever is at the other end and whatever the computer reports."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Chance(Nobody):
 
 
 class Damaged(Firmware):
-    """A robot whose fields are anything, and whose answers are damaged at times."""
+    """A robot with arbitrary fields, whose answers are sometimes damaged."""
 
     def __init__(self, seed: int) -> None:
         super().__init__()

@@ -25,7 +25,7 @@ def linux(tmp_path: Path) -> FakeComputer:
 
 
 def test_a_computer_without_anything(linux: FakeComputer) -> None:
-    assert diagnosis.inspect_computer(linux).adapters is None  # no sysfs: nothing is known of USB
+    assert diagnosis.inspect_computer(linux).adapters is None  # no sysfs: USB is unknown
     linux.usb("usb1", "1d6b", "0002")  # the computer's own hub
     computer = diagnosis.inspect_computer(linux)
     assert (computer.adapters, computer.bluetooth, computer.paired_names) == ((), NONE, ())
@@ -195,7 +195,7 @@ def test_names_of_modules() -> None:
 
 
 def test_this_computer_can_be_looked_at() -> None:
-    """Whatever it has: nothing is raised, and a program that does not exist is None."""
+    """No computer raises an exception, and a missing program gives None."""
     system = System()
     computer = diagnosis.inspect_computer(system)
     assert computer.platform == system.platform

@@ -45,7 +45,7 @@ PONG = PingReply(0, 0, b"")
 
 
 class Shared:
-    """The connection of another tsc: its requests are answered with `replies`, or it is gone."""
+    """The connection of another tsc: its requests are answered with `replies`, or it has ended."""
 
     robot = None
     early_bytes = b""
@@ -257,7 +257,7 @@ def test_a_port_of_a_cable_is_opened_after_a_yes_alone_and_a_radio_without(case:
 
 
 def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
-    """`tsc doctor --ports` lists them: the doctor does not say that there are none."""
+    """`tsc doctor --ports` lists them, so the doctor does not claim that there are no ports."""
     case.virtual = ("socket://127.0.0.1:7007", "socket://127.0.0.1:7008")
     (finding,) = case.diagnosis(None).findings
     assert (finding.cause, finding.values) == ("no_port", {"ports": ", ".join(case.virtual)})
@@ -420,7 +420,7 @@ def test_what_was_not_opened_is_not_said_to_have_been(case: Case) -> None:
 
 
 def test_every_cause_has_a_test() -> None:
-    """Each is in a table of this folder, or is named in a test of what else asks the doctor."""
+    """Each is in a table of this folder, or named in a test of another user of the doctor."""
     folder = Path(__file__).parent
     commands = (
         folder.parent / "cli" / f"test_{name}.py" for name in ("selftest", "module_command", "trim")

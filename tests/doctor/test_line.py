@@ -1,4 +1,4 @@
-"""Devices at the other end of a port: each is recognized, and none is disturbed."""
+"""Devices at the other end of a port are recognized and not disturbed."""
 
 from __future__ import annotations
 
@@ -206,7 +206,7 @@ def test_each_restart_counts_once(restarts_ms: int) -> None:
 
 @pytest.mark.parametrize(("resets", "is_sure"), [("BROWN_OUT", True), ("POWER", False)])
 def test_a_robot_that_restarts_when_its_motors_start(resets: str, is_sure: bool) -> None:
-    """Sure where its chip tells the voltage, else probably."""
+    """The finding is sure if its chip reports the voltage, and probable otherwise."""
 
     class Driver(Firmware):
         def answer(self, data: bytes) -> bytes:
@@ -270,7 +270,7 @@ def test_what_is_damaged_is_counted_past_the_end_of_a_counter(count: str, before
 
 
 def test_how_bad_a_line_was_before() -> None:
-    """Then it is probably bad; one that is lost among twenty says nothing of it."""
+    """Then it is probably bad; one lost frame among twenty proves nothing."""
     assert "lossy" not in causes(Firmware(overrun=19))
     assert not causes(Firmware(overrun=20))["lossy"].is_sure
     assert causes(Firmware(damaged=255, framing=0))["lossy"].values["missed"] == "0"
@@ -326,7 +326,7 @@ def test_on_a_cable(end: OtherEnd, cause: str, is_sure: bool) -> None:
 
 @pytest.mark.parametrize("speed", BAUDS)
 def test_what_is_heard_at_one_speed_alone_is_told(speed: int) -> None:
-    """Whichever it is: at the others nothing comes."""
+    """This holds for each speed: at the others, the line is silent."""
 
     class Deaf(SimulatedWire):
         def receive(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
@@ -375,7 +375,7 @@ KINDS = [
 def test_a_board_that_is_not_ours_on_a_cable(
     kind: type[boards.Board], cause: str, sentence: str, its_baud: int
 ) -> None:
-    """Whatever speed it has, and whatever speed a robot would have here."""
+    """This holds for any speed of the board, and any speed of a robot here."""
     for baud in (9600, 115200):
         (finding,) = findings_on(kind(its_baud), baud=baud)
         if kind in SAY_NOTHING and its_baud not in (baud, *RESTARTED):

@@ -1,4 +1,4 @@
-"""Authority: what a robot with an owner does for a session that shows no key, or a wrong one."""
+"""Authority: the reactions of an owned robot to a session that shows no key, or a wrong one."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_a_stranger_looks_and_stops_and_nothing_else() -> None:
 
 
 def test_every_request_has_a_side() -> None:
-    """Whatever acts and is not listed here needs authority, and the owner's run goes on."""
+    """Requests that act and are not listed here need authority, and the owner's run continues."""
     table, keys = Owned(), Keys()
     assert table.tries(table.claim_session(keys)) == "OK"
     stranger = table.session(nonce=3)
@@ -64,7 +64,8 @@ def test_every_request_has_a_side() -> None:
 
 @pytest.mark.parametrize("how", ["silence", "STATE", "HELLO"])
 def test_authority_ends_with_its_connection_and_is_shown_again(how: str) -> None:
-    """Less than 2 s after its last frame where a radio dropped out, or somebody else comes."""
+    """It ends less than 2 s after its last frame if a radio dropped out, or when another client
+    arrives."""
     table, keys = Owned(), Keys()
     session = table.claim_session(keys)
     session._handshake._keys = None  # without a key, it cannot authenticate
@@ -130,7 +131,7 @@ def test_a_recorded_tag_opens_nothing_in_its_own_epoch() -> None:
 
 
 def test_wrong_keys_cost_the_owner_nothing() -> None:
-    """On a line whose other end is unknown to the robot."""
+    """This is on a line whose other end is unknown to the robot."""
     table, keys = Owned(), Keys()
     table.claim_session(keys)
     wrong = Keys()
@@ -165,7 +166,7 @@ def test_no_challenge_is_a_tag() -> None:
 
 
 def test_the_same_seed_after_a_reset_is_another_challenge_or_needs_the_key() -> None:
-    """Two robots with one memory and one nonce: what one was shown opens the other at no time."""
+    """Two robots with one memory and one nonce: a tag shown to one never opens the other."""
     table, keys = Owned(), Keys()
     table.claim_session(keys)
     memory = table.robot.memory()

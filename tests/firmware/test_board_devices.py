@@ -110,7 +110,7 @@ def test_a_level_is_yes_or_no(name: str, sensor: str, pin: int, is_high: bool, s
 
 
 def test_a_threshold_and_thousandths() -> None:
-    """149 of 1023 are 1.4565 of 10 V, and a bit: the half is what tells the one from the other."""
+    """149 of 1023 are slightly more than 1.4565 of 10 V: the half distinguishes the two."""
     workshop = on_board("tinibot", "uno", *WORKSHOP)
     assert is_true(workshop, "BRIGHT", lambda board: board.analog(2, 2910))
     assert not is_true(workshop, "BRIGHT", lambda board: board.analog(2, 2950))
@@ -146,7 +146,8 @@ END_WHEN
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(24))
 def test_each_task_gets_its_readings_in_time(seed: int) -> None:
-    """Whatever others read: none waits longer than a few conversions and a round of the tasks."""
+    """Whatever other tasks read, none waits longer than a few conversions and a round of the
+    tasks."""
     draw = random.Random(seed)
     tasks = []
     for number in range(draw.randint(2, 4)):
@@ -162,7 +163,7 @@ def test_each_task_gets_its_readings_in_time(seed: int) -> None:
     assert 0 < longest <= 3 * 26 and count > 20
 
 
-# -- what a robot has besides
+# -- additional devices of a robot
 
 
 def buzzer_of(robot: Robot) -> int:

@@ -1,6 +1,6 @@
 """Edge counts of an Uno and a Mega on simulated chips: every edge, and no glitch.
 
-And how far a tinibot2 goes whose wheels turn discs.
+The distances of a tinibot2, whose wheels turn discs, are tested here, too.
 """
 
 from __future__ import annotations
@@ -231,7 +231,7 @@ def test_a_typed_stop_gets_through_while_both_discs_flicker(
 
 @pytest.mark.sampled(of="long ways of a chip")
 def test_a_nano_with_discs_has_tasks(sketches: Callable[[str], Path]) -> None:
-    """The reader of text has left room for them: it backs away from what comes near."""
+    """The reader of text has left room for them: it backs away from obstacles."""
     robot = Driven(sketches("nano_tinibot2"), 1, (100, 100), Roughness())
     pins = ROBOT.board.sensors[2].pins
     eye = f"D{pins['trigger']}", f"D{pins['echo']}"

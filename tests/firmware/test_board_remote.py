@@ -30,7 +30,7 @@ TRIES = 5
 def test_what_a_hand_holds_reaches_the_motors(
     sketch_name: str, sketches: Callable[[str], Path]
 ) -> None:
-    """Also what it lets go; and a lost line lets all go."""
+    """So do released keys; and a lost line releases all."""
     with Hand(sketches(sketch_name), BAUD, PAD_PROGRAM) as hand:
         for _ in range(TRIES):
             assert 0 < hand.change(PAD_AHEAD) <= MOST_HELD_MS[BAUD]

@@ -1,6 +1,7 @@
 """Motors on a shield with a 74HC595: the sketch's output as the shield reads it.
 
-`tests/machines/shift_register.py` is the part; what of each L293D turns its motor is here.
+`tests/machines/shift_register.py` is the register; the wiring between each L293D and its motor is
+here.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ SIDES = {"two": ("M3", "M4"), "four": ("M1 M2", "M3 M4"), "crossed": ("M2 M4", "
 
 
 def profile(left: str, right: str, chip: str = "uno") -> str:
-    """A robot that has little beside the shield: no buzzer takes a timer."""
+    """Return a robot with little besides the shield: no buzzer uses a timer."""
     return f"""
 [kit]
 speed = 45
@@ -74,7 +75,7 @@ class Seen(NamedTuple):
 
 
 def seen_by_the_motors(board: Board) -> list[Seen]:
-    """Play all writes into a shift register and L293Ds; return what the motors do, in order.
+    """Play all writes into a shift register and L293Ds; return the motors' actions, in order.
 
     A motor whose PWM is on while its two inputs are not known is a motor that nobody controls.
     """
@@ -138,7 +139,7 @@ def test_the_motors_of_a_side_do_what_the_side_does(name: str, chip: str) -> Non
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(8))
 def test_no_motor_turns_another_way_than_its_side(seed: int) -> None:
-    """Whatever a program drives: in between a motor is only off, or has one of the two powers."""
+    """This holds for any program: in between, a motor is only off, or has one of the two powers."""
     draw = random.Random(seed)
     moves = [(draw.choice([-80, -40, 0, 40, 80]), draw.choice([-80, -40, 0, 40, 80]))
              for _ in range(12)]  # fmt: skip

@@ -43,8 +43,8 @@ def read_power_cm(board: Board, ms: float) -> int:
 @pytest.mark.parametrize("name", ["tinibot", "grabber"])
 @pytest.mark.parametrize("distance_cm", [3, 20, 50, 99, 399])
 def test_pings_leave_30_ms_apart_and_hear_how_far_it_is(name: str, distance_cm: int) -> None:
-    """A program that does nothing but look does not look more often. A sensor wants 10 us, and the
-    loop does not wait for it."""
+    """A program that only measures does not measure more often. A sensor wants 10 us, and the loop
+    does not wait for it."""
     robot = robots.load(name)
     at = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
     trigger, echo = sonar_pins(robot, at)
@@ -136,7 +136,8 @@ TWO = (
     "SI|LOOP(FOREVER);M(DISTANCE, BEHIND);W(0.005);S;W(0.02);END_LOOP",
 ])  # fmt: skip
 def test_two_sensors_never_hear_each_other(text: str) -> None:
-    """Pings of both keep the distance, none is forgotten, and no reading is older than 60 ms."""
+    """The pings of both are far enough apart, none is forgotten, and no reading is older than 60
+    ms."""
     robot = on_board("tinibot", "uno", *TWO)
     board = start_board(robot, text)
     rows = [(3, range(20, 60)), (0, range(60, 100))]  # obstacles that come nearer with each ping
@@ -260,7 +261,7 @@ def test_an_echo_that_stays_high_is_read_as_0_until_it_answers(chip: str) -> Non
 
 
 def test_a_line_that_is_high_for_a_moment_only_is_no_hung_sensor() -> None:
-    """However long nobody has asked: a glitch at the moment of asking is not 0."""
+    """This holds after any pause: a glitch at the moment of a query is not read as 0."""
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;W(0.5);END_LOOP"
     robot = robots.load("tinibot")
     board = looking(text, 50, robot=robot)

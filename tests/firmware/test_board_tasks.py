@@ -53,7 +53,7 @@ def list_settings(robot: Uno, since: int) -> list[Setting]:
 
 @each_board
 def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
-    """Each time: and what has gone in the meantime is driven on to at once."""
+    """It does so each time, and if the obstacle has gone in the meantime, it drives on at once."""
     robot.sonar("trigger", "echo", 80)
     wired_uno = computer(robot)
     send(wired_uno, AWAY, is_detached=True)
@@ -117,7 +117,7 @@ def test_an_echo_from_before_an_interruption_ends_no_move(later_ms: int, robot: 
 
 @each_board
 def test_a_stop_in_the_middle_of_busy_tasks(robot: Uno) -> None:
-    """It reaches the pins as fast as in any program; nothing starts again."""
+    """It reaches the pins as fast as in any program, and no motor starts again."""
     wired_uno = computer(robot)
     send(wired_uno, BUSY, is_detached=True)
     wired_uno.run(50)

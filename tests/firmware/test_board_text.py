@@ -1,6 +1,6 @@
 """The firmware as it goes onto an Uno and a Mega reads text: seen from its wire and its pins.
 
-What a line does is tested with the whole firmware on this computer: `test_text` and
+The effects of a line are tested with the whole firmware on this computer: `test_text` and
 `test_text_small`.
 """
 
@@ -39,7 +39,7 @@ BYTE_MS = 10_000 / BAUD
 
 
 def type_and_listen(uno: Uno, text: str, milliseconds: float) -> list[str]:
-    """Type a text; return what the robot has answered after so many milliseconds."""
+    """Type a text; return the robot's answer after this many milliseconds."""
     count_before = len(uno.sent_bytes)
     uno.send(text.encode())
     uno.run_ms(milliseconds)
@@ -74,7 +74,7 @@ def test_a_program_whose_line_never_ends_runs(
 def test_a_start_begins_a_line_anew(
     sketch_name: str, sketches: Callable[[str], Path], memory: Path
 ) -> None:
-    """After a module's message, and after a program that never ended; nowhere else."""
+    """It does so only after a module's message, and after a program that never ended."""
     with switched_on(sketches(sketch_name), memory) as robot:
         for message in ("OK+CONN", "OK+CONN", "+CONNECTED:12 ", "OK+LOST\r\nOK+CONN"):
             assert type_and_listen(robot, message + "SI|F(0.5, 60)\r\n", 80) == ["// OK"]

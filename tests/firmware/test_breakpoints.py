@@ -112,7 +112,7 @@ def answer(it: Debugged, name: str, payload: bytes) -> bytes:
     return it.robot.step(b"\0" + encode_frame(frame))
 
 
-# -- what never sees a trap ------------------------------------------------------------------------
+# -- code that never sees a trap -----------------------------------------------------------------
 
 TASK_FROM_OPERAND = (
     "SI|W(3.5);SHOW(1);W(3.5);SHOW(2)"  # a trap there would make an operand an instruction
@@ -177,7 +177,7 @@ def test_the_board_finds_the_same_code_at_each_start_and_while_it_runs() -> None
     assert not [line for line in it.robot.did if "CHANGED" in line or "UNVERIFIED" in line]
 
 
-# -- what ends a run -------------------------------------------------------------------------------
+# -- ends of a run ---------------------------------------------------------------------------------
 
 ENDS = ("stop", "button", "message", "lost", "undo", "program", "live", "start", "hello", "text")
 
@@ -278,7 +278,7 @@ def test_a_new_session_has_no_places() -> None:
     assert it.halt() is None and it.events[-1].name == "DONE"
 
 
-# -- what stands and what goes on ------------------------------------------------------------------
+# -- parts that halt and parts that continue -------------------------------------------------------
 
 
 def test_nothing_halts_where_nobody_is_there() -> None:

@@ -1,4 +1,4 @@
-"""Random programs that are stepped through do what they do alone.
+"""Random programs behave the same with and without stepping.
 
 `python -m tests.firmware.test_breakpoints_campaign 1000` runs many.
 """
@@ -70,7 +70,7 @@ def run(image: Image, kit: Kit, seed: int, how: str) -> list[str]:
 
 
 def without_halts(lines: list[str], kind: str) -> list[str]:
-    """Return the lines of one kind: of MOTORS only those that change what the program has set."""
+    """Return the lines of one kind; for MOTORS only those that change the program's setting."""
     mine = [line for line in lines if line.split()[0] == kind]
     if kind != "MOTORS":
         return mine
@@ -121,7 +121,7 @@ STOPS: dict[str, Callable[[Debugged], object]] = {
 
 
 def halts_before(it: Debugged, rng: random.Random) -> None:
-    """Start the program, step it, let it go on and leave it halted, and end it anyhow."""
+    """Start the program, step it, resume it, leave it halted, and end it in some way."""
     for _ in range(rng.randint(1, 3)):
         statements = statement_starts(it.image.code)
         it.places(*rng.sample(statements, rng.randint(0, 4)))

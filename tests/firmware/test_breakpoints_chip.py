@@ -1,4 +1,4 @@
-"""Programs that are stepped through on a simulated chip do what `tsc run` says, but for the halts.
+"""Programs stepped through on a simulated chip behave as in `tsc run`, except for the halts.
 
 `python -m tests.firmware.test_breakpoints_chip 1000` runs many on a simulated Uno; another number
 says with which seed it begins, and `mega` on which board.
@@ -57,7 +57,7 @@ class Seen(NamedTuple):
 
 
 def write_program(rng: random.Random) -> Image | None:
-    """Return a random program that reads nothing that is not the same on the chip."""
+    """Return a random program that only reads values that are the same on the chip."""
     text = programs.program(rng, PAPER_KIT._replace(sensors=()))
     if any(word in text.upper() for word in STRANGE):
         return None
@@ -116,7 +116,7 @@ def step_on_chip(image: Image, uno: Uno) -> Seen:
 
 
 def list_long_settings(steps: Seen, least_ms: float) -> list[Setting]:
-    """Return the settings that last, each once in a row, without those that stand."""
+    """Return the lasting settings of the motors, without repetitions and pauses."""
     lasting = [setting for ms, setting in steps.settings if ms >= least_ms and setting != (0, 0)]
     return [setting for setting, _ in groupby(lasting)]
 
@@ -137,7 +137,7 @@ def is_within(some: list[Setting], more: list[Setting]) -> bool:
 
 
 def compare(image: Image, uno: Uno) -> bool:
-    """Compare a program; return whether it has come to its end."""
+    """Compare a program; return whether it has ended."""
     wanted_observation, run = run_in_tsc(image), step_on_chip(image, uno)
     shown = min(len(wanted_observation.shows), len(run.shows))
     assert run.shows[:shown] == wanted_observation.shows[:shown]

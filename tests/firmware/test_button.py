@@ -1,4 +1,4 @@
-"""The start button and its wire: a stop is early, a start is late, and a spike starts nothing."""
+"""The start button and its wire: a stop is early, a start is late, and a spike has no effect."""
 
 from __future__ import annotations
 

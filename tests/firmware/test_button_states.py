@@ -1,6 +1,6 @@
-"""The start button in every state of the firmware, in all ways: what the document's table says.
+"""The start button, pressed in every state of the firmware, follows the document's table.
 
-The wire goes through the button's own code; the whole firmware hears what that tells.
+The wire goes through the button's own code, whose results go to the whole firmware.
 """
 
 from __future__ import annotations
@@ -133,7 +133,7 @@ def test_the_button(state: str, press: str) -> None:
 @pytest.mark.parametrize("has_draft", [True, False])
 @pytest.mark.parametrize("press", PRESSES)
 def test_text_is_lost_by_a_start_alone(press: str, has_draft: bool) -> None:
-    """A block that is open goes on after presses that start nothing."""
+    """An open block continues after presses that start no program."""
     table = Table(has_draft)
     STATES["has an open block of text"](table)
     press_button(table, press)
@@ -164,7 +164,8 @@ def test_an_upload_is_lost_by_a_start_alone(press: str) -> None:
         assert (outcome == OK) == drives == (SHORT not in PRESSES[press][1])
 
 
-# What happens while the button is down: only a robot that stood all the time starts at the release.
+# The state changes while the button is down: only a robot that was stopped all the time starts at
+# the release.
 MEANWHILE: dict[str, Callable[[Table], object]] = {
     "nothing": lambda table: None,
     "a line": lambda table: table.session.live(image_of(f"SI|F(600, {LINE})").code),

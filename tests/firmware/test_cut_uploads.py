@@ -1,5 +1,5 @@
 """The largest upload is cut, or the robot stopped, at any of its bytes: it holds the old program or
-the new one, nothing drives that was stopped, and the next upload is whole.
+the new one, a stopped robot does not drive, and the next upload is whole.
 
 `python -m tests.firmware.test_cut_uploads` does that at each byte.
 """
@@ -54,8 +54,8 @@ def bytes_of(image: Image) -> bytes:
 
 
 def sent_until(robot: HostFirmware, session: Session, count: int) -> bytes:
-    """Begin an upload, until so many of its bytes have reached the robot; return the bytes that the
-    computer sent afterwards, or nothing if the upload is over.
+    """Begin an upload, until this many of its bytes have reached the robot; return the bytes that
+    the computer sent afterwards, or no bytes if the upload is over.
     """
     request = session.upload(NEW, saves=True)
     while request.outcome is None:
@@ -133,7 +133,7 @@ def test_a_program_that_an_upload_has_cost_is_told_no_more() -> None:
     assert next_session.robot and next_session.robot.values.program == 0
 
 
-# -- what comes between ---------------------------------------------------------------------------
+# -- interruptions --------------------------------------------------------------------------------
 
 TYPED = b"SI|LOOP(9);F(0.1,30);B(0.1,30);END_LOOP\n"
 PIECE_BYTES = 9
@@ -231,7 +231,7 @@ def frames_of(image: Image) -> list[tuple[str, bytes]]:
 def cut_by(
     kind: str, memory: bytes, cut: str, between: Callable[[Line], object]
 ) -> tuple[Line, list[tuple[str, bytes]]]:
-    """Send a part of an upload and then something else; return the rest."""
+    """Send a part of an upload and then other bytes; return the rest."""
     line, frames = Line(KINDS_OF_ROBOTS[kind], memory), frames_of(SECOND)
     count = {BEGUN: 1, ALL_BUT_ONE: len(frames) - 2, ALL: len(frames) - 1}[cut]
     assert {line.asks(*frame) for frame in frames[:count]} == {OK}

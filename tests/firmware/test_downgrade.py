@@ -1,9 +1,8 @@
-"""An attacker between a computer and a sealing robot who clears bits of HELLO is not believed.
+"""An attacker between a computer and a sealing robot cannot profit from clearing bits of HELLO.
 
-They have the line: what they do not pass on is not heard, and they answer in its place, whatever
-they like. They may change the robot's id in HELLO, or lead the computer to a robot of their own
-that has its name. They have no key. `python -m tests.firmware.test_downgrade 10000` has as many of
-them.
+The attacker controls the line: frames that they drop are not heard, and they may send any answers
+instead. They may change the robot's id in HELLO, or lead the computer to a robot of their own that
+has its name. They have no key. `python -m tests.firmware.test_downgrade 10000` has as many of them.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ OTHER_ID, OTHER_SEED = 0x00C0FFEE, 0x0BADCAFE
 
 
 class End:
-    """A robot with an owner, whose time passes as we like; `keys` has its key."""
+    """A robot with an owner, whose clock the test controls; `keys` has its key."""
 
     def __init__(self, which: int = KEY_OWNER) -> None:
         self.keys = Keys()
@@ -128,7 +127,7 @@ class Between:
         return stream
 
     def pretended_answer(self, frame: Frame) -> bytes:
-        """Return an answer that says done, if nothing was: of the right length."""
+        """Return a false answer of success, of the right length."""
         message = next(message for message in BY_NAME.values() if message.number == frame.number)
         least = sum(field.least_bytes for field in message.reply)
         payload = bytearray(self.draw.randbytes(least))
@@ -179,7 +178,7 @@ def honest(end: End, session: Session, request: PendingRequest[Any] | None) -> l
 
 
 def start_long_drive(end: End, draw: random.Random) -> None:
-    """Start a long drive, whatever the robot did before."""
+    """Start a long drive, whatever its state."""
     session = end.session(draw.getrandbits(32), end.keys)
     request = session.upload(image_of(FOREVER), saves=False, is_detached=True)
     honest(end, session, request)
@@ -231,7 +230,8 @@ def one_trial(end: End, seed: int) -> str:
 
 
 def one_stranger(end: End, strange: Stranger, seed: int) -> str:
-    """Ask a robot for something where another one answers, or one with another id; return what."""
+    """Send a request to a robot while another one answers, or one with another id; return the
+    answer."""
     draw = random.Random(seed)
     keys = Keys()
     keys.stored_keys = list(end.keys.stored_keys)

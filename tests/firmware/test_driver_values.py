@@ -1,7 +1,7 @@
 """Every driver has values: inputs at its pins change a reading, and settings change its pins.
 
-Seen on a simulated board, for each file of `robots/drivers/` that a device may have; what the
-values are, `test_board_devices.py` says. A driver whose pins are of a new kind has a row in FELT.
+This is checked on a simulated board, for each file of `robots/drivers/` that a device may have;
+`test_board_devices.py` has the values. A driver with a new kind of pin has a row in FELT.
 """
 
 from __future__ import annotations

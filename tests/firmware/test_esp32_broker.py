@@ -1,4 +1,4 @@
-"""An ESP32 at an MQTT broker, Debian's Mosquitto as it is: who drives it, and what stops it."""
+"""An ESP32 at an MQTT broker, Debian's Mosquitto unchanged: its drivers and its stops."""
 
 from __future__ import annotations
 
@@ -259,7 +259,7 @@ def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto) -> None:
 
 
 def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
-    """A retained stop keeps no robot from driving, a retained request has nothing done."""
+    """A retained stop does not prevent driving, and a retained request has no effect."""
     keys = Keys()
     stranger = broker.connect_client()
     topics = [f"{ROOT}/aula/stop", f"{ROOT}/aula/{ID}/in/{stranger.peer}"]

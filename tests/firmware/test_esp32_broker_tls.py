@@ -219,7 +219,7 @@ def test_a_broker_that_dies_ends_the_run_over_tls(
 
 @drawn
 def test_who_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: Room) -> None:
-    """A computer that takes the connection and says nothing; then the broker."""
+    """First a computer accepts the connection and stays silent, then the broker does."""
     keys = Keys()
     robot, owner = join_network(keys)
     with socket.create_server(("127.0.0.1", 0)) as silent:

@@ -1,6 +1,6 @@
 """The ESP32 sources compile with cores 2 and 3, and for the chips' instruction sets.
 
-Nothing here is Espressif's: headers of our own stand for theirs, `signatures.cpp` pins these.
+No file here is Espressif's: our own headers replace theirs, and `signatures.cpp` pins these.
 """
 
 from __future__ import annotations
@@ -79,14 +79,14 @@ def test_a_header_that_takes_the_port_away_is_refused(part: str, pin: int, tmp_p
 
 @needs_host
 def test_a_core_with_another_bluetooth_is_told() -> None:
-    """Arduino's core 3.3 has NimBLE on an ESP32-C3, which hands on what was written late."""
+    """Arduino's core 3.3 has NimBLE on an ESP32-C3, which delivers written data late."""
     flags = (*flags_of("esp32c3", 3), "-DCONFIG_NIMBLE_ENABLED")
     errors = complaints(BOARD / "esp32" / "low_energy.cpp", *flags)
     assert "error" in errors and "wants the core esp32 2.0.17 to 3.2" in errors.splitlines()[0]
 
 
 # Static RAM of the sketch without Espressif's libraries: those and their radios take about 45 K of
-# what an ESP32-C3 has, and TLS 40.
+# an ESP32-C3's RAM, and TLS 40.
 MOST_RAM = 48 * 1024
 
 
@@ -173,7 +173,7 @@ def test_every_file_says_for_which_chip_it_is() -> None:
 
 
 def test_our_macros_come_after_the_headers_of_the_core() -> None:
-    """Each has a prefix of ours, so none collides with the core's."""
+    """Each has our prefix, so none collides with the core's."""
     for path in sorted((BOARD / "esp32").glob("*.*")):
         text = path.read_text(encoding="utf-8")
         defined_names = re.findall(r"^ *#define ([a-z]\w*)", text, flags=re.M)
@@ -183,7 +183,7 @@ def test_our_macros_come_after_the_headers_of_the_core() -> None:
 
 
 def test_nothing_waits() -> None:
-    """But for the tasks of radios: what these make them wait for, they wait for alone."""
+    """The tasks of radios are the exception: they wait for their radio, and delay no one else."""
     waiting = {"delay", "delayMicroseconds", "pulseIn", "vTaskDelay", "new", "malloc", "flush"}
     waiting_calls = {}
     for path in sorted((BOARD / "esp32").glob("*.*")):

@@ -1,8 +1,8 @@
-"""An ESP32 with discs, on a simulated chip: what its pulse counter counts, and how far it goes.
+"""An ESP32 with discs, on a simulated chip: the counts of its pulse counter, and the distances.
 
 Wheels, motors and discs are those of the virtual robot. The pulse counter is
-`vm_arduino/extras/esp32/simulated_counter.cpp`, which refuses what Espressif's refuses; none of
-this has run on a chip.
+`vm_arduino/extras/esp32/simulated_counter.cpp`, which refuses the same calls as Espressif's; none
+of this has run on a chip.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ class Driven:
         self.robot.edges(*second, (SETTLES_US, self._pins[side], level))
 
     def drive(self, text: str, limit_ms: int = 8000) -> Event:
-        """Run a program to its end and a little longer; return what has ended it."""
+        """Run a program to its end and a little longer; return the cause of its end."""
         image = image_of(text, self._kit)
         assert self.robot.until(self.session, self.session.hello()) == OK
         assert self.robot.until(self.session, self.session.upload(image)) == OK
@@ -129,7 +129,8 @@ def test_a_disc_that_is_unplugged_is_the_fault_of_its_wheel(number: int) -> None
 
 
 def test_a_counter_that_is_full_begins_again() -> None:
-    """While nobody looks, at its limit; and in the middle of a way, where the driver clears it."""
+    """It does so at its limit, while no one reads it, and in the middle of a move, where the driver
+    clears it."""
     driven_robot = Driven(SLOTTED, (100, 100))
     assert SLOTTED.board.discs
     pins = [SLOTTED.board.discs.pins[side] for side in ("left", "right")]
@@ -175,7 +176,7 @@ def test_two_channels_count_back() -> None:
 @pytest.mark.sampled("pins")
 @pytest.mark.parametrize("pins", [{"left": 34, "right": 35}, {"left": 36, "right": 39}])
 def test_pins_that_only_read_count(pins: dict[str, int]) -> None:
-    """Such pins have no pull-up, but the sensor has its own."""
+    """Input-only pins have no pull-up, but the sensor has its own."""
     discs = SLOTTED.board.discs
     assert discs
     profile = SLOTTED._replace(

@@ -24,7 +24,7 @@ PAUSE_MS = AUTHORITY_MS // 2
 
 
 def pair(is_owned: bool) -> tuple[Esp32Robot, Session, Session]:
-    """Return a robot and two who may drive it."""
+    """Return a robot and two clients that may drive it."""
     if not is_owned:
         robot = boot()
         return robot, session(1, robot), session(2, robot)
@@ -76,7 +76,7 @@ SHOWS = "SI|F(0.1, 80);LOOP(FOREVER);SHOW(7);W(0.5);END_LOOP"
 def test_what_runs_alone_is_anybodys_when_its_client_is_not_heard(
     starts: str, is_owned: bool
 ) -> None:
-    """Its values go to who listens, and he may take the wheel."""
+    """Its values go to the listener, which may take over."""
     robot, page, other = pair(is_owned)
     ends: Ends = [(None, page), (LowEnergy(robot), other)]
     upload = page.upload(image_of(SHOWS), saves=False, is_detached=True)

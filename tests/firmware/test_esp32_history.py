@@ -1,8 +1,8 @@
-"""An ESP32 whose clients have come, asked for anything and gone is as one just switched on.
+"""Whatever its clients have done, an ESP32 without clients is like one just switched on.
 
-Owners, strangers and people connect over any of its transports, two at once, ask and type and
-leave in the middle of it. Then all are gone, and a twin with the same memory is switched on: from
-here on whoever comes gets the same from both.
+Owners, strangers and people connect over any of its transports, two at once, ask and type and leave
+in the middle of it. Then all have left, and a twin with the same memory is switched on: from here
+on, every client gets the same from both.
 
 `python -m tests.firmware.test_esp32_history 200` tries more.
 """
@@ -74,7 +74,7 @@ class Guest(NamedTuple):
 
 
 class Scene:
-    """A robot, and all who are connected."""
+    """A robot, and all connected clients."""
 
     def __init__(self, kept_memory: Kept) -> None:
         self.robot = Esp32Robot(kept_memory=kept_memory)
@@ -122,8 +122,8 @@ WHO = (*WITHOUT_THIEF, "thief")
 def a_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
     """Somebody comes, goes, asks or types.
 
-    Where the twin comes soon, nobody asks for what goes on without him, nor over the cable: that he
-    has gone nobody sees there.
+    If the twin arrives soon, no step asks for anything that continues without a client, nor uses
+    the cable, where nobody notices that a client has left.
     """
     what = rng.randrange(8)
     if what == 0 or not scene.guests:

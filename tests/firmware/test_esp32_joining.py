@@ -70,7 +70,7 @@ def test_a_network_that_sends_the_robot_away_is_joined_again() -> None:
 
 
 def test_nothing_but_the_link_is_on_the_cable() -> None:
-    """Espressif's libraries tell their errors there, in the middle of a frame."""
+    """Espressif's libraries print their errors there, in the middle of a frame."""
     robot = boot()
     robot.radio("L")
     assert robot.wait(50) == b""

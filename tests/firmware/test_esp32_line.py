@@ -1,6 +1,7 @@
 """A bad line to a robot with an ESP32: a line that stays low stops it, as on an Uno.
 
-Of a break, however long, the UART of this chip makes one byte 0, and its driver tells it once.
+For a break of any length, the UART of this chip delivers one byte 0, and its driver reports it
+once.
 """
 
 from __future__ import annotations
@@ -119,7 +120,7 @@ def test_each_byte_with_a_framing_error_counts_as_soon_as_the_first_one(pause_ms
 
 @pytest.mark.parametrize("bytes_before", [b"", b"F(60, ", b"F(60, 80"])
 def test_a_line_with_a_framing_error_in_it_does_nothing(bytes_before: bytes) -> None:
-    """Wherever it is in it, and however late the driver hands the byte over."""
+    """This holds for an error at any place, and however late the driver delivers the byte."""
     for late_ms in (0, 1, 5, FIFO_MS - 2):
         robot = boot()
         robot.step(bytes_before)

@@ -1,4 +1,4 @@
-"""The actions or omissions of one client cost the next client of its slot nothing."""
+"""The behaviour of one client never affects the next client of its slot."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def test_what_two_clients_say_is_no_stop_of_both(make: Make, pause_ms: int) -> N
     assert actions_of(robot)[-1] == "MOTORS 0 0", "of one it is a stop"
 
 
-# -- what is sent to them -----------------------------------------------------------------------
+# -- data sent to them ----------------------------------------------------------------------------
 
 STATUS, ASKED_PING = BY_NAME["STATUS"].number, 77
 
@@ -161,7 +161,7 @@ STATUS, ASKED_PING = BY_NAME["STATUS"].number, 77
 @pytest.mark.parametrize("most", [0, 1, 7, 30, 1000])
 @pytest.mark.parametrize("requests", [1, 5, 60])
 def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, requests: int) -> None:
-    """Over a network that takes a few bytes at a time, whenever the one before leaves."""
+    """The network accepts a few bytes at a time, and the client before may leave at any moment."""
     robot, end, _ = far_owner(Keys())
     end.leave()
     frames = b"".join(encode_frame(Frame(STATUS, seq, 0)) for seq in range(requests))
@@ -184,7 +184,7 @@ def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, reques
 
 
 def test_the_next_client_gets_no_more_at_once_than_it_has_agreed_to() -> None:
-    """Whatever the one before has: who agrees to nothing gets 20 bytes."""
+    """The agreement of the client before does not matter: a client without one gets 20 bytes."""
     robot, _ = make_owned_robot(Keys())
     for mtu in (LEAST_MTU, 247, LEAST_MTU, 100, 60, 247, LEAST_MTU):
         end, who = LowEnergy(robot, mtu), session(mtu, robot)
@@ -221,7 +221,7 @@ def test_the_next_client_hears_its_own_answers_once_it_has_subscribed() -> None:
             assert [answer and answer.seq for answer in answers] == [number, ASKED_PING]
 
 
-# -- who is silent ------------------------------------------------------------------------------
+# -- silent clients -----------------------------------------------------------------------------
 
 
 PLACE_MS = 10_000  # kPlaceMs of radio.h
@@ -229,7 +229,7 @@ PLACE_MS = 10_000  # kPlaceMs of radio.h
 
 @drawn
 def test_a_silent_phone_keeps_nobody_off_bluetooth() -> None:
-    """Not for longer than ten seconds, and if nobody comes, not at all."""
+    """It keeps its place for ten seconds at most once somebody else comes."""
     robot, _ = make_owned_robot(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
     phone, first = LowEnergy(robot), remote(robot, keys, 2)
@@ -301,7 +301,7 @@ def has_client(robot: Esp32Robot) -> bool:
 
 @drawn
 def test_a_silent_phone_keeps_nobody_off_the_serial_port() -> None:
-    """The core sends each further one away: the next try of who was sent away gets the place."""
+    """The core rejects each further one: the next try of a rejected one gets the place."""
     robot, _ = make_owned_robot(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
     phone, first = SerialPort(robot), remote(robot, keys, 2)

@@ -1,4 +1,4 @@
-"""Whom an ESP32 tells what its programs read, where several clients want to know it."""
+"""The recipients of an ESP32's readings, if several clients request them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def readings(client: Session) -> list[ReadingEvent]:
 
 @pytest.mark.parametrize("then", ["stays", "asks again", "leaves", "comes anew"])
 def test_who_drives_has_all_readings_whatever_another_one_does(then: str) -> None:
-    """The other client gets none: readings go where values go."""
+    """The other client gets none: readings go to the same client as values."""
     robot = boot()
     driver, other = session(1, robot), session(2, robot)
     end = LowEnergy(robot)

@@ -23,9 +23,9 @@ CONNECT, SUBSCRIBE, PING, PUBLISH = 0x10, 0x80, 0xC0, 0x30
 
 
 class StrictBroker:
-    """A broker that lets everybody in, and answers what they subscribe to with these bytes.
+    """A broker that admits everyone, and answers subscriptions with these bytes.
 
-    Before that it sends what `early` has.
+    Before that, it sends the bytes `early`.
     """
 
     def __init__(self, granted_bytes: bytes = b"\0\0", early: bytes = b"") -> None:
@@ -116,7 +116,7 @@ def test_an_answer_to_something_else_is_none(
 
 
 def test_a_stop_before_the_answer_is_a_stop(brokers: list[StrictBroker]) -> None:
-    """A broker may send messages before it has confirmed what was subscribed to."""
+    """A broker may send messages before it has confirmed a subscription."""
     topic = b"tiniscript/aula/stop"
     stop = bytes([PUBLISH, 2 + len(topic) + STOP_BYTES, 0, len(topic)]) + topic + bytes(STOP_BYTES)
     robot, owner = using(broker := StrictBroker(early=stop), brokers)

@@ -93,7 +93,7 @@ right_backward = 33
 
 
 def wire_robot(motors: str, more: str = MORE) -> Esp32Robot:
-    """Return a robot whose motors are wired so, with one device of every driver."""
+    """Return a robot with these motors, and one device of every driver."""
     text = TEXTS["tinibot32"].partition("# ---- Its body")
     head = re.sub(r"\[board\.motors\].*?(?=\n\[board\.sensors)", motors, text[0], flags=re.S)
     kit = re.sub(r"(?m)^\[board\]", more.partition("[board")[0] + "[board]", head)
@@ -119,7 +119,7 @@ def run(robot: Esp32Robot, text: str) -> Session:
 
 
 def run_and_list_values(robot: Esp32Robot, text: str) -> list[int]:
-    """Run a program; return what it shows in half a second."""
+    """Run a program; return the values that it shows in half a second."""
     session = run(robot, text)
     robot.talk(session, 500)
     return [event.value for event in session.events() if event.name == "SHOW"]
@@ -177,7 +177,7 @@ def test_a_window_of_large_frames_waits_for_a_main_loop_that_writes() -> None:
     session = Session(1, 115200, robot.robot.kit.fingerprint)
     robot.until(session, session.hello())
     assert session.robot
-    frame = encode_frame(Frame(2, 9, 0, bytes(242)))  # a PING that is too long does nothing
+    frame = encode_frame(Frame(2, 9, 0, bytes(242)))  # a PING that is too long has no effect
     window = session.robot.values.window
     robot.step(b"\0" + frame * window)
     robot.wait(50)
@@ -218,7 +218,7 @@ def test_a_stop_needs_nothing_of_ledc(name: str) -> None:
 
 
 def test_a_bluetooth_module_that_nobody_is_connected_to_ends_an_attached_run() -> None:
-    """Its state pin tells that, beside the chip's own radios."""
+    """Its state pin shows that, in addition to the chip's own radios."""
     state = 22
     text = TEXTS["tinibot32"].replace("[board]\n", f"[board]\nbluetooth_state = {state}\n")
     robot = Esp32Robot(read(text, "mine"))
@@ -333,7 +333,7 @@ def test_a_full_nvs_is_said_and_the_program_before_stays(room: int) -> None:
     assert push_button(restarted_robot, 600)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
 
 
-# -- what goes wrong
+# -- failures
 
 
 def driving(text: str = AWAY) -> Esp32Robot:
@@ -371,7 +371,7 @@ def test_a_page_that_is_erased_slowly_is_no_stall() -> None:
     request = session.status()
     assert robot.until(session, request) == OK
     assert outcome(request).values.fault == 0
-    robot.hang(150)  # nothing is being written
+    robot.hang(150)  # no write is in progress
     assert robot.until(session, request := session.status()) == OK
     assert outcome(request).values.fault == STALL
 

@@ -112,7 +112,7 @@ def test_a_second_network_is_joined_as_a_first_one(first: str, second: str) -> N
 @pytest.mark.sampled("reason")
 @pytest.mark.parametrize("reason", [15, 202, 203, 204])
 def test_who_is_let_in_at_last_was_not_refused(reason: int) -> None:
-    """With a weak signal, the robot may have joined and wait for its address."""
+    """With a weak signal, the robot may have joined and be waiting for its address."""
     robot, owner = make_owned_robot(Keys())
     sent_away(reason, robot, SCHOOL)
     states_seen, _ = states(robot, owner, SCHOOL)
@@ -124,7 +124,7 @@ def test_who_is_let_in_at_last_was_not_refused(reason: int) -> None:
     assert state(robot, owner) == ("STATION", "READY")
 
 
-# -- what comes in parts ------------------------------------------------------------------------
+# -- data in parts ------------------------------------------------------------------------------
 
 
 ASKED: dict[str, Callable[[Session], PendingRequest[Any]]] = {
@@ -174,7 +174,7 @@ def test_of_what_came_in_part_nothing_is_in_what_comes_whole(last: str, seed: in
     assert kept_settings(robot) == fresh
 
 
-# -- what is damaged ----------------------------------------------------------------------------
+# -- damaged data -------------------------------------------------------------------------------
 
 
 def damage_entry(entry: bytes) -> Iterator[bytes]:
@@ -215,7 +215,7 @@ def test_damaged_settings_are_none(key: bytes) -> None:
 
 @pytest.mark.parametrize("what", ["joins", "forgets", "uses a broker", "uses none"])
 def test_no_setting_is_written_while_the_robot_drives(what: str) -> None:
-    """Writing stops the chip for a while: it waits until the robot stands."""
+    """Writing stops the chip for a while: it waits until the robot has stopped."""
     robot, owner = join_network(Keys())
     ends: Ends = [(None, owner)]
     if what == "uses none":

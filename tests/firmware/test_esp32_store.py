@@ -58,7 +58,7 @@ def program(store: Path = STORE) -> Path:
 def run(
     made_of: Path, seed: int, size: int, pages: int | None = None
 ) -> subprocess.CompletedProcess[str]:
-    """Run it; with `pages` of NVS nothing is cut, and programs are saved one after the other."""
+    """Run it; with `pages` of NVS there is no cut, and programs are saved one after the other."""
     words = [str(made_of), str(seed), str(size), *([] if pages is None else [str(pages)])]
     return subprocess.run(words, capture_output=True, text=True, check=False, timeout=300)
 

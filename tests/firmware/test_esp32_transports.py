@@ -120,7 +120,7 @@ SAID = {
 @pytest.mark.parametrize("driver", range(3))
 @pytest.mark.parametrize("how", ENDS)
 def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) -> None:
-    """Once, and what they ask for from then on is of the time after it."""
+    """Each is told once, and their later requests belong to the time after it."""
     text, name = ENDS[how]
     if (how, driver) == ("its client that leaves", 0):
         driver = 1  # a cable does not leave
@@ -154,7 +154,7 @@ def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) ->
 
 
 def say(robot: Esp32Robot, end: tuple[End | None, Client], data: bytes) -> None:
-    """Send data of a client beside its session."""
+    """Send data of a client outside its session."""
     if end[0] is None:
         end[1].receive(robot.step(data), robot.now_ms)
     else:
@@ -179,7 +179,7 @@ def test_the_next_one_drives_when_the_first_is_silent() -> None:
 
 
 def test_who_drives_keeps_the_robot_while_it_asks_something_in_time() -> None:
-    """Between short runs, too, and for longer than one silence may last."""
+    """This holds between short runs, too, and for longer than the longest allowed silence."""
     robot = boot()
     first, second = session(1, robot), session(2, robot)
     ends: Ends = [(None, first), (LowEnergy(robot), second)]
@@ -298,7 +298,7 @@ def test_what_a_congested_stack_does_not_take_comes_later() -> None:
 
 
 def test_a_client_that_takes_nothing_stops_nobody() -> None:
-    """The ring to it is full: its own replies wait, and the robot goes on."""
+    """The ring to it is full: its own replies wait, and the robot continues."""
     robot = boot()
     driver, deaf = session(1, robot), session(2, robot)
     end = LowEnergy(robot)
@@ -348,7 +348,8 @@ def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
-    """An app may end none after one that does: it runs after three seconds all the same."""
+    """An app that ends no lines may follow one that does: its line runs after three seconds all the
+    same."""
     robot = boot()
     end, typed_bytes = make(robot), Bytes(b"SHOW(1)\n")
     talk(robot, [(end, typed_bytes)], 100)
@@ -408,7 +409,7 @@ def test_the_button_of_two_who_claim_is_nobodys() -> None:
     talk(robot, ends, 2300, flags=1)
     talk(robot, ends, 500, flags=2)
     assert [claim.outcome for claim in claims] == [None, None]
-    talk(robot, ends[:1], AUTHORITY_MS + 100)  # the second one has gone
+    talk(robot, ends[:1], AUTHORITY_MS + 100)  # the second one has left
     talk(robot, ends[:1], 2300, flags=1)
     talk(robot, ends[:1], 500, flags=2)
     assert claims[0].outcome and claims[0].outcome.status == 0
@@ -519,7 +520,7 @@ def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: byt
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_lines_wait_while_what_they_are_answered_is_not_taken(make: Make) -> None:
-    """Each has an answer, which a client takes late; the lines before it are lost neither."""
+    """Each has an answer, which a client reads late; earlier lines are not lost either."""
     robot = boot()
     end, who = make(robot), Bytes()
     if isinstance(end, LowEnergy):

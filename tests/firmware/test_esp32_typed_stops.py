@@ -42,7 +42,7 @@ def stands(robot: Esp32Robot) -> bool:
 
 
 def stops(robot: Esp32Robot, end: End | None, ends: Ends, data: bytes, what: str) -> None:
-    """Send bytes that end with a stop. Nothing drives from then on."""
+    """Send bytes that end with a stop. From then on, the robot does not drive."""
     typed: Ends = [*ends, (end, Bytes(data))]
     talk(robot, typed, LATE_MS)
     if not stands(robot):
@@ -83,7 +83,7 @@ def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
     robot, owner = join_network(Keys())
     end = Network(robot)
     end.send(word)
-    talk(robot, [(None, owner)], SILENCE_MS + 100)  # nothing runs
+    talk(robot, [(None, owner)], SILENCE_MS + 100)  # no program runs
     ends = drives(robot, owner)
     talk(robot, ends, SILENCE_MS + 100)
     assert not stands(robot)
@@ -105,7 +105,7 @@ def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
 
 @pytest.mark.parametrize("words", [[b"SSS"], [b"S", b"s", b"S"], [b"STOP ", b"STOP"]])
 def test_a_stranger_who_sends_no_line_end_stops(words: list[bytes]) -> None:
-    """A request has none of these before its target; and it lets nobody in."""
+    """A request has no line end before its target, and the stop admits no one."""
     robot, owner = join_network(Keys())
     ends = drives(robot, owner)
     end = Network(robot)
@@ -141,7 +141,8 @@ def test_who_comes_next_begins_a_line(make: Make) -> None:
 @pytest.mark.parametrize("make", RADIOS)
 @pytest.mark.parametrize("stop", [b"S\n", b" stop ;\r", bytes(4), b"Stop.\n", b"SSS", b"\0S\0"])
 def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
-    """Wherever the ring ends in it, and where the robot reads before the rest comes."""
+    """This holds wherever the ring ends within it, and if the robot reads before the rest
+    arrives."""
     robot = boot()
     driver, end = session(1, robot), make(robot)
     line = b"F(1,80)\n"
@@ -158,7 +159,7 @@ def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_what_is_lost_stops_nobody(make: Make) -> None:
-    """Nor does a frame with a line S in it that arrives whole, after what was lost."""
+    """Nor does a frame that contains a line S and arrives whole after the lost bytes."""
     robot = boot()
     driver, end = session(1, robot), make(robot)
     ends = drives(robot, driver)
@@ -197,7 +198,7 @@ def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
         robot.wait(1)
         assert stands(robot), (bytes_before[-20:], stop)
         talk(robot, [*ends, (end, who)], 500)
-        talk(robot, [(end, who)], 3000)  # the driver has gone
+        talk(robot, [(end, who)], 3000)  # the driver has left
         assert stands(robot), (bytes_before[-20:], stop)
         who.to_send = b"\r\nSI|F(0.1,33)\n"
         talk(robot, [(end, who)], 1500)
@@ -208,7 +209,7 @@ def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_a_stop_in_an_open_block_that_waits_is_a_line_of_it(make: Make) -> None:
-    """As over a cable, it ends the running program at once, and is part of the line."""
+    """As over a cable, it ends the running program at once and also becomes part of the line."""
     robot = boot()
     end, who = make(robot), Bytes()
     talk(robot, [(end, Bytes(b"SI|F(60, 80)\n"))], 100)
@@ -261,7 +262,8 @@ def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_a_stop_of_a_client_that_leaves_keeps_nobody_from_driving(make: Make) -> None:
-    """However much waits before it, of whichever of two clients it is, and whenever they go."""
+    """This holds for any amount of waiting data, either of two clients, and any time of their
+    leaving."""
     robot = boot()
     rng = random.Random(make.__name__)
     for number in range(30):

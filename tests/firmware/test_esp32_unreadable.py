@@ -1,4 +1,4 @@
-"""An ESP32 whose NVS cannot be read: it does not know whose it is, so nobody drives it."""
+"""An ESP32 whose NVS cannot be read: it does not know its owner, so no one can drive it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The WiFi of an ESP32: who sets it, who drives over it, and what else connects there."""
+"""The WiFi of an ESP32: who sets it, who drives over it, and other clients that connect."""
 
 from __future__ import annotations
 
@@ -106,7 +106,8 @@ def overheard(
 
 
 def test_the_password_is_not_readable_on_the_line() -> None:
-    """Not the password: who listens to Bluetooth LE hears all bytes. The replies have the name."""
+    """The password is not shown: anyone who listens to Bluetooth LE receives all bytes. The replies
+    have the name."""
     keys = Keys()
     robot, _ = make_owned_robot(keys)
     talk(robot, [], 2500)

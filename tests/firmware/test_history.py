@@ -1,9 +1,9 @@
-"""The history of a robot affects nothing but its stored data.
+"""The history of a robot affects only its stored data.
 
 Computers and people do anything with a robot: they ask for everything, give up in the middle of it,
 type lines and parts of lines, push the button, pull the cable. Then it is stopped, and its twin is
-switched on: a robot with the same memory. From here on both do the same, whatever is asked of them
-and whatever their clocks say.
+switched on: a robot with the same memory. From here on, both behave identically, whatever the
+requests and whatever their clocks show.
 
 `python -m tests.firmware.test_history 2000` tries more.
 """
@@ -62,7 +62,7 @@ def sensible(rng: random.Random) -> str:
     )
 
 
-# -- what can be asked and typed ----------------------------------------------------------------
+# -- requests and typed text --------------------------------------------------------------------
 
 # Steps that leave the robot's memory unchanged.
 ASKS: dict[str, Asks] = {
@@ -112,7 +112,7 @@ LINES = (
 )  # fmt: skip
 ENDS = ("\n", "\n", "\r\n", "")
 TEXT = tuple(piece for piece in PIECES if b"\0" not in piece)
-# After these another line with its SETUP word is read at once, as it would be alone.
+# After these, another line with its SETUP word is read at once, as usual.
 HARMLESS = (b" ", b"\t", b";", b"\xef\xbb\xbf", b"AT", b"AT+NAMEx", b"OK+CONN", b"+CONNECTED", b"F",
             b"x", b"1", b"// note", b"~1234ABCD", b"\x1b[A", b"\x1b", b"\x7f", b"\xff",
             b"\xc3", b"x" * 300, b"FOO(1)", b"SI|FOO()", b"SI|F(1,500)", b"SB|9",
@@ -157,7 +157,7 @@ class Scene:
         return self.session
 
     def note(self, what: str, begun_ms: int, data: bytes = b"") -> None:
-        """Note what a step has brought; times count from its beginning."""
+        """Record the results of a step; times count from its beginning."""
         self.has_faulted |= any(line.endswith("FAULTED") for line in self.robot.did)
         rows = (line.split(" ", 1) for line in self.robot.did)
         self.observed.append((what, [(int(ms) - begun_ms, event) for ms, event in rows]))
@@ -200,7 +200,7 @@ class Scene:
         self.note("a press", begun_ms)
 
 
-# -- what comes before --------------------------------------------------------------------------
+# -- before -------------------------------------------------------------------------------------
 
 
 def a_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
@@ -213,7 +213,7 @@ def a_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
 
 
 def half_a_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
-    """The line breaks in a frame, mostly near to its end; somebody else goes on."""
+    """The line breaks within a frame, usually near its end; another client continues."""
     name = rng.choice([*asks])
     robot, session = scene.robot, scene.session
     asks[name](session, rng)
@@ -286,7 +286,7 @@ def the_rest(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
 
 
 def an_owner_s_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
-    """Somebody comes who has a key, a wrong one, or none."""
+    """A client connects with a key, a wrong one, or none."""
     scene.next_session(rng.choice(WHO))
     for _ in range(rng.choice((1, 1, 2, 4))):
         name = rng.choice([*asks])
@@ -353,7 +353,7 @@ def settle(scene: Scene, saves: bool, rng: random.Random) -> bytes:
     return memory
 
 
-# -- what comes after --------------------------------------------------------------------------
+# -- after --------------------------------------------------------------------------------------
 
 
 class Behind(NamedTuple):
@@ -404,7 +404,7 @@ def stop_both(scene: Scene, how: Behind) -> None:
     elif not scene.observed:
         robot.wait(300, b"//\n")
     if how.is_typed and how.stop not in (b"", TYPED_STOP) and how.wait_ms < FORGETS_MS:
-        robot.wait(1200, b"\n")  # tells the robot that lines end with \n
+        robot.wait(1200, b"\n")  # shows the robot that lines end with \n
     robot.did.clear()
     scene.observed.clear()
     scene.nonce = 1000
@@ -434,7 +434,7 @@ def all_seen(scene: Scene, how: Behind, rng: random.Random) -> list[object]:
 
 
 def in_the_end(scene: Scene, how: Behind) -> list[object]:
-    """Stop the robot; return who it says it is, and what it keeps."""
+    """Stop the robot; return its identity, and its stored data."""
     robot, session = scene.robot, scene.next_session()
     robot.supply(False)
     robot.wait(UNHEARD_MS, bytes(4))
@@ -450,7 +450,7 @@ def in_the_end(scene: Scene, how: Behind) -> list[object]:
 
 @lru_cache(maxsize=1)
 def new_memory() -> bytes:
-    """Return the memory of a robot that nobody has talked to."""
+    """Return the memory of an unused robot."""
     robot = HostFirmware(KIT)
     robot.wait(1000)
     return robot.memory()
@@ -501,7 +501,7 @@ def check(seed: int, kind: str, text_before: str) -> int:
     for one_scene in (scene, twin):
         stop_both(one_scene, how)
         states_of_both.append(all_seen(one_scene, how, random.Random(drawn_alike)))
-    # Where a cut program is still being saved, a request is asked again until that is over.
+    # If a cut program is still being saved, a request is repeated until that is over.
     assert are_alike(states_of_both[0], states_of_both[1], AGAIN_MS if how.is_cut else 0), (
         f"{history}\n{how}\n{first_difference(*states_of_both)}"
     )
@@ -509,7 +509,7 @@ def check(seed: int, kind: str, text_before: str) -> int:
 
 
 def are_alike(one: object, other: object, apart_ms: int) -> bool:
-    """Return whether both observations are the same, at times that differ by at most so much."""
+    """Return whether both observations are the same, at times that differ by at most this much."""
     if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
         if len(one) == len(other) == 2 and isinstance(one[0], int) and isinstance(one[1], str):
             is_near = isinstance(other[0], int) and abs(one[0] - other[0]) <= apart_ms

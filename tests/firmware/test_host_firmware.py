@@ -1,6 +1,7 @@
-"""The whole robot: what a computer, a button and a pulled plug make of its firmware.
+"""The whole robot: its firmware with a computer, a button and a pulled plug.
 
-What other files show as well is not here: stops and presses in every state, undo, text, faults.
+Behaviour that other files test is not tested here: stops and presses in every state, undo, text,
+faults.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from tiniscript.link.session import Session
 
 
 def driving(milliseconds: int) -> tuple[HostFirmware, Session]:
-    """Return a robot that has driven for so long, and goes on."""
+    """Return a robot that has driven for this long, and is still driving."""
     robot, session = switched_on(), computer()
     send(robot, session, AWAY)
     robot.talk(session, milliseconds)
@@ -50,7 +51,7 @@ def test_a_program_in_one_frame_drives_at_once() -> None:
 
 @pytest.mark.parametrize("more", ["", "\nTASK\nW(1); S\nEND_TASK"])
 def test_code_in_one_frame_is_the_program_that_was_compiled(more: str) -> None:
-    """Its image, which says what it needs, is made by the robot."""
+    """The robot makes its image, which lists its needs."""
     robot, session, image = switched_on(), computer(), image_of(f"SI|F(9, 80){more}")
     assert robot.complete(session, session.live(image.code)).program == image.checksum
 
@@ -130,7 +131,7 @@ def test_a_pulled_plug_leaves_one_program_or_the_other(seed: int) -> None:
 
 
 def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_program() -> None:
-    """The memory cannot be read while it is written: what it holds must not be forgotten then."""
+    """The memory cannot be read while it is written: its content must not count as lost then."""
     robot, session = holding()
     robot.talk(session, 500)
     request = session.live(image_of("SI|X = 0; SHOW(5 / X)").code)
@@ -189,7 +190,7 @@ def test_random_numbers_are_others_at_another_time(noise: int) -> None:
     assert len(values) >= 9, "every second millisecond has numbers of its own"
 
 
-# -- code that arrives while another one runs: it replaces that whole, or changes nothing ---------
+# -- code that arrives during a run: it replaces the program as a whole, or changes nothing ------
 
 
 RUNS = "SI|X = 3; W(0.02); X = 4; LOOP(FOREVER); F(0.2, 40); SHOW(X); END_LOOP"

@@ -1,7 +1,7 @@
 """A client that sends whole frames of any kind, length and order, text and zeros between them.
 
-Each of its requests is answered; what is stale does nothing; a program that the robot says it has
-is the one that was sent. Afterwards a stop stops it, and the next line is done.
+Each of its requests is answered; stale requests have no effect; a program that the robot reports is
+the one that was sent. Afterwards a stop stops it, and the next line is done.
 `python -m tests.firmware.test_hostile_client 1000` is a campaign.
 """
 
@@ -52,12 +52,12 @@ class Client:
         self.rng = random.Random(seed)
         self.robot = switched_on()
         self.heard = b""
-        self.frames_ms: int | None = None  # time of the last 0x00, if nothing was sent since
+        self.frames_ms: int | None = None  # time of the last 0x00, if no byte was sent since
         self.seq, self.epoch = self.rng.randrange(256), 0
         self.replies: list[Frame] = []
 
     def put(self, data: bytes, milliseconds: int = 3) -> None:
-        """Send bytes, and hear what the robot says in this time."""
+        """Send bytes, and receive the robot's output during this time."""
         if data:
             self.frames_ms = self.robot.now_ms if data.endswith(b"\0") else None
         self.receive(self.robot.wait(milliseconds, data))
@@ -94,7 +94,7 @@ class Client:
         nonce = self.rng.choice((5, self.rng.getrandbits(32))).to_bytes(4, "little")
         assert self.ask_by_name("HELLO", bytes((MAJOR, MINOR, 2, 0)) + kit + nonce)[0] == OK
 
-    # -- what it does ---------------------------------------------------------------------------
+    # -- its actions ------------------------------------------------------------------------------
 
     def request(self) -> None:
         """Any message, of a right or a wrong length, in any epoch."""
@@ -138,7 +138,8 @@ class Client:
             assert [reply.payload for reply in self.replies] == [first]
 
     def upload(self) -> None:
-        """A program in pieces; something comes between. What is confirmed is what was sent."""
+        """A program in pieces; something comes between. The confirmed bytes are those that were
+        sent."""
         rng = self.rng
         code = rng.choice((b"", b"\x58" * 388, b"\x58" * 389, b"\x58" * 390, b"\xff" * 9,
                            b"\x51\x01" * rng.randrange(1, 190)))  # fmt: skip

@@ -1,4 +1,4 @@
-"""Whose robot it is: claims, the teacher's key, forgetting, and what else a robot says."""
+"""The owner of a robot: claims, the teacher's key, forgetting, and other messages of a robot."""
 
 from __future__ import annotations
 
@@ -122,8 +122,8 @@ CLAIMS = ["nothing", "cut", "cut, later not", "held", "held and cut", "taken and
 @pytest.mark.parametrize("late_ms", [0, 40, 300, 700])
 @pytest.mark.parametrize("what", CLAIMS)
 def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None:
-    """However long answers take, and whatever comes of the press. A key that the robot may have
-    taken is kept: it is shown the next time."""
+    """However long answers take, and whatever the result of the press. A key that the robot may
+    have taken is kept: it is shown the next time."""
     table, keys = Owned(), Keys()
     session = table.session(keys)
     line = Late(table, session, late_ms)
@@ -277,7 +277,7 @@ def test_each_claim_has_a_press_of_its_own(first: int, second: int, by: str) -> 
 def test_a_press_for_who_has_gone_confirms_nobody_else(
     which: int, has_pressed: bool, silent_ms: int
 ) -> None:
-    """Nor does what he has asked for make the next press one of somebody else."""
+    """Nor does that client's request turn the next press into another client's."""
     table, keys = Owned(), Keys()
     first = table.session()
     assert table.outcome(first, first.hello()) == "OK"
@@ -373,7 +373,7 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_a_robot_is_held_back_from_a_teachers_stop_until_it_is_released(seed: int) -> None:
-    """This holds for any number of stops, and whoever stops, starts or presses in between."""
+    """This holds for any number of stops, and for any stops, starts and presses in between."""
     rng, table, pupil, teacher = Random(seed), Owned(), Keys(), Keys(90)
     table.claim_session(teacher, KEY_TEACHER)
     table.claim_session(pupil)
@@ -474,7 +474,7 @@ HELD_PROGRAMS = {"nothing": "", "a program for the button": "SB|F(1, 50)", "what
 
 @pytest.mark.parametrize("holds", HELD_PROGRAMS)
 def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds: str) -> None:
-    """Also while it still shows itself, or has just done so. Then its light says what it did."""
+    """Also while it still shows itself, or has just done so. Then its light shows the result."""
     table = Owned()
     robot, session = table.robot, table.session()
     assert table.outcome(session, session.hello()) == "OK"

@@ -1,4 +1,4 @@
-"""A robot writes its data only while its motors stand, with enough voltage, and never confirms a
+"""A robot writes its data only while its motors are off, with enough voltage, and never confirms a
 write before it is done.
 """
 
@@ -151,7 +151,8 @@ def test_a_trim_is_ok_when_it_is_kept() -> None:
 
 
 def test_a_plug_pulled_while_a_pace_is_kept_leaves_a_whole_one() -> None:
-    """The old or the new one, whatever the trim beside it is; both are new once it has said OK."""
+    """It is the old or the new one, whatever the trim next to it; both are new once the robot has
+    answered OK."""
     robot, session = switched_on(), computer()
     trim_before = Trim(balance=3, least=7, pace=Pace(9, 19, 80, 170))
     trim_after = Trim(balance=5, least=7, pace=Pace(11, 30, 70, 260))
@@ -203,7 +204,7 @@ KEPT: dict[str, tuple[Callable[[Session], PendingRequest[Any]], Callable[[HostFi
 
 @pytest.mark.parametrize("what", KEPT)
 def test_what_could_not_be_kept_is_kept_when_it_is_asked_for_again(what: str) -> None:
-    """The memory accepts nothing for a while, as if the supply failed in each write. The first
+    """The memory accepts no writes for a while, as if the supply failed in each write. The first
     answer afterwards may still be about the last time.
     """
     robot, session = holding()
@@ -287,7 +288,8 @@ def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
 @pytest.mark.sampled("seed", keep=12)
 @pytest.mark.parametrize("seed", range(30))
 def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) -> None:
-    """Uploads come at any moment of a save, and whatever is there when the power goes is whole."""
+    """Uploads arrive at any moment of a save, and the program in memory at a power loss is always
+    whole."""
     chance = Random(seed)
     robot, session = holding()
     programs, kept = (
@@ -315,7 +317,7 @@ def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) ->
 
 
 def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
-    """Repairs after a cut need enough voltage; until then nothing is known."""
+    """Repairs after a cut need enough voltage; until then, the result is unknown."""
     robot, session = holding()
     memory = bytearray(robot.memory())
     assert memory[FIRST] == 0

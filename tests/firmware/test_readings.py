@@ -1,6 +1,6 @@
 """Readings of a program are reported to a computer, without a change of its pins' times.
 
-A whole robot on this computer, whose line takes as long for a byte as one of 9600 baud.
+A whole robot on this computer, with the byte time of a line of 9600 baud.
 """
 
 from __future__ import annotations

@@ -37,7 +37,8 @@ CHANGES_MS = 25  # between two changes of the light
 LIGHT = ("A0", "A1")
 TOGETHER_MS = 0.05  # pins of one setting
 MOST_APART_MS = 1.5  # one byte, and the main loop's delay until it looks
-# When a run begins beside the computer's PINGs. It may be all that parts two runs without readings.
+# The times at which a run begins while the computer sends PINGs. It may be all that parts two runs
+# without readings.
 BEGINS_MS = (0, 70, 130, 17, 41, 93, 113, 150, 171, 199)
 
 
@@ -79,7 +80,8 @@ def steady_programs(first: int) -> Iterator[tuple[int, str]]:
 
 
 def compare(text: str, uno: Uno) -> int:
-    """Run a program with readings: it does what it may do without. Return how many were told."""
+    """Run a program with readings: it behaves as without them. Return the number of reported
+    readings."""
     image = image_of(text, KIT)
     did, told_count = run_image(image, uno, True, 0)
     nearest_ms = inf

@@ -1,7 +1,7 @@
-"""The robot's messages from a stop, a fault or an end until it stands, and afterwards.
+"""The robot's messages from a stop, a fault or an end until it is at rest, and afterwards.
 
 A client sends random requests, one after the other, on a quick line or a slow one; programs show
-values, end, fail and go on; at any moment something stops the robot. Of all that it says:
+values, end, fail and continue; at any moment, the robot may be stopped. Laws of its messages:
 
 - Each request that has arrived whole gets one reply, and nothing else does.
 - A stop is told once, with the cause that stopped the robot; again where it is stopped again.
@@ -76,7 +76,7 @@ class Run:
 
 @dataclass
 class Stop:
-    """`must`: it is to be told, also if the robot stood already."""
+    """`must`: it must be reported, even if the robot was stopped already."""
 
     at_ms: int
     must: bool
@@ -92,7 +92,7 @@ class Client:
         self.robot.wait(300)
         self.pace(rng.choice(PACES))
         self.heard = b""
-        self.sent_ms = -ZERO_MS  # the last frame, and nothing since
+        self.sent_ms = -ZERO_MS  # the last frame; none was sent since
         self.asked_ms = 0
         self.seq = 0
         self.epoch = 0
@@ -113,7 +113,7 @@ class Client:
         self.ticks = ticks
         self.robot.pace(ticks)
 
-    # -- what is heard ----------------------------------------------------------------------------
+    # -- received ---------------------------------------------------------------------------------
 
     def passes(self, milliseconds: int, data: bytes = b"", flags: int = 0, cause: int = 0) -> None:
         """Let time pass, with received bytes or another stop at its beginning."""
@@ -133,7 +133,7 @@ class Client:
             self.receive(sent_bytes)
 
     def note_stop(self, cause: int) -> None:
-        """Note a stop; a robot that already stands repeats STOPPED, but not too often."""
+        """Record a stop; a robot that is already stopped repeats STOPPED, but not too often."""
         now_ms = self.robot.now_ms
         passed_ms = now_ms - self.confirmed_ms
         must = not self.causes or passed_ms > AGAIN_MS + 2
@@ -146,7 +146,7 @@ class Client:
         self.log.append((now_ms, "stop", cause))
 
     def note_runs(self) -> bool:
-        """Note what has begun and ended; no program is done in its first millisecond.
+        """Record the runs that have begun and ended; no program ends in its first millisecond.
 
         Return whether one has ended by itself.
         """
@@ -174,7 +174,7 @@ class Client:
         programs.clear()
 
     def stood_until(self, now_ms: int) -> None:
-        """Forget who has stopped it before: it was not stopped any more."""
+        """Forget the cause of the last stop: the robot is no longer stopped."""
         self.causes = [row for row in self.causes if row[0] >= now_ms - 1]
         if self.causes:
             self.cause = self.causes[0][1]
@@ -248,7 +248,7 @@ class Client:
         for run in self.runs:
             run.is_over |= run.is_ended and run.ended == 0
 
-    # -- what is done -----------------------------------------------------------------------------
+    # -- actions -----------------------------------------------------------------------------------
 
     def hello(self) -> bytes:
         kit = KIT.fingerprint.to_bytes(2, "little")
@@ -284,7 +284,8 @@ class Client:
     def ask(
         self, number: int, payload: bytes = b"", bytes_after: bytes = b"", cause: int = 0
     ) -> None:
-        """Send a request; a stop may follow at once. What has another epoch is done by none."""
+        """Send a request; a stop may follow at once. No robot acts on a frame with another
+        epoch."""
         now_ms = self.robot.now_ms
         zero = b"\0" if number == HELLO or now_ms - self.sent_ms >= ZERO_MS else b""
         self.seq = (self.seq + 1) % 256

@@ -1,4 +1,4 @@
-"""A whole robot with an owner, and who hears all that its owner says: nothing of that opens it.
+"""A whole robot with an owner, and an eavesdropper: no recorded frame opens it.
 
 `python -m tests.firmware.test_sealed_robot 100000` sends as many frames.
 """
@@ -107,7 +107,7 @@ def test_an_answer_is_told_again_to_nobody_else() -> None:
 
 
 def test_a_stranger_keeps_no_program_running() -> None:
-    """The owner is gone, and somebody else pings: or opens a session and pings."""
+    """The owner is gone, and another client pings, or opens a session and pings."""
     ping, hello = BY_NAME["PING"].number, BY_NAME["HELLO"].number
     for is_greeting in (False, True):
         table, session, _ = open_sealed_session()
@@ -124,7 +124,8 @@ def test_a_stranger_keeps_no_program_running() -> None:
 
 
 def test_a_relay_cannot_say_that_it_worked() -> None:
-    """Nothing reaches the robot, and its answers are forged in all ways without the key."""
+    """No frame reaches the robot, and its answers are forged in every way that works without the
+    key."""
     chance = random.Random(1)
     table, session, _ = open_sealed_session()
     sent_bytes, replies = upload_and_capture(table, session, SHORT)
@@ -180,8 +181,8 @@ def refused_by_a_stranger(table: Owned, session: Session, is_cut: bool) -> Reply
 @pytest.mark.parametrize("is_cut", [False, True])
 @pytest.mark.parametrize("is_pending", [False, True])
 def test_no_refusal_of_a_stranger_takes_a_key(is_pending: bool, is_cut: bool) -> None:
-    """A refusal has no seal: the robot's own answer, which has one, is waited for. Whoever cuts the
-    line may refuse a key forever; without that it opens the robot again."""
+    """A refusal has no seal: the robot's own answer, which has one, is waited for. An attacker who
+    cuts the line may refuse a key forever; without that, the robot opens again."""
     table, _, keys = open_sealed_session()
     keys.stored_keys = [robot_key._replace(is_pending=is_pending) for robot_key in keys.stored_keys]
     session = table.session(keys, nonce=8)
@@ -230,7 +231,7 @@ def test_a_stop_whose_seal_is_wrong_stops_all_the_same(payload: bytes) -> None:
 
 
 def test_a_teachers_stop_needs_the_teachers_seal() -> None:
-    """A STOP written into the teacher's line has no authority: the owner's program goes on."""
+    """A STOP written into the teacher's line has no authority: the owner's program continues."""
     table, pupil, teacher = Owned(), Keys(), Keys(90)
     table.claim_session(teacher, KEY_TEACHER)
     table.claim_session(pupil)
@@ -287,7 +288,7 @@ def spend_number(table: Owned, session: Session) -> None:
 def test_a_seal_that_is_lost_at_any_moment_of_an_upload_costs_no_piece_of_it(
     pieces: int, loses: Callable[[Owned, Session], None]
 ) -> None:
-    """Nor time: no piece that was under way is waited for."""
+    """It costs no time either: the computer waits for no piece that was under way."""
     image = image_of("SI|" + PIECES[pieces])
     table, session, _ = open_sealed_session()
     begun_ms = table.robot.now_ms
@@ -305,7 +306,7 @@ def test_a_seal_that_is_lost_at_any_moment_of_an_upload_costs_no_piece_of_it(
 
 
 def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
-    """Whatever is asked first, also what needs no HELLO."""
+    """This holds whatever the first request is, including one that needs no HELLO."""
     table, session, _ = open_sealed_session()
     later = Owned(table.robot.memory(), seed=7)
     later.robot.now_ms = table.robot.now_ms
@@ -348,8 +349,8 @@ def test_frames_of_the_wire_open_nothing(frames: int = 2500) -> None:
 
 
 def attack(frames: int, seed: int) -> Counter[str]:
-    """Send frames of a thief into the line of an owner, in its session, whose seal lives; return
-    how many of each kind, how many were accepted, and how many stops were tried and obeyed.
+    """Send a thief's frames into an owner's line, during its sealed session; return how many of
+    each kind there were, how many were accepted, and how many stops were tried and obeyed.
     """
     chance = random.Random(seed)
     table, session, _keys = open_sealed_session()

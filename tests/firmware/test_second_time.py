@@ -2,9 +2,9 @@
 
 A random program is stopped, ends, loses its computer or is written over at a random moment, while
 somebody holds the button or a wheel, or the supply is low; then comes another, the same way or
-another, from the same computer or the next. All that can be seen of that one, motors, devices and
-what the computer hears, is what a robot does that was switched on for it. After a stop nothing
-starts before it.
+another, from the same computer or the next. Its visible effects, on motors, devices and messages to
+the computer, are those of a robot switched on for this action. After a stop, no program starts
+before it.
 
 `python -m tests.firmware.test_second_time 2000` tries more.
 """
@@ -61,7 +61,7 @@ class Scene:
         self.robot.wait(300)
         self.session = computer()
         self.count = 1
-        self.before: int | None = None  # the run whose end is no news of the second one
+        self.before: int | None = None  # the run whose end is not reported during the second one
 
     def next_computer(self) -> None:
         self.count += 1
@@ -79,7 +79,7 @@ KINDS: dict[str, Callable[[], HostFirmware]] = {
 
 
 READS, KEPT = bytes((0x92,)), bytes((0x8A,))  # PUSH_READ_2 and PUSH_SENSOR_2
-UNREAD = MARK + "SHOW(DISTANCE);W(0.1)"  # nothing earlier in the image reads this sensor
+UNREAD = MARK + "SHOW(DISTANCE);W(0.1)"  # no earlier instruction in the image reads this sensor
 
 
 def image(text: str) -> Image:
@@ -104,7 +104,7 @@ def saves(scene: Scene, text: str) -> list[str]:
 
 
 def pushes(scene: Scene, text: str) -> list[str]:
-    """The button starts what has been sent."""
+    """The button starts the program that was sent."""
     scene.open_session()
     upload = scene.session.upload(image(text), runs=False, saves=False)
     assert scene.robot.until(scene.session, upload) == OK
@@ -157,10 +157,10 @@ ENDS: dict[str, Callable[[Scene], object]] = {
 }
 
 
-# After these the robot stands until the second program.
+# After these, the robot is stopped until the second program.
 STOPS = ("zeros", "a message", "a line", "its computer")
 
-# Actions beside the first program, and when they end: before the second, or during it.
+# Actions during the first program, and when they end: before the second program, or during it.
 BESIDE: dict[str, tuple[Callable[[HostFirmware], object], Callable[[HostFirmware], object]]] = {
     "nothing": (lambda robot: None, lambda robot: None),
     "the button is down": (lambda robot: robot.step(flags=1), lambda robot: robot.step(flags=2)),
@@ -175,7 +175,7 @@ def holds(robot: HostFirmware) -> None:
 
 
 def fills(robot: HostFirmware) -> None:
-    """The supply is as it should be: what waited for it is saved, where it delays no motor."""
+    """The supply is sufficient: waiting data is saved, if that delays no motor."""
     robot.supply(False)
     robot.wait(1500)
 
@@ -282,7 +282,8 @@ def without_the_first(heard_lines: list[str]) -> list[str]:
 
 
 def fitting(rng: random.Random, starts: str, kind: str) -> tuple[Story, list[str], list[str]]:
-    """Return a story whose second one this robot can begin, and what a fresh one does and says."""
+    """Return a story whose second part this robot can begin, and the actions and messages of a
+    fresh one."""
     for _ in range(20):
         tale = story(rng, starts, kind)
         want, wanted_words = run_second(Scene(kind), tale)
@@ -396,7 +397,7 @@ def with_discs() -> Scene:
 
 
 def ways(rng: random.Random, most: int) -> str:
-    """Return moves by centimetres and degrees, which do the same wherever discs stand."""
+    """Return moves by centimetres and degrees, which do the same at any position of the discs."""
     moves = [f"{rng.choice('FB')}({rng.choice((5, 12, 30, 60))} CM, {rng.choice((40, 60, 100))})"
              for _ in range(rng.randint(1, most))]  # fmt: skip
     moves.insert(rng.randrange(len(moves) + 1), f"R({rng.choice((45, 90))} DEG, 60)")
@@ -404,7 +405,7 @@ def ways(rng: random.Random, most: int) -> str:
 
 
 def quiet(rng: random.Random) -> str:
-    """Return a program that measures nothing."""
+    """Return a program without measurements."""
     return MARK + rng.choice(("W(2)", "S;W(1);SHOW(1)", "M(20, 20);W(0.3);M(0, 0)", "F(0.5, 50)"))
 
 

@@ -1,6 +1,7 @@
 """A robot that is stopped, and stopped again, while a button is down or not, and in every state.
 
-The states are those of the button: what the robot holds is still there, and its button starts it.
+The states are those of the button tests: the robot still holds its program, and its button starts
+it.
 """
 
 from __future__ import annotations
@@ -105,7 +106,7 @@ def test_a_push_that_stops_starts_nothing_and_the_next_one_does_after_a_stop() -
 
 @pytest.mark.parametrize("how", ["zeros", "STOP"])
 def test_a_stop_works_every_time(how: str) -> None:
-    """Stop, button, stop, button: the sender repeats the stop as if no answer came back."""
+    """Stop, button, stop, button: the sender repeats the stop as if no answer had arrived."""
     robot, session = switched_on(), computer()
     waiting(robot, session)
     stop = bytes(8) if how == "zeros" else b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 7, 0))
@@ -146,8 +147,8 @@ WAYS: dict[str, Callable[[HostFirmware], bytes]] = {
     "a message and zeros": lambda robot: robot.wait(3, STOP_MESSAGE) + robot.step(ZEROS),
     "a line": lambda robot: robot.wait(3, b"\0S\n"),
 }
-# The push that follows means nothing if the button is down from the reset on; in an open block
-# a line S belongs to the program.
+# The following press has no effect if the button is down since the reset; in an open block, a line
+# S belongs to the program.
 NOT_HERE = (("was reset with the button down", None), ("has an open block of text", "a line"))
 PAIRS = [
     (state, way)

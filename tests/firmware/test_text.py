@@ -1,6 +1,7 @@
-"""The whole robot with lines of text: those that start, stop, or change nothing.
+"""The whole robot with lines of text that start it, stop it, or have no effect.
 
-How much text it takes, in which pieces, and that no part of a program is run alone.
+The amount of text that it accepts, in which pieces, and that it never runs a part of a program
+alone.
 
 `python -m tests.firmware.test_text 1000` throws so many times anything at a robot.
 """
@@ -214,7 +215,7 @@ def test_backspace_edits_what_is_typed() -> None:
 @pytest.mark.parametrize("begun_text", ["\x1b", "\x1b[", "\x1bO", "\x1b[1", "\x1b[1;", "\x1b[1;5"])
 @pytest.mark.parametrize("stop", ["S", "STOP", "s;", "ALTO"])
 def test_after_a_second_nothing_belongs_to_a_key_that_has_begun(begun_text: str, stop: str) -> None:
-    """A terminal has sent a part of a cursor key; who then stops the robot is heard."""
+    """A terminal has sent a part of a cursor key; a stop typed then is obeyed."""
     robot = switched_on()
     assert type_text(robot, "F(60, 80)\n", 100) == ["// OK"]
     type_text(robot, begun_text, 1100)
@@ -263,7 +264,7 @@ def test_a_line_moves_and_its_end_is_told() -> None:
     "abcdefghijklmnopqrst", "9" * 300,
 ])  # fmt: skip
 def test_a_wrong_line_changes_nothing(line: str) -> None:
-    """The running program goes on, and one in memory stays there; a second time, too."""
+    """The running program continues, and one in memory stays there; a second time, too."""
     robot, session = holding("SB|B(30, 60)", saves=False)
     bytes_before = fetch_image(robot, session)
     robot.wait(4000)
@@ -312,7 +313,7 @@ def test_a_program_of_frames_replaces_sb() -> None:
     assert push_button(robot)[0] == "MOTORS -40 40"
 
 
-# -- what ends a run that text has started --------------------------------------------------------
+# -- ends of a run that text has started -----------------------------------------------------------
 
 
 @pytest.mark.parametrize("how", ["s\n", "STOP", "zeros", "button"])
@@ -345,7 +346,7 @@ def test_what_stops_it_latches(how: str) -> None:
 def test_a_stop_ends_a_block_that_is_open_also_where_the_robot_stands(
     stop: bytes, is_stopped_before: bool
 ) -> None:
-    """Its SETUP word is from before the stop, and releases nothing after it."""
+    """Its SETUP word is from before the stop, and does not release the robot after it."""
     robot = switched_on()
     if is_stopped_before:
         robot.wait(1500, bytes(4))
@@ -608,7 +609,7 @@ def test_help_with_a_device_of_a_long_name(letters: int) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_a_robot_says_its_number_or_a_name_which_cannot_end_its_line(seed: int) -> None:
-    """Else an echo of it would be a program."""
+    """Otherwise an echo of it would be a program."""
     robot, session = HostFirmware(KIT, EMPTY, seed=0x9F0FFE8D + seed), computer()
     robot.wait(200)
     robot.until(session, session.hello())
@@ -668,8 +669,8 @@ def answer_to(robot: HostFirmware, line: str) -> bytes:
 @pytest.mark.parametrize("cut", CUTS)
 @pytest.mark.parametrize("line", ASKED)
 def test_an_answer_that_was_cut_begins_anew(line: str, cut: str) -> None:
-    """At any moment of the answer: nothing more of it is sent, and the next answer is that of a
-    fresh robot.
+    """The cut may come at any moment of the answer: the rest is not sent, and the next answer is
+    that of a fresh robot.
     """
     wanted_answer = answer_to(on_a_slow_line(), line)
     assert wanted_answer.startswith(b"//")
@@ -694,12 +695,12 @@ def test_text_at_once_after_power_on() -> None:
     assert hello.endswith(", text uno")
 
 
-# -- what must not be run in parts ----------------------------------------------------------------
+# -- programs that must not run in parts -----------------------------------------------------------
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_of_a_program_whose_bytes_found_no_room_nothing_is_run(seed: int) -> None:
-    """Wherever they were: in a line that opens a block, before it, or after it."""
+    """The bytes may be in a line that opens a block, before it, or after it."""
     rng = random.Random(seed)
     robot = switched_on()
     type_text(robot, "SI|W(0)\n", 200)  # from here on a line needs no SETUP word
@@ -721,7 +722,7 @@ def test_of_a_program_whose_bytes_found_no_room_nothing_is_run(seed: int) -> Non
 
 @pytest.mark.parametrize("between", ["zero", "frame", "button", "two tabs"])
 def test_the_rest_of_a_program_that_was_lost_is_not_run(between: str) -> None:
-    """Its lines are whole ones, and mean something else alone."""
+    """Its lines are whole, and have another meaning on their own."""
     robot, session = switched_on(), computer()
     type_text(robot, "SI|LOOP(2)\n")
     if between == "zero":
@@ -761,7 +762,7 @@ def test_a_line_of_a_program_may_come_late_and_indented(blanks: str) -> None:
     ],
 )  # fmt: skip
 def test_what_an_open_block_waits_for_is_told(text: str, awaited_text: str) -> None:
-    """Also in the middle of a line, whose stored beginning is no block."""
+    """This holds in the middle of a line, too, whose stored beginning is no block."""
     assert type_text(switched_on(), text, 1100) == [f"// Waiting for {awaited_text}"]
 
 

@@ -1,7 +1,7 @@
 """Lines typed while `tsc live` runs a line on the same robot.
 
-A robot with room for two programs drives what was typed. An Uno and a Nano have none for it: they
-read only stops, and the live line goes on to its end.
+A robot with room for two programs drives what was typed. An Uno and a Nano have no such room: they
+read only stops, and the live line continues to its end.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def running(kind: type[HostFirmware], after_ms: int) -> tuple[HostFirmware, Sess
 
 
 def types(robot: HostFirmware, session: Session, text: str, milliseconds: int) -> list[str]:
-    """Type a line, let time pass, and return what the robot has done."""
+    """Type a line, let time pass, and return the robot's actions."""
     session.receive(robot.wait(20, text.encode() + b"\n"), robot.now_ms)
     robot.talk(session, milliseconds)
     return [line.split(" ", 1)[1] for line in robot.did]

@@ -1,7 +1,7 @@
 """Anything at all arrives at a whole robot: bytes, words, frames, zeros, silences, the button.
 
-Whatever it was: nothing moves while the robot is latched, and after a second of silence the next
-whole line is done. `python -m tests.firmware.test_text 10000` is a campaign.
+After any input, no motor turns while the robot is latched, and after a second of silence the next
+whole line is executed. `python -m tests.firmware.test_text 10000` is a campaign.
 """
 
 from __future__ import annotations

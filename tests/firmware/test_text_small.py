@@ -1,6 +1,6 @@
 """A robot without room for two programs: it reads text where the program is that it holds.
 
-An Uno and a Nano are such robots. What is the same on all robots is tested on this one too.
+An Uno and a Nano are such robots. Behaviour shared by all robots is tested on this one, too.
 """
 
 from __future__ import annotations
@@ -88,11 +88,11 @@ def test_sb_keeps_the_button_until_the_next_line() -> None:
     assert fetch_image(robot, session) == bytes_before
 
 
-# -- what runs, and a new line --------------------------------------------------------------------
+# -- a running program, and a new line -------------------------------------------------------------
 
 
 def test_a_new_line_ends_what_runs_when_it_is_whole() -> None:
-    """Or when it needs the room of what runs."""
+    """It also ends it when it needs the running program's memory."""
     robot, session = holding()
     send(robot, session, "SI|F(30, 60)", saves=False, is_detached=True)
     robot.wait(4000)
@@ -119,7 +119,7 @@ def test_a_wrong_line_that_needed_the_room_tells_what_is_lost(line: str) -> None
     assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
 
 
-# -- what comes in between ------------------------------------------------------------------------
+# -- interruptions --------------------------------------------------------------------------------
 
 
 def test_a_request_while_a_block_is_open_finds_the_stored_program() -> None:
@@ -145,7 +145,7 @@ def test_power_that_goes_while_text_is_read_takes_nothing_that_is_stored(at_ms: 
 def test_a_line_while_a_program_is_saved_leaves_what_runs(
     has_draft: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A program is saved when the motors stand: until then it is the one that runs."""
+    """A program is saved when the motors are off: until then it is the one that runs."""
     monkeypatch.setattr(HostFirmware, "has_draft", has_draft)
     robot, session = switched_on(), computer()
     send(robot, session, "SI|F(5, 60)", saves=True, is_detached=True)
@@ -189,7 +189,7 @@ def test_s_alone_stops_what_tsc_live_runs(line: str, stops: bool) -> None:
 
 
 def test_texts_and_frames_in_any_order() -> None:
-    """Whatever was typed, the stored program stays what it is."""
+    """Whatever was typed, the stored program does not change."""
     robot, session = holding()
     bytes_before = fetch_image(robot, session)
     rng = random.Random(7)

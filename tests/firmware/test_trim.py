@@ -1,4 +1,4 @@
-"""The trim of the motors, number by number: what a wheel gets for each percent."""
+"""The trim of the motors, number by number: the power of a wheel for each percent."""
 
 from __future__ import annotations
 

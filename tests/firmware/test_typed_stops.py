@@ -1,8 +1,8 @@
 """A typed stop on a simulated Uno: in every state of the receiver, in all spellings, at both rates.
 
-From the end of its line to the motor pins it takes less than a millisecond, in what began as a
-frame less than that after 100 ms of silence; there only the strict spellings count. What came
-before it starts nothing afterwards.
+It reaches the motor pins less than a millisecond after the end of its line, or, if the bytes began
+as a frame, less than a millisecond after 100 ms of silence; there, only the strict spellings count.
+Text before it starts nothing afterwards.
 `python -m tests.firmware.test_typed_stops 10000` types it after so many random bytes.
 """
 
@@ -66,7 +66,7 @@ def uno_at(sketch: tuple[Path, int]) -> Iterator[tuple[Uno, int]]:
 
 @pytest.fixture(scope="module")
 def driving_at(sketch: tuple[Path, int]) -> Iterator[tuple[Uno, int]]:
-    """A robot that drives, and has heard nothing for a second: tests go aside from there."""
+    """A driving robot after a second of silence: tests branch off from there."""
     with switched_on(*sketch) as uno:
         drive(uno)
         yield uno, sketch[1]
@@ -91,12 +91,13 @@ def drive(uno: Uno) -> None:
 
 
 def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: bool = False) -> float:
-    """Type a stop while the robot drives. Its pins are off in time, and nothing starts again.
+    """Type a stop while the robot drives. Its pins are off in time, and no motor starts again.
 
     Returns the ms from the end of the line to the pins.
 
-    In what began as a frame that is after 100 ms of silence. A robot that `is_busy` takes a little
-    longer, or stops sooner: when the main loop gives that up, for which it may have had no room.
+    For bytes that began as a frame, that is after 100 ms of silence. A robot that `is_busy` takes a
+    little longer, or stops sooner: when the main loop gives that up, for which it may have had no
+    room.
     """
     byte_ms = 10_000 / baud
     uno.send(prefix + spelling)
@@ -147,7 +148,7 @@ def test_a_loose_spelling_in_a_frame_is_none(driving_at: tuple[Uno, int], name: 
         assert states(uno) == FORWARD
 
 
-# -- what does not wait for the end of its line ---------------------------------------------------
+# -- stops that do not wait for the end of their line ----------------------------------------------
 
 
 def off_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
@@ -312,7 +313,7 @@ def check_latched(uno: Uno) -> None:
 
 
 def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> None:
-    """The paper's listing, typed line by line while another program runs: nothing is latched."""
+    """The paper's listing, typed line by line while another program runs: no stop latches."""
     uno, _ = uno_at
     uno.sonar("trigger", "echo", 40)
     drive(uno)
@@ -403,7 +404,7 @@ QUIET_MS = 700  # longer than a program of these lines
 
 @pytest.fixture(scope="module")
 def quick_uno(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Uno]:
-    """A robot that has heard nothing for a second: tests go aside from there."""
+    """A robot after a second of silence: tests branch off from there."""
     skip_unless_available()
     with switched_on(build(BAUD, tmp_path_factory.mktemp("sketch")), BAUD) as uno:
         uno.run_ms(SILENCE_MS)
@@ -423,7 +424,7 @@ def lines_said(uno: Uno, data: bytes) -> list[str]:
 @pytest.mark.sampled("line")
 @pytest.mark.parametrize("line", LINES, ids=lambda line: line[:20])
 def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
-    """An Uno keeps 62 bytes of text that waits. At 115200 baud lines come sooner than it has read
+    """An Uno keeps 62 bytes of text that waits. At 115200 baud, lines arrive faster than it reads
     them, and while it answers it reads none."""
     uno, data = quick_uno, line.encode() + b"\r\n"
     with uno.try_out():

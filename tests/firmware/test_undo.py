@@ -1,7 +1,7 @@
-"""UNDO: a robot holds the program before again, over every power-off, and loses none.
+"""UNDO: a robot returns to the previous program, across every power-off, and loses none.
 
-In every state what runs ends, nothing starts, and a pulled plug leaves one of the two. The states
-are those of the button. Before each of them the robot has saved one program more.
+In every state, the run ends, no other starts, and a pulled plug leaves one of the two programs. The
+states are those of the button. Before each of them the robot has saved one program more.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> 
     robot.talk(session, 400)
     assert "MOTORS 50 50" in actions_of(robot)
     assert program_after_power_off(robot) == good
-    # The next program is stored beside the one that can run.
+    # The next program is stored next to the one that can run.
     send(robot, session, C)
     wait_until_saved(robot, session)
     assert undo(robot, session) == OK
@@ -125,7 +125,7 @@ def test_a_robot_begins_with_the_newest_program_that_it_can_run(
     assert program_after_power_off(robot) == bytes_of(C)
 
 
-# -- what is in RAM only --------------------------------------------------------------------------
+# -- programs in RAM only --------------------------------------------------------------------------
 
 
 def test_a_program_that_is_not_saved_makes_way_for_the_saved_one() -> None:
@@ -219,7 +219,7 @@ def test_with_a_low_supply_nothing_is_touched_and_nothing_is_lost(count: int) ->
 
 
 def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
-    """The restore waits until the motors stand before its first byte."""
+    """The restore waits until the motors are off before its first byte."""
     robot, session = with_two(DRIVES, A)
     memory = robot.memory()
     assert undo(robot, session) == OK
@@ -267,7 +267,7 @@ def test_a_request_that_comes_twice_is_done_once() -> None:
 
 
 def test_any_order_of_programs_undos_and_power_offs() -> None:
-    """Against two variables: what it holds, and what it held before."""
+    """The model has two variables: the current program and the previous one."""
     draw = random.Random(11)
     texts = [f"SB|F(0.1, {power})" for power in range(40, 46)] + [B]
     robot, session = switched_on(), computer()
@@ -303,7 +303,7 @@ NOT_OWNER = STATUSES["NOT_OWNER"]
 
 
 def robot_in_state(state: str, has_draft: bool = True) -> tuple[Table, Session]:
-    """Return a robot in a state, and who asks it: who talks with it, or another one."""
+    """Return a robot in a state, and the client that asks: the connected one, or another one."""
     table = Table(has_draft)
     table.robot.wait(200)
     table.upload_program(EARLIER)
@@ -314,7 +314,8 @@ def robot_in_state(state: str, has_draft: bool = True) -> tuple[Table, Session]:
 
 
 def after_power_off(table: Table) -> bytes:
-    """Return the program that it holds at the next two starts, the same, for who has its key."""
+    """Return the program that it holds at the next two starts, which must agree; read with its
+    key."""
     memory, programs = table.robot.memory(), []
     for nonce in (31, 32):
         robot = switched_on(memory, seed=nonce)

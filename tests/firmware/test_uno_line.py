@@ -1,4 +1,4 @@
-"""A bad line to a robot on an Uno: what its chip notices is in the counts that STATUS tells.
+"""A bad line to a robot on an Uno: STATUS reports the errors that its chip notices.
 
 A line that stays low stops the robot.
 """
@@ -32,7 +32,8 @@ BUSY = "{ cli(); __builtin_avr_delay_cycles(170000); sei(); }"  # over 10 ms
 
 
 def read_counters(wired_uno: Wired) -> tuple[int, ...]:
-    """Return the damaged and dropped messages, framing errors and overruns that the robot tells."""
+    """Return the damaged and dropped messages, framing errors and overruns that the robot
+    reports."""
     values = wired_uno.complete(wired_uno.session.status())
     return values.damaged, values.dropped, values.framing, values.overrun
 
@@ -54,7 +55,7 @@ def test_a_byte_without_its_stop_bit_damages_a_message(uno: Uno) -> None:
 
 
 def test_bytes_that_nobody_fetches_damage_a_message(tmp_path: Path) -> None:
-    """Interrupts are off for 10 ms: nothing in the firmware does that."""
+    """Interrupts are off for 10 ms, which no part of the firmware does."""
     elf = build_hanging_firmware(tmp_path, BUSY)
     with Uno(elf, names=NAMES, baud=BAUD) as uno:
         uno.run_ms(300)
@@ -114,7 +115,8 @@ def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(uno: Uno) 
 
 
 def test_a_short_disturbance_stops_no_robot(uno: Uno) -> None:
-    """Each byte with a framing error is a zero, and what the line does meanwhile is none."""
+    """Each byte with a framing error becomes a zero, but the level of the line meanwhile does not
+    count as zeros."""
     driving(uno)
     uno.hold(False, 25)  # longer than two bytes
     uno.run_ms(50)

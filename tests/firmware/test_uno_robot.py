@@ -118,7 +118,8 @@ def test_a_stop_silences_the_buzzer(uno: Uno) -> None:
 
 
 def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
-    """Wherever the main loop is when its frame ends; and no frame is taken for a damaged one."""
+    """This holds wherever the main loop is when the frame ends, and no frame is mistaken for a
+    damaged one."""
     wired_uno = computer(uno)
     assert wired_uno.until(wired_uno.session.hello()) == OK
     wired_uno.run(1000)  # a new robot stores its identity
@@ -151,7 +152,7 @@ def low_for(uno: Uno, ms: float) -> None:
 
 
 def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: Uno) -> None:
-    """Not a glitch, neither one alone nor one after the other: high or low for 50 ms counts."""
+    """Glitches, single or repeated, do not count: the level must last for 50 ms."""
     uno.drive("radio", True)
     wired_uno = computer(uno)
     send(wired_uno, AWAY)

@@ -1,8 +1,9 @@
-"""The time from a stop to the motor pins on a simulated chip, whatever else the robot does; and the
-RAM left to the stack at the sketch's deepest point.
+"""The time from a stop to the motor pins on a simulated chip, whatever the robot is doing; and the
+RAM that the stack leaves free at the sketch's deepest point.
 
-A busy robot is stopped at some places of the sweep of `python -m tools.bench.link`. And what may
-come before a stop is bounded: all that keeps interrupts off, each at its longest and all at once.
+A busy robot is stopped at some places of the sweep of `python -m tools.bench.link`. The possible
+delay before a stop is bounded: all code that keeps interrupts off, each at its longest and all at
+once.
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ def test_a_stop_is_at_the_pins_in_12_us(
     assert together <= MOST_CYCLES + more_cycles
 
 
-# -- what the whole sketch leaves free of the RAM at its heaviest ---------------------------------
+# -- free RAM of the whole sketch at its deepest --------------------------------------------------
 
 
 @pytest.mark.sampled(of="long ways of a chip")

@@ -92,7 +92,8 @@ def test_sensors_and_the_supply_take_turns(uno: Uno, volts: float) -> None:
 
 
 def test_a_measurement_that_a_motor_ends_leaves_the_converter_to_the_sensors(uno: Uno) -> None:
-    """The pauses are shorter than a measurement: each of them is given up, and nothing is saved."""
+    """The pauses are shorter than a measurement, so each measurement is abandoned, and the program
+    is not saved."""
     uno.analog("A1", 800)
     wired_uno = computer(uno)
     start_cycle = uno.cycle

@@ -1,4 +1,4 @@
-"""A main loop that stands still: the motors go off, the chip starts anew and says why."""
+"""A main loop that hangs: the motors go off, and the chip restarts and reports the reason."""
 
 from __future__ import annotations
 
@@ -121,8 +121,8 @@ def test_a_hang_without_a_program_is_a_fault_of_none(tmp_path: Path) -> None:
 
 
 def test_a_reset_that_is_no_hang_is_no_fault(uno: Uno) -> None:
-    """Not in the middle of a program either; and the next nonce is another one each time, also
-    if nothing happens in between and each reset takes the same number of cycles."""
+    """This holds in the middle of a program, too; and each nonce differs from the last, even if
+    nothing happens in between and each reset takes the same number of cycles."""
     nonces = []
     for number in range(5):
         wired_uno = computer(uno, number + 1)

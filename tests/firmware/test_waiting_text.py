@@ -28,7 +28,7 @@ TRIALS = 1000  # trials of the tests; a campaign runs more
 LIVES = 100  # trials of one robot
 AGAIN, QUIET = 0.3, 0.3  # probability of a repeated frame, and of a second of silence before one
 CHECKSUM_AT, BODY_AT = 10, 14  # offsets in an image
-# A number whose bytes are instructions: one letter in front of them makes a move of them.
+# A number whose bytes are instructions: a letter in front of it turns it into a move.
 DRIVES = "SI|SHOW(-1337933.387)"
 WHOLE = ("F(0.01,30)", "SI|R(0.02,40)", "SI|M(20,20);W(0.01)", "SB|F(0.01,30)", DRIVES,
          "SI|LOOP(2);W(0.01);END_LOOP", "PING|CHECK_CONNECTION", "SI|X=9.87;SHOW(X)")  # fmt: skip
@@ -103,7 +103,7 @@ class Trials:
         return data + b"\0", codes
 
     def program(self) -> bytes:
-        """Return the image of a program whose bytes are as varied as they can be."""
+        """Return the image of a program with bytes as varied as possible."""
         rng = self.rng
         parts = [
             f"SHOW({rng.randrange(-(2**31), 2**31) / 1000:.3f})",

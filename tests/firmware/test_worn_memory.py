@@ -1,5 +1,5 @@
-"""A memory that is ten years old: whichever bytes no longer change, the robot's statements about
-its data are true, and users of other bytes notice nothing.
+"""A memory that is ten years old: whichever bytes no longer change, the robot's reports about its
+data are true, and the use of other bytes is unaffected.
 
 `python -m tests.firmware.test_worn_memory 2000` tries more.
 """
@@ -24,7 +24,8 @@ from tiniscript.link.messages import SAVED_STORED
 NAMES = (b"x", b"Pia", b"OLD", b"sixteen letters!")
 TRIMS = [pack("<BbBHHHH", *row) for row in ((0, 0, 0, 0, 0, 0, 0), (1, 5, 7, 11, 30, 70, 260),
                                             (0, -9, 30, 10, 31, 71, 261))]  # fmt: skip
-# Where `layout.h` puts both slots of each: from where to where. Four bytes say whether it counts.
+# The addresses where both slots of each begin and end in `layout.h`. Four bytes say whether it
+# counts.
 IDENTITY, FAULT = ((4, 35), (35, 66)), ((66, 97), (97, 128))
 PROGRAM, KEYS = ((128, 536), (576, 984)), ((536, 576), (984, 1024))
 SLOTS = (*IDENTITY, *FAULT, *PROGRAM, *KEYS)
@@ -98,7 +99,7 @@ def check(seed: int) -> str:
     restarted_robot = Owned(robot.memory())
     later = restarted_robot.session(keys, nonce=9)
     whose = owner_of(restarted_robot, later)
-    # A robot that cannot store its identity has nobody's key.
+    # A robot that cannot store its identity has no keys.
     assert whose in owner.may_be or worn_of(worn_bytes, IDENTITY) == 2, f"{seed} {worn_bytes}"
     assert later.robot and later.robot.name.encode() in name.may_be, (
         f"{seed} {worn_bytes} {later.robot}"

@@ -1,4 +1,4 @@
-"""The sketch goes onto a board the way it goes onto a real one: by avrdude, over its bootloader."""
+"""The sketch reaches the board as on a real one: by avrdude, over its bootloader."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
 def test_optiboot_lets_a_robot_go_on_that_has_hung(tmp_path: Path) -> None:
     """Optiboot recognizes the watchdog's reset, does not wait for a sketch, and hides the cause.
 
-    With interrupts off nothing but the cause would tell: that is not known then.
+    With interrupts off, only the cause would show it, and that is unknown then.
     """
     elf = build_hanging_firmware(tmp_path, HANGS_ALONE)
     with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:

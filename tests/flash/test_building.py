@@ -43,7 +43,7 @@ from tiniscript.library import install_advice
 
 @pytest.fixture
 def clone(tmp_path: Path) -> Path:
-    """A copy of what a clone has of the package and the firmware's sources: its `compiler`."""
+    """A copy of a clone's package and of the firmware's sources: its `compiler`."""
     folder = tmp_path / "clone"
     link_copy(ROOT / "vm_arduino", folder / "vm_arduino", ".pio", "own.h", "__pycache__")
     return copy_package(folder)
@@ -62,7 +62,7 @@ def own(tmp_path: Path) -> Path:
 
 @pytest.mark.sampled(of="builds of PlatformIO")
 def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> None:
-    """Once: then it is ready, until anything that it is made from is another."""
+    """It is built once and stays ready until one of its sources changes."""
     skip_unless_available()
     variables, why = prepare()
     need(why or ("" if shutil.which("avrdude") else "no avrdude on this computer"))
@@ -76,7 +76,7 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
         assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in info.out, info.err
     files = ready.files(ready.firmware_cache())
     assert [(file.title, file.board) for file in files] == [("mine", "uno")]
-    second_build = tsc(clone, "--build", "--robot", str(own))  # PlatformIO could build nothing now
+    second_build = tsc(clone, "--build", "--robot", str(own))  # PlatformIO could not build now
     assert (second_build.code, second_build.err) == (0, "")
     assert second_build.out == f"mine on uno: ready, {files[0].flash_bytes:,} bytes\n"
     source = clone.parent / "vm_arduino" / "src" / "main.cpp"
@@ -89,7 +89,7 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
     assert "main.cpp" in Path(log).read_text(encoding="utf-8")
 
 
-# -- what is old is not written
+# -- outdated files are not written
 
 
 def test_sources_robot_and_board_make_the_digest(clone: Path, own: Path) -> None:
@@ -145,7 +145,7 @@ def test_a_firmware_with_breakpoints_is_kept_beside_the_other_one(clone: Path) -
         assert result.code == 0, result.err
         assert "no longer reads typed lines of text" in result.err
         assert result.out.startswith("tinibot on uno: ready, ")
-        variables = {}  # PlatformIO could build nothing now
+        variables = {}  # PlatformIO could not build now
     assert [file.title for file in ready.files(ready.firmware_cache())] == ["tinibot_breakpoints"]
     assert "tinibot on uno: not built yet" in tsc(clone, "--list").out
 
@@ -172,7 +172,7 @@ def test_the_header_that_somebody_has_made_is_not_the_robot(
 
 
 def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
-    """`ready` is a folder of the clone, and a pull changes the sources beside it."""
+    """`ready` is a folder of the clone, and a pull changes the sources next to it."""
     folder = clone / "tiniscript" / "flash" / "ready"
     folder.mkdir()
     digest = building.Sources(source_bytes(clone)).digest(robots.load("tinibot"))
@@ -241,7 +241,7 @@ def test_the_cache_does_not_grow_for_ever() -> None:
     assert {path.suffix for path in ready.firmware_cache().iterdir()} == {".hex"}
 
 
-# -- with a PlatformIO that says what it is told
+# -- with a PlatformIO whose output is scripted
 
 
 def pretending(folder: Path, body: str) -> dict[str, str]:
@@ -336,7 +336,7 @@ def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) ->
 def test_a_build_that_does_not_end_well_has_made_nothing(
     end: str, clone: Path, tmp_path: Path
 ) -> None:
-    """Whatever file is there then."""
+    """Files that it leaves do not count."""
     body = f'import signal\n{MAKES}\nmake("uno", ":00000001FF\\n")\n{end}'
     build_firmware(clone, pretending(tmp_path, body)).gives(2, "could not be built")
     assert not list(ready.firmware_cache().glob("*.hex"))
@@ -406,7 +406,7 @@ time.sleep(600)
         until(partial(has_ended, number), f"the end of {number}")
 
 
-# -- what is missing
+# -- missing parts
 
 
 def test_without_platformio_it_says_how_to_get_it(

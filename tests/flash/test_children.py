@@ -1,5 +1,5 @@
-"""Whatever ends a program that is run: what it has started holds no port any more, and Ctrl-C is
-heard as before.
+"""However a child program ends, its own children no longer hold the port, and Ctrl-C works as
+before.
 """
 
 from __future__ import annotations

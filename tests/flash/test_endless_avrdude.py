@@ -26,7 +26,7 @@ HALF = "Reading | ### |\\nWriting | " + "#" * 25
 def write_and_watch(folder: Path, body: str) -> tuple[WriteResult, list[StepProgress | None]]:
     """Write a firmware with this avrdude; return the result and the progress seen.
 
-    There is a file `seen` as soon as anything was.
+    The file `seen` appears with the first output.
     """
     program = folder / "avrdude.py"
     program.write_text(body, encoding="utf-8")

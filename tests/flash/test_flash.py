@@ -38,7 +38,7 @@ FILES = {"tinibot-uno": "uno", "tinibot-nano": "nano", "grabber-mega": "mega_gra
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the package that has come with firmware."""
+    """A copy of the package with firmware."""
     skip_unless_available()
     if not shutil.which("avrdude"):
         need("no avrdude on this computer")
@@ -86,7 +86,7 @@ def test_a_new_board_becomes_a_robot(
 def test_a_board_without_a_bootloader_stays_as_it_is(
     package: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """The robot's own firmware answers nothing that avrdude says."""
+    """The robot's own firmware does not answer avrdude."""
     with Uno(firmware("uno", tmp_path, shared_folder(tmp_path_factory)), tells_sleep=False) as uno:
         uno.go()
         tsc(package, "--port", uno.pty).gives(3, f"no bootloader responds on {uno.pty}", "HC-05")
@@ -121,7 +121,7 @@ def test_a_port_in_use_is_said(package: Path) -> None:
         tsc(package, "--port", uno.pty).gives(3, "another program is using the port")
 
 
-# -- with an avrdude that says what it is told
+# -- with an avrdude whose output is scripted
 
 
 FAKE = """\
@@ -186,7 +186,7 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
 def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
     count: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """There is no such warning before the first byte, because the board is unchanged."""
+    """Before the first byte there is no such warning, because the board is unchanged."""
 
     def write(*words: object) -> None:
         look = cast("Callable[[StepProgress | None], None]", words[-1])

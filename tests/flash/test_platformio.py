@@ -25,7 +25,8 @@ FLASH_BYTES, RAM_BYTES = 32_256, 2048  # memory of an Uno
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the sketch to build and to break. Without PlatformIO: skipped, in CI a failure."""
+    """A copy of the sketch to build and to break. Without PlatformIO, tests are skipped; in CI they
+    fail."""
     return copy_sketch(tmp_path_factory.mktemp("platformio"))
 
 
@@ -85,7 +86,7 @@ def test_no_test_case_fails(native: Path) -> None:
 
 
 def test_early_end_fails(native: Path) -> None:
-    """A run that stops in the middle is no success, whatever its exit code."""
+    """A run that stops in the middle is a failure, whatever its exit code."""
     broken_path = native / "test" / "test_cases.cpp"
     with change_file(
         broken_path,
@@ -157,7 +158,7 @@ def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None
 
 @pytest.mark.sampled(of="builds of PlatformIO")
 def test_an_interrupt_without_a_vector_is_refused(project: Path) -> None:
-    """Tables lie where `vectors.S` has none."""
+    """Tables are in the place of vectors that `vectors.S` lacks."""
     clock = project / "src" / "boards" / "avr" / "clock.cpp"
     with change_file(clock, ("ISR(TIMER0_OVF_vect", "ISR(ADC_vect) {}\n\nISR(TIMER0_OVF_vect")):
         pio(project, "run", "-e", "uno").gives(1, out="an interrupt has no vector in vectors.S")
@@ -165,7 +166,8 @@ def test_an_interrupt_without_a_vector_is_refused(project: Path) -> None:
 
 @pytest.mark.parametrize(("board", "arduino"), ARDUINO_BOARDS.items())
 def test_a_board_holds_what_its_fuses_leave(board: str, arduino: str) -> None:
-    """The bootloader's section is that of its high fuse, whatever the bootloader takes of it."""
+    """The size of the bootloader's section follows from the high fuse, not from the bootloader's
+    size."""
     path = ARDUINO / "boards.txt"
     need("" if path.exists() else f"{DEBIAN_PACKAGES[ARDUINO]} is not installed")
     rows = dict(re.findall(rf"^{re.escape(arduino)}\.(\S+)=(\S+)$", path.read_text("utf-8"), re.M))
@@ -179,7 +181,7 @@ def test_a_board_holds_what_its_fuses_leave(board: str, arduino: str) -> None:
 def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     project: Path, new_env: str, old_env: str
 ) -> None:
-    """Only the upload differs: it is that of PlatformIO's board for such Nanos."""
+    """Only the upload differs: it uses PlatformIO's board for such Nanos."""
     builds: list[bytes] = []
     held: list[int] = []
     for name in (new_env, old_env):
@@ -213,7 +215,7 @@ def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:
 
 
 def test_test_sketch_has_a_program_that_every_robot_can_run() -> None:
-    """The bytes in `board_main.cpp` are what the compiler makes of the text above them."""
+    """The compiler turns the text into the bytes below it in `board_main.cpp`."""
     source = (SKETCH.parent / "tests" / "machines" / "board_main.cpp").read_text(encoding="utf-8")
     text = re.search(r"Every robot can run it:  (.*)\n", source)
     array = re.search(r"program\[.*?\] = \{(.*?)\n\};", source, re.S)

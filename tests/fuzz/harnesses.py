@@ -29,7 +29,7 @@ from tiniscript.link.frames import decode_frame
 COMPILER = "clang++-22"
 FLAGS = ("-std=c++11", "-O2", "-g", "-fsanitize=fuzzer,address,undefined",
          "-fno-sanitize-recover=all")  # fmt: skip
-# Arguments for comparisons at half the time. Only the machine's harness needs some: the others fix
+# Arguments for comparisons at half the time. Only the machine's harness needs seeds: the others fix
 # checksums themselves, and begin with every message and record.
 NOT_COMPARED = "-fno-sanitize-coverage=trace-cmp"
 MOST_BYTES = 700  # most bytes of an input
@@ -55,7 +55,7 @@ NAMES = tuple(PARTS)
 
 @lru_cache(maxsize=1)
 def missing() -> str:
-    """Return the reason why nothing can be built here, or ""."""
+    """Return the reason why building is impossible here, or ""."""
     if shutil.which(COMPILER) is None:
         return f"no {COMPILER} on this computer: apt-get install clang-22 libclang-rt-22-dev"
     with tempfile.TemporaryDirectory() as folder:
@@ -121,7 +121,7 @@ def machine_seeds() -> Iterator[bytes]:
 
 
 def link_seeds() -> Iterator[bytes]:
-    """The conversations of the cases: what the computer sends, frames without their wrapping."""
+    """The conversations of the cases: the computer's bytes, with frames unwrapped."""
     for case in link_cases("link"):
         events = b"\0"
         for row in case.rows:
@@ -151,7 +151,7 @@ def store_seeds() -> Iterator[bytes]:
 
 
 def mqtt_seeds() -> Iterator[bytes]:
-    """Messages of the robot's writer, and what a broker says."""
+    """Messages of the robot's writer, and of a broker."""
     packets = ("20020000", "20020005", "d000", "9003000100", "3101ff", "30ffffffff7f", "3003000561")
     for text in packets:
         data = bytes.fromhex(text)

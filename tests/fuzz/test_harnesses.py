@@ -12,7 +12,7 @@ from tests.support.needs import need
 
 @pytest.fixture(autouse=True)
 def needs_a_fuzzer() -> None:
-    """Not where the tests are collected, by each process: to find out takes half a second."""
+    """The check takes half a second, so it is not done at collection, in each process."""
     need(missing())
 
 

@@ -1,7 +1,7 @@
-"""Anything at all, as a program, a profile, a world, a robot's answer or another command's message:
-it is taken, or refused as that is refused, and nothing else happens.
+"""Anything at all, as a program, a profile, a world, a robot's answer or another command's message,
+is either accepted or refused in the usual way.
 
-Hypothesis makes it, from what is right and from nothing. `python -m tests.fuzz.test_python
+Hypothesis generates them, from valid input and from scratch. `python -m tests.fuzz.test_python
 compiler 100000` makes more than the tests do.
 """
 
@@ -69,7 +69,7 @@ def changed_texts(pattern: str) -> SearchStrategy[str]:
     return st.one_of(near, st.text(max_size=300))
 
 
-# -- what must hold -------------------------------------------------------------------------------
+# -- laws ------------------------------------------------------------------------------------------
 
 
 def check_program(text: str) -> None:
@@ -142,7 +142,7 @@ def check_message(value: object) -> None:
 
 
 def check_line(data: bytes) -> None:
-    """Any bytes of a stranger are a greeting, the begin of one, or none."""
+    """Any bytes of a stranger are a greeting, the beginning of one, or neither."""
     try:
         protocol.read_greeting(data)
         MessageReader(200).read_messages(data)
@@ -150,7 +150,7 @@ def check_line(data: bytes) -> None:
         return
 
 
-# -- what is made ---------------------------------------------------------------------------------
+# -- generators --------------------------------------------------------------------------------
 
 NUMBERS = [message.number for message in MESSAGES]
 ITEMS = st.tuples(
@@ -197,7 +197,7 @@ KINDS: dict[str, tuple[Callable[..., None], SearchStrategy[Any]]] = {
 
 
 def make(kind: str, count: int, number: int) -> None:
-    """Check so many things of a kind, the same for the same number."""
+    """Check this many items of a kind, the same ones for the same number."""
     check, strategy = KINDS[kind]
 
     def one(value: Any) -> None:

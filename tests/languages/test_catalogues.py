@@ -74,7 +74,8 @@ def test_a_whole_language_promises_to_be_complete(language: str) -> None:
 
 
 def test_what_messages_call_the_values_of_words_is_a_term() -> None:
-    """Else a message in another language has an English name in it; a letter is one in each."""
+    """Otherwise a message in another language would contain an English name; a letter is the same
+    in each language."""
     values = [argument for word in WORDS.values() for argument in word.arguments]
     value_words = {value.name for value in values} | {
         value.unit for value in values if value.unit.islower()
@@ -96,7 +97,7 @@ def test_the_names_in_toml_files_are_translated() -> None:
 
 @pytest.mark.parametrize("language", languages.languages()[1:])
 def test_a_language_that_is_deleted_is_missed_by_no_other(language: str, tmp_path: Path) -> None:
-    """Nothing outside of its folder names it, so no row becomes unknown."""
+    """No file outside its folder names it, so no row becomes unknown."""
     package = tmp_path / "tiniscript"
     link_copy(FOLDER.parent, package, "*.texts", "__pycache__", "page", "ready")
     shutil.rmtree(package / "languages" / language)
@@ -167,7 +168,7 @@ def test_an_unknown_language_is_refused_with_the_known_ones(tsc: Tsc) -> None:
 
 @pytest.fixture
 def longer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    """A language whose texts are a third longer, beside English."""
+    """Add a language whose texts are a third longer than English."""
     for code in languages.languages():
         (tmp_path / code).mkdir()
     for path in FOLDER.glob(f"{SOURCE_LANGUAGE}/*.toml"):
@@ -240,7 +241,7 @@ LAID_OUT = (("help",), ("help", "all"), *(("help", verb) for verb in VERBS))
 def test_texts_that_are_longer_keep_to_80_columns(
     longer: str, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each text is replaced, so none is outside of the catalogues."""
+    """Each text is replaced, which shows that all are in the catalogues."""
     for words in LAID_OUT:
         rows = {}
         for language in (SOURCE_LANGUAGE, longer):

@@ -1,4 +1,4 @@
-"""No language is a special case in code: none is chosen by its code, or has its words there."""
+"""Code chooses no language by its code, and contains no words of one."""
 
 from __future__ import annotations
 
@@ -68,8 +68,8 @@ def test_words_of_a_language_are_in_its_folder() -> None:
     assert words_in_code == set()
 
 
-# What is written so in each language: signs, functions of Arduino, a word of Logo, letters, two
-# words that are one, and the name of the command.
+# Texts that are the same in every language: signs, functions of Arduino, a word of Logo, letters,
+# two words that are one, and the name of the command.
 WRITTEN = {"X", "TONE", "TO", "A", "FL", "LF", "FR", "RF", "UN", "TIL", "TSC"}
 
 

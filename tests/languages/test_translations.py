@@ -92,7 +92,7 @@ def problems(translation: Translation) -> list[tuple[str, int, str]]:
     return [(path.name, *problem) for path, some in translation.problems() for problem in some]
 
 
-# -- what is wrong
+# -- mistakes
 
 
 @pytest.mark.parametrize(("row", "line", "why"), [
@@ -238,7 +238,7 @@ def test_what_cannot_be_read_is_wrong_and_costs_the_file(
     assert read_translation_file(own).problems == [(1, "this cannot be read: Permission denied")]
 
 
-# -- what a language has
+# -- contents of a language
 
 
 def test_plurals_follow_the_rule_of_the_language(place: Path) -> None:
@@ -264,7 +264,7 @@ def test_plurals_follow_the_rule_of_the_language(place: Path) -> None:
 
 
 def test_a_form_that_no_number_has_may_be_missing(place: Path) -> None:
-    """CLDR has one for parts of one in Polish: who knows that may write it."""
+    """CLDR has a form for fractions in Polish: a translator may supply it."""
     write(place / "xx" / ABOUT_FILE, 'forms = ["one", "many"]\nwhich_form = "n != 1"\n')
     row = "n.one = '{n} a'\nn.many = '{n} b'\n"
     assert (
@@ -392,7 +392,7 @@ def test_a_mistake_in_a_file_costs_nothing_that_is_noted(place: Path) -> None:
 def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_else(
     place: Path,
 ) -> None:
-    """A note that the key begins with is not said beside it; a list says its texts itself."""
+    """A note with which the key begins is not repeated next to it; a list shows its own texts."""
     write(
         place / SOURCE_LANGUAGE / "some.toml",
         '[verb]\na = "Open"\nb = ["Shut", "Open"]\n[door]\ndoor.own = "Open"\n[menu]\nd = "Open"\n',
@@ -534,7 +534,7 @@ def test_a_stranger_adds_a_language_text_by_text(
 
 
 def test_what_is_missing_is_named_with_the_line_that_it_goes_after() -> None:
-    """The line is that of the previous text in English, whatever the file's order."""
+    """The line is that of the previous English text, whatever the order of the file."""
     translated = {"": "x"}
     rows = [Entry("a", "A"), Entry("b", "B", translation=translated, line=7),
             Entry("c", "C", line=99), Entry("d", "D", translation=translated, line=3),
@@ -583,7 +583,7 @@ def test_a_wrong_english_text_goes_into_no_language(
     assert (place / "fr" / "robot.toml").is_file()
 
 
-# -- what is made of them
+# -- results
 
 
 def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
@@ -662,7 +662,7 @@ def command(package: Path, *words: str, code: str = WITHOUT) -> tuple[int, str]:
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A package as a clone has it, in which nothing is made yet."""
+    """A package as in a clone, without generated files."""
     target = tmp_path_factory.mktemp("clone") / "tiniscript"
     return link_copy(
         FOLDER.parent, target, f"*{languages.CACHE_ENDING}", "__pycache__", "page", "ready"

@@ -1,4 +1,4 @@
-"""Users of blocks read about blocks, and about nothing that only a text has."""
+"""Users of blocks read about blocks, and not about things that only text has."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_both_forms_have_the_same_programs_and_hints(number: int, language: str)
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_what_a_check_finds_is_said_of_blocks_to_those_who_have_them(language: str) -> None:
-    """Every sentence, whatever word it names; in a terminal none has back quotes."""
+    """This holds for every sentence and every word; in a terminal, none has back quotes."""
     values = {"cm": "3", "seconds": "1.0", "least": "1", "found": "1", "times": "2", "name": "HOP"}
     rest = dict.fromkeys(("within", "limit", "low", "high", "number", "all", "degrees", "truth"))
     rest |= dict.fromkeys(("different", "pitches", "value", "wanted", "most", "fault"))

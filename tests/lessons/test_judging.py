@@ -170,7 +170,7 @@ def test_a_criterion_is_met_or_missed(
 
 @pytest.mark.parametrize("count", [2, 3, 5])
 def test_a_def_is_used_where_calls_lead_to_it(tmp_path: Path, count: int) -> None:
-    """Any number of words may be between; after a missing call nothing is used."""
+    """Any number of DEFs may be in between; after a missing call, none counts as used."""
     words = ["HOP", "TURN", "DANCE", "BOX", "SHOWER"][:count]
     lesson = lesson_of(tmp_path, f'[[criteria]]\nkind = "uses"\nwords = ["DEF"]\ntimes = {count}\n')
 
@@ -246,7 +246,8 @@ def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) 
 
 
 def test_what_is_held_is_no_heartbeat_that_a_run_needs(tmp_path: Path) -> None:
-    """A run of the judge's goes on without a computer, before the first key and after the last."""
+    """A run of the judge's continues without a computer, before the first key and after the
+    last."""
     lesson = lesson_of(tmp_path, OBEYS.format(key="KEY_A") + '[[criteria]]\nkind = "shows"\n')
     assert (
         sentences_on(lesson, answering("A", "BEEP(0.1, 440)").replace("W(", "SHOW(TIME); W(")) == []

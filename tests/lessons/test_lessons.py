@@ -108,7 +108,7 @@ def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
 @each_lesson
 @in_both
 def test_a_sheet_draws_what_it_says(folder: Path, language: str) -> None:
-    """Dashes are what moves and nothing else, and a blank is wide enough to write in."""
+    """Only moving parts are dashed, and a blank is wide enough to write in."""
     lesson = catalogue.load(folder)
     page = catalogue.page(folder, catalogue.PUPIL, language)
     sheet_text = sheet(page, lesson, False, language)

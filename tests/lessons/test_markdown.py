@@ -1,4 +1,4 @@
-"""Pages of lessons on a terminal: somebody else may have written them."""
+"""Pages of lessons on a terminal, which may come from strangers."""
 
 from __future__ import annotations
 

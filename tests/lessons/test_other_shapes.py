@@ -1,8 +1,9 @@
-"""A program that does its task is right, whatever its shape; one by heart is not.
+"""A program that does its task is right, whatever its shape; a memorized one is not.
 
-The answers of the lessons are what a teacher expects. These are what pupils write instead, from
-the page alone: right ones of different make, ones by heart, copied from the page or with the word
-of the lesson as a decoration, and wrong ones. Beside each that does not pass stands what is said.
+The answers of the lessons are those that a teacher expects. These are pupils' own programs, written
+from the page alone: correct ones of different shapes, memorized ones, copies from the page or with
+the lesson's word as mere decoration, and wrong ones. The messages follow each program that does not
+pass.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A lesson that cannot be used says why, all complaints at once, with what to do."""
+"""An unusable lesson is reported with all complaints at once, and with the next step."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""How long a busy port is waited for, from when its address is known: on a fake clock. A connection
-that fails leaves nothing open."""
+"""The wait for a busy port, from the moment its address is known, on a fake clock. A connection
+that fails leaves no device open."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SEARCH_S = 0.5 * BUSY_TIMEOUT_S, BUSY_TIMEOUT_S + 1, 10 * BUSY_TIMEOUT_S
 
 
 class Place:
-    """A port that takes a while to find, and that somebody else has until a moment."""
+    """A port that takes a while to find, and that another program holds until a given time."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, search_s: float, busy_s: float) -> None:
         self.now_s = 50.0
@@ -97,7 +97,7 @@ def test_a_port_that_stays_busy_is_said_to_be(
 
 
 class Device:
-    """What is opened at a port, until it is closed."""
+    """The device opened at a port, until it is closed."""
 
     opened: ClassVar[list[Device]] = []
     is_gone = False
@@ -195,7 +195,8 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
 def test_a_connection_that_was_closed_leaves_nothing_open(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, is_gone: bool
 ) -> None:
-    """Nor where its port is gone; whoever keeps it may connect again, as often as he wants."""
+    """This holds even if its port is gone; whoever keeps the object may connect again, any number
+    of times."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     monkeypatch.setattr(Device, "opened", [])
@@ -227,7 +228,7 @@ def greets(version: str, answer: str) -> bytes:
 def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, data: bytes, reason: str
 ) -> None:
-    """Who waits for a busy port asks twenty times a second."""
+    """A client that waits for a busy port tries twenty times a second."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     with socket.create_server(("127.0.0.1", 0)) as server:
         number = server.getsockname()[1]

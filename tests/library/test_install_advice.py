@@ -1,4 +1,4 @@
-"""What tsc says to type where a part of it is missing, before anything of it is on PyPI."""
+"""The install commands that tsc prints for a missing part, before any package is on PyPI."""
 
 from __future__ import annotations
 

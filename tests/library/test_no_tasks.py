@@ -1,4 +1,4 @@
-"""Programs with tasks that leave for a robot: one that has none refuses them in words."""
+"""Programs with tasks sent to a robot: one without tasks refuses them with a message."""
 
 from __future__ import annotations
 

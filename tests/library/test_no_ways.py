@@ -1,4 +1,4 @@
-"""Moves by centimetres and degrees that leave for a robot: which has them, and who refuses."""
+"""Moves by centimetres and degrees sent to a robot: which robots support them, and who refuses."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def without(key: str, text: str) -> str:
 
 @pytest.fixture
 def slow(tmp_path: Path) -> Path:
-    """The profile of a robot whose speeds nobody has measured."""
+    """The profile of a robot with unmeasured speeds."""
     path = tmp_path / "slow.toml"
     text = without("turn", without("speed", PROFILE.read_text(encoding="utf-8")))
     path.write_text(text, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Which robot a message names for a word that the program's own robot lacks."""
+"""The robot that a message names for a word that the program's own robot lacks."""
 
 from __future__ import annotations
 

@@ -270,7 +270,7 @@ def test_the_library_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
 
 
 def test_a_user_has_types(tmp_path: Path) -> None:
-    """With mypy --strict, a user's program is checked: a typo is an error."""
+    """mypy --strict checks a user's program: a typo is an error."""
     pytest.importorskip("mypy")
     program = tmp_path / "use.py"
     program.write_text(

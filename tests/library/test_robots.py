@@ -295,7 +295,7 @@ THE_ROBOT: Any = object()
 
 
 class StoppedAtFirst:
-    """A connection through a holder; a stop of somebody else cancels the first of its requests."""
+    """A connection through a holder; another client's stop cancels the first of its requests."""
 
     holder_verb = "monitor"
     heard, is_echoed = 9, False
@@ -318,7 +318,7 @@ class StoppedAtFirst:
 @pytest.mark.parametrize("stops", range(4))
 @pytest.mark.parametrize("patience", range(4))
 def test_who_connects_while_others_stop_the_robot_meets_it(stops: int, patience: int) -> None:
-    """As long as he is patient."""
+    """It waits for as long as its time limit allows."""
     answers = iter([True] * patience + [False] * 9)
     client = client_of(line := StoppedAtFirst(stops))
     client.port, client.language, client._poll = "P", "en", lambda: None
@@ -486,7 +486,7 @@ def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
             robot.wait()
     with pytest.warns(RuntimeWarning, match="holds the port until the other command has ended."):
         robot.close()
-    robot.close()  # does nothing
+    robot.close()  # no effect
     began_ms = pty_robot.robot_ms
     pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 2000, "it goes on")
     assert pty_robot.moves and other.process.poll() is None

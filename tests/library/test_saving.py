@@ -1,4 +1,4 @@
-"""How long a robot is waited for that saves a program: on a fake clock."""
+"""The wait for a robot that is saving a program, on a fake clock."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_dips_of_the_supply_end_no_saving_that_goes_on(clock: Clock, seed: int) 
 
 @pytest.mark.parametrize("seed", range(30))
 def test_a_supply_that_stays_low_is_waited_for_as_long_each_time(clock: Clock, seed: int) -> None:
-    """Whatever came before it, and in a second wait as in the first."""
+    """Earlier events do not matter, and a second wait is as long as the first."""
     rng = random.Random(seed)
     saving = Saving(receipt(SAVED_SAVING))
     for _ in range(3):

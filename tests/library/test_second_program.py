@@ -1,5 +1,5 @@
-"""What a connection of the library does with its last program does not depend on those before it:
-whatever ended them, leaving it stops the robot, or not, as on a fresh connection."""
+"""A connection of the library treats its last program as a fresh connection would: leaving it stops
+the robot, or not, however the programs before it ended."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from tiniscript.link.requests import OK, Reply
 KIT = robots.load("tinibot").kit
 PROGRAM = 7
 CLOSE = "close"
-SAVING_LOOKS = 3  # of a robot that saves: what it says is that it is done
+SAVING_LOOKS = 3  # of a saving robot: it reports success
 
 
 class Asked:
-    """Says what is asked of it."""
+    """Records the requests that it gets."""
 
     def __getattr__(self, name: str) -> Callable[..., str]:
         return lambda *_: name
@@ -42,7 +42,7 @@ class Line:
 
     def __init__(self, *_: object) -> None:
         self.run, self.program = 0, PROGRAM
-        self.unsaved_looks = 0  # for which it goes on saving its program
+        self.unsaved_looks = 0  # for which it is still saving its program
         self.events: list[tuple[int, Event]] = []
         self.did: list[str] = []
         self.drives_another = self.holds_for_others = False
@@ -151,7 +151,7 @@ def test_leaving_is_about_the_last_program_alone(
 
 
 def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the others are compared with. Ctrl-C stops whatever anybody has started."""
+    """The reference for the others. Ctrl-C stops any run."""
     for story, calls in (
         (("start", "runs on", False), ["stop", CLOSE]),
         (("start detached", "runs on", False), [CLOSE]),
@@ -168,7 +168,7 @@ def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_what_a_program_tells_late_is_of_its_own_text(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The next one has the same code. Its own events nobody has looked at before that."""
+    """The next one has the same code. Its own events were not read before that."""
     robot, line = connect_client(monkeypatch)
     for name, end in (("NEAR", "; "), ("FAR", "\n")):
         compilation = compile_text(f"SI|{name} = TIME{end}SHOW({name} / 0)", KIT)

@@ -1,4 +1,4 @@
-"""Which SHOW of a text has shown a value, and what it is called."""
+"""Finds the SHOW of a text that has shown a value, and its name."""
 
 from __future__ import annotations
 

@@ -160,7 +160,7 @@ def test_a_variable_is_a_yes_no_where_a_show_of_it_is_one() -> None:
         compilation = compile_text(text, kit)
         for name, is_yes_no in zip(compilation.variables, compilation.yes_no_flags, strict=True):
             shown = compile_text(f"{text}\nSHOW({name})", kit)
-            if shown.is_right:  # else it is a value of a DEF
+            if shown.is_right:  # otherwise it is a value of a DEF
                 assert shown.program
                 last = shown.program.body[-1]
                 assert isinstance(last, Show) and last.is_yes_no == is_yes_no, (seed, name)

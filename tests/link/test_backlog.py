@@ -1,4 +1,4 @@
-"""A device that chatters forever, while nobody looks, costs no more than a silent one."""
+"""A device that chatters forever without a reader costs no more than a silent one."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Chatterbox:
 
 
 def test_a_line_that_nobody_looks_at_keeps_little() -> None:
-    """So it is at the prompt of `tsc live`, and where `tsc monitor` writes into a full pipe."""
+    """This happens at the prompt of `tsc live`, and when `tsc monitor` writes into a full pipe."""
     port = Chatterbox()
     tracemalloc.start()
     try:

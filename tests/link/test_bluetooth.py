@@ -37,14 +37,14 @@ LARGEST = 65  # bytes of a frame on the wire
 
 @pytest.fixture(autouse=True)
 def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No cable, and nobody in the network, is waited for; modules say their names more often."""
+    """Skip the waits for cables and the network; modules announce their names more often."""
     monkeypatch.setattr("tiniscript.link.ports.list_ports", list)
     monkeypatch.setattr("tiniscript.link.ports.find_announced_robots", list)
     monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.LINGER_S", 16 * ADVERTISED_S)
     monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.LIST_S", 30 * ADVERTISED_S)
 
 
-# -- what is done -------------------------------------------------------------------------------
+# -- requests -----------------------------------------------------------------------------------
 
 
 def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot) -> None:
@@ -68,7 +68,7 @@ def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot
 def test_a_long_program_arrives_whole(
     bluez: FakeBluez, pty_robot: PtyRobot, tmp_path: Path, service: str, mtu: int, late_s: float
 ) -> None:
-    """Whatever was negotiated, and where notifications come late."""
+    """This holds for any negotiated size, and for late notifications."""
     ble = BleRobot(pty_robot, service=service, mtu=mtu, late_s=late_s)
     bluez.add(ble)
     ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
@@ -92,7 +92,7 @@ def test_where_a_module_answers_each_write_it_is_waited_for(
     assert pty_robot.actions == DROVE
 
 
-# -- who has the port ---------------------------------------------------------------------------
+# -- holders of the port -------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("port", [NAME, PLACE, ""])

@@ -1,4 +1,4 @@
-"""What ends a connection over Bluetooth LE, at every stage, and what keeps one from beginning."""
+"""Reasons why a connection over Bluetooth LE ends, at every stage, or fails to begin."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tiniscript.link import errors, ports
 
 
 def stops_by_itself(ble: BleRobot) -> None:
-    """Nobody is there to stop it."""
+    """No client is there to stop it."""
     ble.robot.until(lambda: not ble.robot.moves, "the dead-man timer stops it")
 
 
@@ -105,7 +105,7 @@ def test_an_adapter_that_is_gone_ends_the_command(
     else:
         bluez.vanish()
     result = command.wait_for_result().gives(3, "the Bluetooth connection")
-    assert result.err.count("\n") == 1  # nothing of bleak's
+    assert result.err.count("\n") == 1  # no part of bleak
     stops_by_itself(ble)
     result = inside("stop", "--port", PLACE, "--lang", "es")
     message = "el servicio de Bluetooth" if what == "vanish" else "el Bluetooth de esta computadora"

@@ -1,5 +1,5 @@
-"""Whatever ends an attempt to open a port by Bluetooth LE, at whatever stage: the device is free
-for others, and the next attempt is as the first one."""
+"""However an attempt to open a port by Bluetooth LE ends, at any stage, the device is free for
+others, and the next attempt works like the first."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ UART = bluetooth.UART_SERVICES[0]
 
 
 class Device:
-    """What a radio knows of a device: who is connected to it."""
+    """A device as the radio sees it, with its connections."""
 
     def __init__(self) -> None:
         self.fails_at = ""
@@ -117,7 +117,7 @@ def works(loop: event_loop.EventLoop, device: Device) -> None:
         assert len(device.clients) == 1
         port.close()
         assert device.clients == []
-        port.close()  # does nothing
+        port.close()  # no effect
     assert device.notified == before + 2
 
 
@@ -154,7 +154,7 @@ def test_what_is_no_robot_is_left(loop: event_loop.EventLoop, lacks: str) -> Non
 def test_ctrl_c_leaves_the_device(
     loop: event_loop.EventLoop, stage: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Within any look of who waits."""
+    """It may come during any check of a waiting caller."""
     device = Device()
     device.fails_at = stage
 

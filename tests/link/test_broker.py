@@ -126,7 +126,7 @@ def test_a_process_connects_whenever_its_broker_is_there(tmp_path: Path, seed: i
             connection.close()
 
 
-# -- what a computer says is said once ------------------------------------------------------------
+# -- a computer's messages are sent once ----------------------------------------------------------
 
 
 def flush(client: Broker) -> None:
@@ -186,7 +186,7 @@ def message(bytes_of_it: int) -> bytes:
 
 @pytest.mark.parametrize("size", [MESSAGE_BYTES, MESSAGE_BYTES + 1, 10_000, SKIPPED_BYTES - 1000])
 def test_a_retained_message_that_is_too_large_is_left_out(school: Mosquitto, size: int) -> None:
-    """It stands before a robot, between robots and after one, and is named."""
+    """It may come before a robot, between robots and after one, and is named."""
     topics = [f"{broker.ROOT}/3b/{name}" for name in ("0000000f", "fff", "x" * 300)]
     more = [{"topic": topic, "payload": bytes(size), "qos": 1, "retain": True} for topic in topics]
     more.append({"topic": f"{broker.ROOT}/3b/ffffffff", "payload": "+Z", "qos": 1, "retain": True})

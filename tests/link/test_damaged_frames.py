@@ -37,7 +37,7 @@ class Line(NamedTuple):
 
 
 def judge(sent: Line, accepted: list[Frame]) -> None:
-    """Assert that nothing wrong was accepted, and that damage costs one more frame at most."""
+    """Assert that no wrong frame was accepted, and that damage costs at most one more frame."""
     numbers = {frame: number for number, frame in enumerate(sent.frames)}
     judgements = []
     for frame in accepted:
@@ -65,7 +65,7 @@ def frame_of(data: bytes) -> Frame:
 
 
 def whole_frames(rows: list[str]) -> list[Frame]:
-    """Return the whole frames in what a receiver has found."""
+    """Return the whole frames among a receiver's packets."""
     frames = []
     for row in rows:
         if row.endswith(" whole"):

@@ -1,7 +1,7 @@
-"""What people, apps and radio modules really send, to the whole link of a robot.
+"""Bytes that people, apps and radio modules really send, given to the whole link of a robot.
 
-A right line after their bytes runs, or an answer says why not: nothing is met with silence. A
-glitch that is a 0x00, at any byte, has no other program run than the one that was typed, and a
+A correct line after their bytes runs, or an answer gives the reason: silence is never the reaction.
+A glitch that is a 0x00, at any byte, has no other program run than the one that was typed, and a
 person and a computer in turns at one port are both heard.
 `python -m tests.link.test_field 100000` tries more than the tests.
 """
@@ -52,7 +52,7 @@ PAUSES_MS = (0, 0, 50, 300, 1200, 2500, 3500)
 
 
 class Robot:
-    """A robot whose clock goes on by a millisecond for each byte, or as one likes."""
+    """A robot whose clock advances by a millisecond for each byte, or as the test wants."""
 
     def __init__(self, cpp: CppLink) -> None:
         self.cpp = cpp
@@ -82,7 +82,7 @@ class Robot:
 
     @property
     def programs(self) -> set[str]:
-        """What was begun: each row has the program's checksum."""
+        """The programs that were begun: each row has the checksum."""
         return {row for row in self.did if row.startswith("TEXT")}
 
 

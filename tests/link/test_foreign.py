@@ -29,7 +29,7 @@ EACH = pytest.mark.parametrize("recording", RECORDINGS.values(), ids=RECORDINGS)
 
 
 def our_bytes() -> list[bytes]:
-    """Return what robots send in the cases of the link: frames, lines of text, zeros."""
+    """Return the robots' bytes in the cases of the link: frames, lines of text, zeros."""
     recordings = []
     for name in ("link.md", "link_text.md"):
         text = (CASES / name).read_text(encoding="utf-8")
@@ -64,7 +64,7 @@ def test_each_row_has_a_recording() -> None:
 
 @EACH
 def test_a_recording_that_is_cut_is_of_that_board_or_of_none(recording: Recording) -> None:
-    """A piece identifies less, and nothing wrong: an ESP32's boot messages precede the sketch's."""
+    """A piece identifies less, but nothing wrong: an ESP32's boot messages precede the sketch's."""
     also = {recording.name, "esp32", None}
     if recording.data.endswith(b">>> "):
         also |= {"micropython"}
@@ -92,7 +92,8 @@ def test_noise_before_a_recording_changes_nothing(recording: Recording, before: 
 
 
 def test_two_bytes_alone_say_nothing() -> None:
-    """Neither those of an mBot nor the version of Firmata's protocol: noise has them, too."""
+    """Neither those of an mBot nor the version of Firmata's protocol prove anything: noise contains
+    them, too."""
     for few in (b"\xff\x55", b"\xf9\x02\x05", b"\xff\x55\r", b"\xf0\x79\x02\x05\xf7", b"\r\n"):
         assert identify_stranger(few) is None
 
@@ -105,7 +106,7 @@ def test_the_two_that_send_high_bytes_are_told_apart() -> None:
         assert rows == [name]
 
 
-# -- what is none -------------------------------------------------------------------------------
+# -- other devices --------------------------------------------------------------------------------
 
 
 @EACH
@@ -132,7 +133,7 @@ def test_much_noise_is_no_board() -> None:
 
 @given(st.lists(st.sampled_from(OURS), min_size=1, max_size=6), st.binary(max_size=20))
 def test_a_robot_is_no_board(traffic: list[bytes], noise: bytes) -> None:
-    """With any noise around them, frames and lines are recognized first."""
+    """Frames and lines are recognized first, with any noise around them."""
     for data in (b"".join(traffic), noise + b"\0" + b"".join(traffic) + noise):
         assert identify_stranger(data) is None or not foreign.is_robot(data)
         if any(foreign.is_robot(data) for data in traffic):
@@ -161,7 +162,7 @@ def test_a_piece_of_a_robot_s_bytes_is_no_board(piece: int) -> None:
 
 
 def test_what_a_computer_sends_is_no_robot_s() -> None:
-    """It comes back from what echoes."""
+    """A device that echoes returns it."""
     assert not foreign.is_robot(b"\0" + encode_frame(Frame(1, 3, 7, b"123456789")))
 
 

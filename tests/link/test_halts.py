@@ -1,4 +1,4 @@
-"""What is done for a client that has gone: its run ends, and nothing that others want."""
+"""The actions for a client that has left: its run ends, but no request of another client does."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def fetch(session: Session) -> PendingRequest[Any]:
 @pytest.mark.parametrize("wanted", [None, live, upload, long_upload, name, fetch])
 @pytest.mark.parametrize("after_ms", [0, 1, 20, 150])
 def test_its_run_ends_and_what_others_want_is_done(wanted: Ask | None, after_ms: int) -> None:
-    """Whatever of that is under way."""
+    """This holds whatever is in progress."""
     session, robot, run = driving()
     request = wanted(session) if wanted else None
     robot.talk(session, after_ms)
@@ -97,7 +97,7 @@ def test_one_that_waits_is_withdrawn() -> None:
 
 @pytest.mark.parametrize("answers", [OK, "BUSY"])
 def test_a_frame_that_may_start_a_run_is_answered_first(answers: object) -> None:
-    """And nothing more is sent where the robot was busy."""
+    """No more is sent if the robot was busy."""
     session, robot = open_session()
     if answers == "BUSY":
         assert robot.until(session, session.upload(image("SB|SHOW(1)"))) == OK

@@ -1,4 +1,4 @@
-"""Ctrl-C, wherever it falls: it is nothing but a KeyboardInterrupt, and the line goes on."""
+"""Ctrl-C at any moment causes only a KeyboardInterrupt, and the line continues."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Port(PushedTransport):
 
 
 def hail(work: Callable[[], object], count: int = INTERRUPTS) -> None:
-    """Repeat work while Ctrl-C is pressed again and again. Whatever else it raises passes."""
+    """Repeat work while Ctrl-C is pressed again and again. All other exceptions pass."""
     rng = random.Random(1)
     pressed: list[int] = []  # the interpreter discards exceptions in a callback
 

@@ -1,4 +1,4 @@
-"""The keys of a person, in a file or in a page: whatever is done with them, and in which order."""
+"""The keys of a person, in a file or in a page, with any operations in any order."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def add(ring: KeyRing, keys: Iterable[RobotKey]) -> None:
 def test_a_claim_stays_until_it_is_confirmed_or_given_up(
     kind: type[KeyRing], seed: int, tmp_path: Path
 ) -> None:
-    """The robot may have taken its key, and keeps no second copy. What confirms another key, says
-    that the robot has not; only the newest claims of a robot and a person are kept."""
+    """The robot may have taken its key, and keeps no second copy. A robot that confirms another key
+    does not have the claimed one; only the newest claims of a robot and a person are kept."""
     chance = Random(seed)
     ring: KeyRing = KeyFile(tmp_path / "keys.json") if kind is KeyFile else PageKeys(b"")
     claims: list[RobotKey] = []
@@ -79,8 +79,8 @@ def test_a_claim_stays_until_it_is_confirmed_or_given_up(
 
 
 class Robot:
-    """Has a key for each person who has claimed it. Its answers are lost now and then, and it says
-    of a new key what it likes: that it has it, that it will keep it, or that it takes none."""
+    """A robot that has a key for each person who has claimed it. Its answers are lost now and then,
+    and its answer to a new key is arbitrary: it has it, it will keep it, or it accepts none."""
 
     def __init__(self, chance: Random) -> None:
         self.chance = chance
@@ -96,7 +96,7 @@ class Robot:
         return cast(DeviceInfo, SimpleNamespace(id=1, name="TINI", values=values))
 
     def does(self, exchange: Exchange[T]) -> Reply[T] | None:
-        """Answer an exchange; return what came of it, or None where the link was lost."""
+        """Answer an exchange; return the result, or None if the link was lost."""
         try:
             request = next(exchange)
             while True:
@@ -156,7 +156,7 @@ def test_a_robot_is_its_owners_whatever_was_lost_of_claims(
         robot.does(authority.show_keys(ring, robot.info, NONCE, lambda: 0, is_needed=False))
         kept = {key.key for key in ring.keys_of_robot(1)}
         assert {*robot.keys.values()} <= kept
-        robot.loss = 0.0  # before another claim somebody has come through
+        robot.loss = 0.0  # before the claim, another client has connected
         for which, right in robot.keys.items():
             shown = authority.show_keys(ring, robot.info, NONCE, lambda: 0, which, is_needed=False)
             reply = robot.does(shown)

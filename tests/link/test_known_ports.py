@@ -1,4 +1,4 @@
-"""The ports that are remembered: none is lost to a command at once, or for want of room."""
+"""The ports that are remembered: none is lost to a simultaneous command, or for lack of room."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_a_school_has_more_than_a_hundred_robots() -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_the_newest_port_is_first_and_the_one_used_last_is_known(seed: int) -> None:
-    """Whatever was remembered before, and whether it was used or only seen."""
+    """This holds whatever was remembered before, and whether the port was used or only seen."""
     chance, last_port, names = Random(seed), None, dict[str, str]()
     for _ in range(20):
         port, name, is_used = (

@@ -106,7 +106,7 @@ def test_live_code_of_a_large_frame_runs() -> None:
 
 
 def test_a_large_frame_without_its_zero_is_damaged() -> None:
-    """Whether it is looked at while it arrives or after its end; nothing of it runs.
+    """It is refused whether it is checked during its arrival or at its end, and no part of it runs.
 
     On the wire it begins as a large frame does: its epoch is 0.
     """
@@ -232,7 +232,7 @@ def test_a_slow_line_has_little_before_a_stop() -> None:
 @pytest.mark.parametrize(
     ("outcome", "status"),
     [
-        ((OK, 0), LOST),  # it accepts nothing
+        ((OK, 0), LOST),  # it does not accept any
         ((STALE, 0), LOST),  # it calls all of them old, in the epoch of the session
         ((STATUSES["NOT_BEGUN"], 0), STATUSES["NOT_BEGUN"]),
         (None, LOST),

@@ -1,7 +1,7 @@
 """The link on a bad line: bytes lost, changed, doubled, swapped, put in, and radios that drop out.
 
 `python -m tests.link.test_link_channel 10000` plays more uploads than the tests. Everything is
-drawn from a seed. `test_damaged_frames` asks receivers alone, and far more.
+drawn from a seed. `test_damaged_frames` tests only receivers, with many more frames.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ class Split(World):
 @pytest.mark.sampled("is_large", "count", "least")
 @pytest.mark.parametrize(("is_large", "count", "least"), [(False, 300, 0.9), (True, 100, 0.85)])
 def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> None:
-    """No upload says done that is not, and nothing is done twice.
+    """No upload falsely reports success, and none is done twice.
 
-    Of large frames several are under way; some come twice or in another order.
+    Several large frames are under way; some arrive twice or out of order.
     """
     counts = Counter(run_upload_scenario(cpp_link(is_large), seed) for seed in range(count))
     assert counts["done"] > count * least, counts

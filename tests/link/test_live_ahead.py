@@ -1,4 +1,4 @@
-"""A robot makes the image of LIVE before its frame ends: that changes nothing but when it runs.
+"""A robot makes the image of LIVE before its frame ends: that only changes when it runs.
 
 A robot that looks at its bytes one by one does so, one that looks after the last byte cannot.
 """
@@ -66,7 +66,7 @@ def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
 
 @pytest.mark.parametrize("code", CODES)
 def test_it_does_not_run_before_its_frame_ends(code: bytes) -> None:
-    """The running program goes on until then."""
+    """The running program continues until then."""
     for runs in (False, True):
         robot = open_session()
         if runs:
@@ -79,7 +79,7 @@ def test_it_does_not_run_before_its_frame_ends(code: bytes) -> None:
 
 @pytest.mark.parametrize("text", [*TEXTS, "SI|TASK;SHOW(1);END_TASK"])
 def test_a_robot_makes_the_image_of_the_compiler(text: str) -> None:
-    """Without tasks it is one of 2.0, in a session of 2.1 too."""
+    """Without tasks it is an image of 2.0, even in a session of 2.1."""
     image = compile_text(text, KIT).image
     sent = open_session().step(10, live(unpack(image).code)).sent
     replies = [frame for frame in map(decode_frame, sent.split(b"\0")) if frame is not None]

@@ -1,4 +1,4 @@
-"""Live lines over a bad radio: a line whose answer is lost is sent again, and never done twice.
+"""Live lines over a bad radio: a line whose answer is lost is sent again, but never executed twice.
 
 `python -m tests.link.test_live_lines 1000000` sends more of them than the tests.
 """
@@ -69,7 +69,7 @@ def line_of(number: int) -> bytes:
 
 
 def test_live_lines_over_a_bad_radio() -> None:
-    """None is done twice, however often its answer is lost."""
+    """None is executed twice, however many times its answer is lost."""
     counts = lives(cpp_link(), LIVES, SEED)
     assert counts["OK"] > LIVES * 0.8 and counts["sent again"] > LIVES * 0.1, counts
 

@@ -1,5 +1,5 @@
-"""What goes on ends well: no request is given up while few packets in a row are lost, or while the
-robot shows every so often that it goes on; and whatever is lost, each one ends.
+"""A running request ends well: it is not given up while few packets in a row are lost, or while the
+robot regularly shows progress; and whatever is lost, each request ends.
 
 `python -m tests.link.test_liveness 2000` tries more.
 """
@@ -109,7 +109,7 @@ def check(seed: int) -> str:
         status = until(session, robot, line, request, pieces * EACH_MS)
         assert status == OK, f"{explanation}: {status}"
     if name == "what goes on alone":
-        robot.wait(2 * DEAF_MS)  # the client that sent it has gone
+        robot.wait(2 * DEAF_MS)  # the client that sent it has left
         assert not robot.is_latched, explanation
     return name
 
@@ -153,7 +153,7 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
 
 
 def lost_after_ms(session: Session, robot: HostFirmware) -> int:
-    """Return how long a line is dead until the session tells that."""
+    """Return how long a line is dead before the session reports it."""
     began_ms = robot.now_ms
     while "LOST" not in [event.name for event in session.events()]:
         session.poll(robot.now_ms)
@@ -171,7 +171,7 @@ HEARD: dict[str, Callable[[Session, HostFirmware], object]] = {
 
 @pytest.mark.parametrize("heard", HEARD)
 def test_a_line_that_was_heard_has_its_whole_time_again(heard: str) -> None:
-    """However near to its end it was, while something runs and while nothing does."""
+    """This holds however near its end was, with and without a running program."""
     robot, session = switched_on(), computer()
     for dead_ms in range(0, DEAF_MS, 215):
         assert robot.until(session, session.hello()) == OK

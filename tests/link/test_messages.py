@@ -70,7 +70,7 @@ def test_features_share_no_bit_and_levels_have_the_names_of_their_table() -> Non
 
 
 def test_every_payload_fits_a_frame() -> None:
-    """A small one, but for what fills a frame: that fills a large one, too."""
+    """It fits a small one; a payload that fills a frame can fill a large one, too."""
     large = payload_bytes(LARGE_FRAME)
     for message in MESSAGES:
         for fields, before in ((message.request, 0), (message.reply, message.number < FIRST_EVENT)):
@@ -83,7 +83,8 @@ def test_every_payload_fits_a_frame() -> None:
 
 @each_row("length", range(PAYLOAD_BYTES - 2, payload_bytes(LARGE_FRAME) + 1))
 def test_no_frame_can_be_a_line(length: int) -> None:
-    """Of a computer or a robot, sealed or not: the receiver looks at two bytes."""
+    """This holds for frames of a computer or a robot, sealed or not: the receiver looks at two
+    bytes."""
     for number in (message.number for message in MESSAGES if message.number < FIRST_EVENT):
         for flags in ((False, False), (True, False), (False, True)):
             payload = b"\0" * flags[1] + b"\1" * (length - flags[1])

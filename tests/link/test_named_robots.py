@@ -34,8 +34,8 @@ def network() -> ModuleType:
     return network
 
 
-# Every announcement is heard by all tests of this computer: names are of one test process, and
-# those that list what is announced, or fill the list, run one at a time.
+# Every announcement is heard by all tests of this computer: names are unique to a test process, and
+# tests that list the announcements, or fill the list, run one at a time.
 HERE = os.getpid()
 FAR = f"far-{HERE}.local."
 LATE_S = 0.04  # each way

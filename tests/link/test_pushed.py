@@ -15,7 +15,7 @@ from tiniscript.link.transports.pushed import END_REASON, MOST_BUFFERED_BYTES, P
 class Waits:
     """The bell of one thread, which counts how many times it would have waited.
 
-    What comes meanwhile is brought by `then`.
+    `then` delivers the frames that arrive meanwhile.
     """
 
     def __init__(self) -> None:
@@ -24,7 +24,7 @@ class Waits:
         self.port: PushedTransport | None = None
 
     def ring(self) -> None:
-        """Nobody else is there."""
+        """No one else is connected."""
 
     def wait(self, limit_s: float) -> None:
         assert limit_s == READ_S

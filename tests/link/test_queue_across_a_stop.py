@@ -1,8 +1,8 @@
-"""Requests from before a stop start nothing after it, whoever stopped the robot, and whatever is
-lost on the way.
+"""Requests from before a stop start no program after it, whoever stopped the robot, and whichever
+frames are lost.
 
-Random requests wait for each other; at any moment somebody stops the robot. `Session` knows of it
-from an event, from a reply, or is what stops; the robot knows the epoch of each frame.
+Random requests wait for each other; at any moment somebody stops the robot. `Session` learns of it
+from an event, from a reply, or by stopping itself; the robot knows the epoch of each frame.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Keys of a remote control, from a person to a program: the newest state, and none older than the
 release of a key.
 
-A word is KEYS; what a program reads is asked of the robot's own firmware.
+A word is KEYS; the program's readings come from the robot's own firmware.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ LIVE = BY_NAME["LIVE"]
 
 
 class Hand:
-    """Somebody who holds keys, says so every 100 ms, and at each change at once."""
+    """A person who holds keys: they are sent every 100 ms, and immediately at each change."""
 
     def __init__(self, session: Session, robot: HostFirmware) -> None:
         self.session, self.robot = session, robot
@@ -182,7 +182,7 @@ def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(4))
 def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
-    """What is held is mostly read, and what was let go is never read later than 0.5 s after."""
+    """Held keys are mostly read, and released keys are never read more than 0.5 s later."""
     rng = random.Random(seed)
     one = hand()
     read = looks = 0
@@ -228,7 +228,8 @@ def test_who_falls_silent_holds_nothing() -> None:
 
 
 def test_two_who_press_on_one_line() -> None:
-    """All their keys, and the pad of who moved his last; who goes lets his go."""
+    """All their keys count, and the pad that was moved last; a person who leaves releases their
+    keys."""
     session, robot = open_session()
     session.press(*UP, 1)
     session.press(A.keys, 10, 20, 2)
@@ -271,7 +272,7 @@ def test_keys_that_never_rest_leave_others_their_turn() -> None:
 
 
 def test_keys_go_between_the_tries_of_a_request_that_waits() -> None:
-    """A name that is kept as soon as the motors stand."""
+    """The request is a name, which is saved as soon as the motors are off."""
     one = hand()
     assert one.robot.until(one.session, one.session.upload(image(DRIVES), saves=False)) == OK
     name = one.session.name(b"Ana")
@@ -331,8 +332,8 @@ def test_a_stop_by_somebody_else_voids_what_is_held(how: str) -> None:
 
 @pytest.mark.parametrize("seed", range(24))
 def test_what_was_held_before_a_stop_is_not_held_after_it(seed: int) -> None:
-    """This holds before the next state arrives: whoever held the keys, however soon the next
-    program begins.
+    """This holds before the next state arrives, for any holder, however soon the next program
+    begins.
     """
     rng = random.Random(seed)
     session, robot = open_session()
@@ -389,7 +390,7 @@ def test_a_lost_link_and_one_that_is_found_again() -> None:
     assert one.robot.remote() == remote_readings(UP), "who goes on pressing is heard again"
 
 
-# -- who may -------------------------------------------------------------------------------------
+# -- permissions ----------------------------------------------------------------------------------
 
 
 def test_an_older_robot_is_told_nothing() -> None:
@@ -441,7 +442,7 @@ def test_only_who_may_run_a_line_presses_keys_of_a_robot_with_an_owner(
 
 
 class Wire:
-    """Who writes frames by hand, each with the next number."""
+    """Writes frames by hand, each with the next number."""
 
     def __init__(self) -> None:
         self.session, self.robot = open_session()

@@ -1,4 +1,4 @@
-"""The robot's half of the link in C++: dead-man timer, stops, echoes, and who is listened to."""
+"""The robot's half of the link in C++: dead-man timer, stops, echoes, and whom it listens to."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_a_detached_program_and_what_the_button_has_started_go_on(name: str) -> 
 
 
 def test_a_long_silence_is_no_short_one() -> None:
-    """Times are 16 bits: after a minute a robot still knows that it has heard nothing."""
+    """Times are 16 bits: after a minute, a robot still knows about the silence."""
     cpp = robot_with_session()
     for now_ms in range(0, 200_000, 500):
         sent = cpp.step(now_ms).sent
@@ -100,7 +100,7 @@ def test_many_stops_that_nobody_has_looked_at_are_not_none() -> None:
 def test_an_echo_of_everything_starts_no_endless_conversation(
     late_ms: int, piece_bytes: int, gap_ms: int, before: bytes
 ) -> None:
-    """A terminal or a radio module that sends back what it gets, whole and in pieces."""
+    """A terminal or a radio module echoes its input, whole and in pieces."""
     cpp = cpp_link()
     cpp.begin(kit=KIT)
     under_way = [(0, b"F(2,800)\r\n")]
@@ -130,7 +130,7 @@ def test_a_module_that_answers_each_line_gets_few_answers(line: bytes) -> None:
 
 
 def test_a_slow_line_back_costs_no_answer() -> None:
-    """What comes before the last answer could be sent waits."""
+    """Requests that arrive before the last answer could be sent wait."""
     cpp = robot_with_session()
     data = b"".join(encode_frame(Frame(2, seq, 10)) for seq in (2, 3, 4))
     sent = cpp.step(10, data, is_slow=True).sent

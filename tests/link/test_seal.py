@@ -1,7 +1,7 @@
 """The seal of a session: both halves agree on the same bytes, and reject others.
 
-The bytes are made here anew from what `docs/develop/owners.md` says, with SipHash-2-4 alone, which
-has the vectors of its authors.
+The bytes are derived here independently from `docs/develop/owners.md`, with only SipHash-2-4, which
+is tested with its authors' vectors.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ NUMBERS = [
     number for number in range(1, 64) if number != BY_NAME["WIFI"].number
 ]  # that is covered, too
 ORIGIN = CHALLENGE + bytes.fromhex("04030201 05060708 0a 00")
-# Of the messages 00, 00 01, 00 01 02 ...: from the empty one, which of each length of a last block.
+# For the messages 00, 00 01, 00 01 02 ..., one for each length of a last block, beginning with the
+# empty one.
 VECTORS = [
     "310e0edd47db6f72",
     "fd67dc93c539f874",

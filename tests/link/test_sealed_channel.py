@@ -114,7 +114,7 @@ class SealedWorld(World):
         return encode_frame(Frame(message.number, seq, epoch, payload))
 
     def answer_unsealed(self, asked: Frame) -> bytes:
-        """Return an answer that has no seal: HELLO as a robot that seals nothing, or done."""
+        """Return an unsealed answer: HELLO as from a robot without seals, or success."""
         message = next(message for message in MESSAGES if message.number == asked.number)
         payload = b"\0" + self.draw.randbytes(sum(field.least_bytes for field in message.reply))
         if message.name == "HELLO" and self.greeting:
@@ -126,7 +126,7 @@ class SealedWorld(World):
 
 
 class QuietWorld(SealedWorld):
-    """Nobody else is there."""
+    """No other client is connected."""
 
     def disturb(self) -> None: ...
 
@@ -142,7 +142,8 @@ class QuietWorld(SealedWorld):
     ],
 )
 def test_sealed_uploads_over_a_bad_radio(world: type[World], is_large: bool, least: float) -> None:
-    """A stranger may end sessions; nothing wrong is done or believed, and much is still done."""
+    """A stranger may end sessions; no forged frame is obeyed or trusted, and many requests still
+    succeed."""
     counts = Counter(
         run_upload_scenario(cpp_link(is_large), seed, world) for seed in range(UPLOADS)
     )

@@ -1,9 +1,9 @@
-"""What a session does after anything is what a fresh one does with the same robot.
+"""After any history, a session behaves as a fresh one does with the same robot.
 
 Random requests, losses of the line, stops, a reset and a silence come first, the same for two
-robots. The end of a run is told once meanwhile. Then the one robot is asked by the session that has
-seen all that, the other one by a fresh session: both are answered and told the same, and about as
-soon.
+robots. Meanwhile, the end of a run is reported once. Then the one robot is asked by the session
+that has seen all that, the other one by a fresh session: both are answered and told the same, and
+about as soon.
 
 `python -m tests.link.test_second_session_use 2000` tries more.
 """
@@ -51,7 +51,7 @@ def first(rng: random.Random) -> Wire:
     """Return both ends when the first story is over."""
     wire = Wire(rng)
     wire.session.tells_starts = True
-    if rng.random() < 0.7:  # it is open, and heartbeats go on
+    if rng.random() < 0.7:  # it is open, and heartbeats continue
         wire.session.hello()
         wire.turns(300)
     for _ in range(rng.randint(1, 4)):
@@ -88,8 +88,8 @@ def happens(rng: random.Random, wire: Wire) -> None:
 def restart(rng: random.Random, wire: Wire) -> None:
     """Reset the robot. Its epoch is the seed's last byte, another one than before.
 
-    After one reset of 256 it is the same: then a lost stop cannot be told from one that has come
-    since, so what is asked for is STALE.
+    After one reset of 256, it is the same: then a lost stop cannot be distinguished from a later
+    one, so requests are STALE.
     """
     epoch = wire.session._epoch + 128 & 0xFF
     seed = (rng.getrandbits(24) | 1) << 8 | epoch
@@ -100,7 +100,7 @@ def restart(rng: random.Random, wire: Wire) -> None:
 
 
 def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
-    """Ask some things one after the other; return what comes of them."""
+    """Make some requests one after the other; return the results."""
     what: list[str] = []
     took_ms: list[int] = []
     for _ in range(4):
@@ -130,7 +130,7 @@ def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
 
 
 def ends_are_told_once(events: list[Event]) -> bool:
-    """Whether nothing that is inferred of a run's end follows what has told that end."""
+    """Return whether no inferred end of a run follows its reported end."""
     is_told = False
     for event in events:
         if isinstance(event, StartedEvent):
@@ -173,7 +173,7 @@ def open_wire(rng: random.Random) -> Wire:
 def test_who_has_restarted_does_what_is_asked_when_the_line_is_there_again(
     dead_ms: int, is_stopped: bool
 ) -> None:
-    """Though the question who it is was lost, or dropped by a stop."""
+    """This holds even if the query of its identity was lost, or dropped by a stop."""
     rng = random.Random(dead_ms)
     wire = open_wire(rng)
     restart(rng, wire)
@@ -230,7 +230,7 @@ def test_who_is_found_again_tells_where_its_program_is() -> None:
 
 
 def lose(wire: Wire) -> bool:
-    """Block both directions; return whether the session reports that and nothing else."""
+    """Block both directions; return whether the session reports only that."""
     wire.session.events()
     events: list[Event] = []
     for _ in range(800):

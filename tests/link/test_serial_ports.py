@@ -1,4 +1,4 @@
-"""Serial ports: what another program reads at the same time, and what ends one."""
+"""Serial ports: simultaneous reads by another program, and the end of a port."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The computer's session: retries, waits, the heartbeat, the stop, and what a robot answers."""
+"""The computer's session: retries, waits, the heartbeat, the stop, and a robot's answers."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ LOW, SAVING = STATUSES["LOW_SUPPLY"], STATUSES["SAVING"]
 
 
 def sending(session: Session, until_ms: int) -> list[tuple[int, bytes]]:
-    """Return what a session sends when it is woken exactly when it wants to be."""
+    """Return a session's output if it is woken exactly when it requested."""
     packets = []
     while (at := session.wakes_at()) is not None and at <= until_ms:
         data = session.poll(at)
@@ -81,8 +81,8 @@ def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
 
 
 def test_a_retry_learns_how_long_an_answer_takes() -> None:
-    """Four variations above the mean, as RFC 6298 has it; an answer to a repetition tells nothing
-    of its own time, and the doubled timer stays."""
+    """The timeout is four variations above the mean, as in RFC 6298; an answer to a repetition does
+    not reveal its own time, and the doubled timer stays."""
     session = greet(115_200)
     session.is_attached = False
     now_ms = 0
@@ -179,7 +179,7 @@ def test_another_stop_confirms_none(cause: int) -> None:
 
 @pytest.mark.parametrize("cause", [3, 5])
 def test_a_robot_that_another_has_stopped_confirms_in_its_epoch(cause: int) -> None:
-    """It tells the first cause each time; the session may know of that stop, or not yet."""
+    """It reports the first cause each time; the session may know of that stop, or not yet."""
     for is_known in (True, False):
         session = greet() if is_known else Session(1, kit=KIT)
         if is_known:
@@ -214,7 +214,8 @@ def test_a_move_after_another_stop_does_not_go_unseen() -> None:
 
 
 def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> None:
-    """The frame that does it is under way. What was not sent, or was refused, is not done."""
+    """The frame that does it is under way. Requests that were not sent, or were refused, have no
+    effect."""
     session = greet()
     live, waits = session.live(FORWARD), session.start()
     session.poll(0)
@@ -378,7 +379,8 @@ Request = PendingRequest[ReceiptReply]
 
 
 def upload_image(image: Image, kit: int | None, is_refused: int = 0) -> tuple[list[str], Request]:
-    """Return what a session sends to bring an image, and the request; the robot takes it all."""
+    """Return a session's output for the upload of an image, and the request; the robot accepts all
+    of it."""
     session = greet()
     request = session.upload(image, kit=kit)
     names: list[str] = []
@@ -484,7 +486,7 @@ def test_a_busy_robot_is_asked_again_but_not_for_ever(busy_ms: int, ends: int) -
 def test_hello_tells_whether_another_epoch_voids_what_waits(
     epoch: int, values: dict[str, int], is_void: bool
 ) -> None:
-    """The answer bears another epoch, which nothing has announced."""
+    """The answer has another epoch, which was not announced."""
     session = Session(1, kit=KIT)
     session.hello()
     first, second = session.live(FORWARD), session.live(FORWARD)
@@ -499,7 +501,8 @@ def test_hello_tells_whether_another_epoch_voids_what_waits(
 
 
 def lost_at(session: Session, now_ms: int = 0) -> int:
-    """Let nobody answer, and check every millisecond; return when the robot is given up."""
+    """Leave all frames unanswered, and check every millisecond; return when the robot is given
+    up."""
     for at in range(now_ms, now_ms + 10_000):
         session.poll(at)
         if [event.name for event in session.events()] == ["LOST"]:
@@ -545,7 +548,7 @@ def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
 
 @pytest.mark.parametrize("reading_count", [0, 3, 12, 10_000])
 def test_the_end_of_a_run_waits_for_its_readings_and_nobody_else_does(reading_count: int) -> None:
-    """Its event is lost; a robot that never has enough of readings still does what it is asked."""
+    """Its event is lost; a robot that sends readings endlessly still obeys requests."""
     session, at = over()
     values: dict[str, int | bytes] = {"run": 1, "sensor": 0, "value": 7, "ms": 0}
     told_count, request = 0, session.name(b"Ana")
@@ -567,7 +570,7 @@ def test_the_end_of_a_run_waits_for_its_readings_and_nobody_else_does(reading_co
 
 
 def test_an_upload_that_waits_for_the_button_tells_the_end_of_the_run_before_it() -> None:
-    """The upload ended that run, and nothing of it is reported after the button's run."""
+    """The upload ended that run, and no event of it is reported after the button's run."""
     robot = HostFirmware(ROBOT.kit)
     robot.wait(200)
     session = Session(1, kit=KIT)

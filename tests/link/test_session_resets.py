@@ -59,7 +59,7 @@ def test_a_robot_that_was_reset_and_started_by_its_button_has_another_run() -> N
 
 
 def test_a_run_in_the_place_of_ours_is_no_end_of_it() -> None:
-    """The robot was not reset: somebody else has started something else on it."""
+    """The robot was not reset: another client has started another run on it."""
     session, robot = running()
     other = Session(2, 9600, KIT.fingerprint)
     other.hello()

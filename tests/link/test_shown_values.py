@@ -75,7 +75,8 @@ def test_a_place_that_is_cut_is_none(place: bytes) -> None:
 
 
 def test_the_program_of_a_run_that_somebody_else_has_started_is_asked_for() -> None:
-    """Once for each run; its values wait for the answer, and are reported in their order."""
+    """It is requested once for each run; its values wait for the answer and are reported in
+    order."""
     session = greet(features=PLACES)
     assert events_after(session, value(1, 3, 2)) == [], "it waits"
     reply = answer_to_ping(session, 3, OTHER, 20)

@@ -1,4 +1,4 @@
-"""Uploads over lines that are slow, late or lose bytes: what makes progress is not given up.
+"""Uploads over lines that are slow, late or lose bytes: an upload with progress is not given up.
 
 The robot is the firmware's link, on a clock of the test.
 """
@@ -25,11 +25,12 @@ from tools.bench.large_upload import MOVE, Wire
 
 OK, STALE = STATUSES["OK"], STATUSES["STALE"]
 STEP_MS = 5
-LOOK_MS = 50  # between two looks of a robot that hears nothing
+LOOK_MS = 50  # between two checks of a robot that hears nothing
 
 
 def program(code_bytes: int) -> Image:
-    """Return a program of about so many bytes, without an S: a frame that is cut could say stop."""
+    """Return a program of about this many bytes, without an S: a cut frame could otherwise contain
+    a stop."""
     moves = b"".join(bytes((MOVE, k % 80, k // 80)) for k in range(code_bytes // 3))
     return unpack(pack("SI", 0, moves))
 
@@ -43,7 +44,8 @@ class Line(NamedTuple):
 
 
 class Talk:
-    """A computer and a robot with a line between them. The port says `baud`, whatever the line."""
+    """A computer and a robot with a line between them. The port reports `baud`, whatever the
+    line."""
 
     def __init__(self, line: Line, baud: int = 9600, is_large: bool = False, seed: int = 1) -> None:
         self.line, self.is_large = line, is_large
@@ -113,7 +115,7 @@ def test_an_upload_that_goes_on_is_not_given_up(code_bytes: int, line: Line) -> 
 
 
 class LossyWire(Wire):
-    """What is sent at once is lost whole, so often in a row at most."""
+    """Everything sent at once is lost together, at most a given number of times in a row."""
 
     in_a_row = losses = lost = 0
     draw = random.Random()

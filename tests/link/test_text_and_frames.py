@@ -1,8 +1,8 @@
-"""Everything is text until a 0x00: what arrives of a sender that keeps the rule, and of one that
-does not.
+"""Everything is text until a 0x00: the data received from a sender that keeps the rule, and from
+one that does not.
 
-The properties are functions that raise. Each one is seen to hold for the sender of the computer,
-and to fail for a sender that leaves out what it is about.
+The properties are functions that raise. Each law holds for the computer's sender, and fails for a
+sender that omits the zeros that it is about.
 """
 
 from __future__ import annotations
@@ -181,7 +181,7 @@ class Late(TextSender):
 
 
 class WithoutFirst(TextSender):
-    """Sends none before the first frame, and none after text."""
+    """Sends no zero before the first frame, and none after text."""
 
     def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         self._sent_ms = now_ms if self._sent_ms is None else self._sent_ms
@@ -189,7 +189,7 @@ class WithoutFirst(TextSender):
 
 
 class WithoutRepeated(TextSender):
-    """Sends none before a frame that is repeated."""
+    """Sends no zero before a repeated frame."""
 
     def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         return super().prepare_frames(frames, now_ms, False)
@@ -226,7 +226,7 @@ def test_a_sender_that_does_not_is_noticed(law: Property, sender: type[TextSende
 
 def test_heartbeats_cost_no_zero_and_the_rule_looks_at_what_was_sent() -> None:
     sender = Sender()
-    assert sender.prepare_frames(b"a\0", 0) == b"\0a\0"  # nothing was sent before
+    assert sender.prepare_frames(b"a\0", 0) == b"\0a\0"  # no byte was sent before
     for now_ms in range(200, 2000, 200):
         assert sender.prepare_frames(b"a\0", now_ms) == b"a\0"
     assert sender.prepare_frames(b"a\0", 2199) == b"a\0"

@@ -1,4 +1,4 @@
-"""Which lines are typed stops, whatever their spelling; the robot's matcher has to say the same."""
+"""Lines that are typed stops, in any spelling; the robot's matcher has to agree."""
 
 from __future__ import annotations
 

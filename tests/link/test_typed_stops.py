@@ -1,4 +1,4 @@
-"""Typed stops where bytes arrive: found after whatever came before, and in no frame that is whole.
+"""Typed stops where bytes arrive: found after any earlier bytes, and never in a whole frame.
 
 Prefixes, frames and damage are made and judged in C++ with the robot's receiver, which reads a line
 backwards to know whether it is a stop.

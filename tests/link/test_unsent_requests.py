@@ -1,7 +1,7 @@
 """A request that was not sent before a reset, a fault or a stop of the robot.
 
-After a reset or a fault it is answered as if it were asked then. A stop voids it, whatever tells
-of the stop.
+After a reset or a fault, it gets the answer that it would get if it were sent then. A stop voids
+it, whatever reports the stop.
 """
 
 from __future__ import annotations

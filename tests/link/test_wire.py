@@ -1,4 +1,4 @@
-"""The wire of a port: how long it listens, and what becomes of a port that is gone."""
+"""The wire of a port: how long it listens, and its reaction to a lost port."""
 
 from __future__ import annotations
 

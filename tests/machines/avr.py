@@ -1,7 +1,7 @@
 """The machine in C++ on a simulated ATmega328P or ATmega2560.
 
 Builds `vm_arduino/extras/avr` with avr-g++ once, writes each request into the built program where
-its flash waits for it, and lets `simavr` run that. What comes out of the UART is the answer.
+its flash waits for it, and lets `simavr` run that. The answer is the output of the UART.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def program(chip: str) -> bytes:
 def compile_sources(
     what: str, flags: Sequence[str], code: Sequence[str], made_from: list[bytes]
 ) -> Path:
-    """Return the program of sources; what has not changed is used again."""
+    """Return the program of sources; unchanged parts are reused."""
 
     def make(path: Path) -> None:
         words = ["avr-g++", *flags, *code, "-o", str(path)]

@@ -54,7 +54,7 @@ _LEFT_OUT = {"echo": "jk", "analog": "k"}
 
 
 def simulates(board: str, pin: int, ability: str) -> bool:
-    """Return whether a pin of a board does on the simulated chip what it does on a real one."""
+    """Return whether a pin of a board behaves on the simulated chip as on a real one."""
     return board != "mega" or AVRS[board].bit_by_pin[pin].port not in _LEFT_OUT.get(ability, "")
 
 
@@ -122,7 +122,7 @@ def flags_for(header: str) -> tuple[str, ...]:
 
 @lru_cache(maxsize=32)
 def build_sketch(header: str, board: str, more: str = "") -> bytes:
-    """Return the sketch for the robot of a header, an ELF file; `more` is a file beside it."""
+    """Return the sketch for the robot of a header, an ELF file; `more` is another source file."""
     main = Path(__file__).with_name("board_main.cpp")
     alone = "-Dtiniscript_without_breakpoints"  # no events about halts or readings
     flags = (*flags_of(board, FLAGS), *flags_for(header), alone, *CPP, "-Wall", "-Wextra",
@@ -181,7 +181,7 @@ class Simulated:
         return self.avr.bit_by_pin[pin]
 
     def watch(self, pin: int) -> None:
-        """Watch what the sketch writes to a pin."""
+        """Watch the sketch's output on a pin."""
         self.watched.add(PORTS[self.bit(pin).port])
         if pin in self.avr.compare_by_pin:
             self.watched |= {
@@ -265,7 +265,7 @@ class Board(Simulated):
     def analog(self, channel: int, millivolts: int) -> None:
         self.script.append(f"adc {channel} {millivolts}")
 
-    # -- the run, and what it was like
+    # -- the run, and its results
 
     def sweep(self, step: int, count: int, span_us: float, pin: int) -> None:
         """After the run a pin goes high: `count` times, each `step` cycles later."""

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 
 class Chip(NamedTuple):
-    """`missing` says why there is none. `run` returns a run or raises what refuses the image."""
+    """`missing` is the reason why there is none. `run` returns a run, or raises the refusal of the
+    image."""
 
     missing: str
     run: Callable[[bytes, Kit, Senses], Ran]

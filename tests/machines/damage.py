@@ -33,7 +33,7 @@ class CppDamage(Process):
         super().__init__([build_damage_tool(sources, is_large)], "the receiver in C++")
 
     def damage_frames(self, seed: int, line: int, lines: int) -> int:
-        """Damage frames of so many lines; return how many. Raise what must not be."""
+        """Damage frames of so many lines; return how many. Raise an error on a violation."""
         answer = self.ask(b"J", pack("<III", seed, line, lines))
         wrong = answer[8:].decode()
         assert not wrong, f"{wrong} of seed {seed}"
@@ -44,14 +44,14 @@ class CppDamage(Process):
     ) -> tuple[int, int]:
         """Send frames of so many lines; return how many, and the typed stops found in them.
 
-        Of lines that are damaged it counts the damaged ones. A quarter of the odd ones is made of
-        five values, LF and S among them; others have any bytes.
+        It counts the damaged lines. A quarter of the odd ones is made of five values, LF and S
+        among them; others have any bytes.
         """
         answer = self.ask(b"F", pack("<IIBBI", seed, line, is_damaged, is_odd, lines))
         return int.from_bytes(answer[:4], "little"), int.from_bytes(answer[4:], "little")
 
     def type_after(self, seed: int, prefix: int, prefixes: int) -> None:
-        """Type a stop after so many prefixes. Raise what must not be."""
+        """Type a stop after so many prefixes. Raise an error on a violation."""
         wrong = self.ask(b"T", pack("<III", seed, prefix, prefixes))[4:].decode()
         assert not wrong, f"{wrong} of seed {seed}"
 

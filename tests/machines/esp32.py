@@ -1,8 +1,8 @@
 """A robot with an ESP32 in C++ on this computer: the sketch that ships, on a simulated chip.
 
 Builds `vm_arduino/src` with the stand-ins of `vm_arduino/extras/esp32` for Espressif's core. One
-process is one robot from a reset to the next; what NVS and the memory that a reset leaves alone
-hold goes on to the next one.
+process is one robot from a reset to the next; the contents of NVS, and of the memory that survives
+a reset, pass to the next one.
 """
 
 from __future__ import annotations
@@ -170,9 +170,9 @@ def flags_of(chip: str, major: int) -> tuple[str, ...]:
 
 @lru_cache
 def build_esp32(header: str, chip: str, major: int) -> Path:
-    """Return the program for the robot of a header; what was made before is used again.
+    """Return the program for the robot of a header; an earlier build is reused.
 
-    Only what knows the robot's pins is compiled for each robot.
+    Only files that depend on the robot's pins are compiled for each robot.
     """
     own = BUILDS / f"own-{sha256(header.encode()).hexdigest()[:16]}.h"
     if not own.exists():  # another worker may look for the file too

@@ -1,8 +1,8 @@
 """The machine in C++ on this computer, with the sanitizers of the compiler.
 
 Builds `vm_arduino/extras/host` with g++ and talks to one process of it: many requests, each a
-length and bytes. What C++ does wrong (an access outside its memory, undefined arithmetic) ends
-the process, and the request that was answered last is the one to look at.
+length and bytes. Errors in C++ (an access outside its memory, undefined arithmetic) end the
+process; look at the request that was answered last.
 """
 
 from __future__ import annotations
@@ -40,14 +40,15 @@ COUNTS_INSTRUCTIONS = "-Dtiniscript_counts_instructions"
 LINE_MARKER_FOLDER = re.compile(
     rb'^(# \d+ ")[^"\n]*/', re.M
 )  # line that names the source of the next lines
-# Whose builds are used: root's tests in CI compile nothing that the user's have compiled.
+# Whose builds are used: root's tests in CI do not compile again what the user's tests have
+# compiled.
 USER = os.getuid() if hasattr(os, "getuid") else None
 if USER == 0:
     USER = int(os.environ.get("TINISCRIPT_BUILDS_OF", 0))
 
 
 def of_builds(folder: Path) -> Path:
-    """Return a folder, which is made. Raises PermissionError if somebody else can write into it."""
+    """Return a folder, which is made. It raises PermissionError if another user can write to it."""
     folder.mkdir(mode=0o700, exist_ok=True)
     stat_result = folder.lstat()
     if USER is not None and (
@@ -77,10 +78,10 @@ class Ran(NamedTuple):
 
 
 class Process:
-    """A process that answers requests; `who` it is stands in its mistakes.
+    """A process that answers requests; its errors name it as `who`.
 
-    It ends with its object: one that nobody closes would stay for as long as the tests take, and a
-    process has room for about a thousand pipes.
+    It ends with its object: an unclosed one would live until the end of the tests, and a process
+    has room for about a thousand pipes.
     """
 
     def __init__(self, command: Sequence[str | Path], who: str) -> None:
@@ -114,7 +115,7 @@ class Process:
         return f"{self._who} ended with status {status}:\n{report[:4000]}"
 
     def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
-        """Run an image, or raise what refuses it."""
+        """Run an image, or raise its refusal."""
         raise NotImplementedError
 
     def agrees(self, run: Ran, want: Ran, max_ms: int) -> bool:
@@ -165,7 +166,7 @@ def _close(process: subprocess.Popen[bytes], errors: IO[bytes]) -> None:
 class Host(Process):
     """The process on this computer.
 
-    `sources` is a folder like `vm_arduino`; what is built from it stays in `builds`.
+    `sources` is a folder like `vm_arduino`; the results are in `builds`.
     """
 
     def __init__(self, sources: Path = SOURCES, builds: Path = BUILDS) -> None:
@@ -174,16 +175,16 @@ class Host(Process):
     def run(
         self, image: bytes, kit: Kit, senses: Senses, not_ready: int = 0, begin_ms: int = 0
     ) -> Ran:
-        """Run an image, or raise what refuses it.
+        """Run an image, or raise its refusal.
 
-        Each `not_ready`th time that the robot is asked, it is not ready; `begin_ms` is what the
-        clock of the machine says at the beginning.
+        At each `not_ready`th query, the robot is not ready; `begin_ms` is the initial time of the
+        machine's clock.
         """
         request = run_request(image, kit, senses, not_ready, begin_ms)
         return parse_run(self.ask(b"R", request).decode())
 
     def run_unverified(self, code: bytes, kit: Kit, senses: Senses) -> Ran:
-        """Run code whatever it is: it must end in a fault or go on, never outside its memory."""
+        """Run arbitrary code: it must end in a fault or continue, and never leave its memory."""
         return parse_run(self.ask(b"U", run_request(code, kit, senses)).decode())
 
     def run_late(self, image: bytes, kit: Kit, senses: Senses, late_ms: Sequence[int]) -> str:
@@ -195,8 +196,8 @@ class Host(Process):
     def all_of_three(self, first: int, sensors: int, actuators: int) -> tuple[int, int, int]:
         """Verify all codes of three bytes that begin with `first`, and run the accepted ones.
 
-        Return how many are accepted, how many of these fail a run-time check, and the CRC-32 of
-        all verdicts: number of the rule and offset, 0 and 0 for what is accepted.
+        Return how many are accepted, how many of these fail a run-time check, and the CRC-32 of all
+        verdicts: number of the rule and offset, 0 and 0 for accepted code.
         """
         answer = self.ask(b"X", bytes((sensors, actuators, first)))
         accepted, bad, checksum = Struct("<III").unpack(answer)
@@ -241,7 +242,7 @@ def first_text(answer: bytes) -> tuple[bytes, bytes]:
 
 
 def parse_run(answer: str) -> Ran:
-    """Return the run that an answer tells of, or raise what refuses the image."""
+    """Return the run that an answer tells of, or raise the refusal of the image."""
     trace, _, last = answer.removesuffix("\n").rpartition("\n")
     words = last.split()
     assert len(words) == 3, f"the machine ends with {answer[-2000:]!r}"
@@ -267,7 +268,7 @@ def files_in(sources: Path, *folders: str) -> list[Path]:
 
 
 def compile_program(inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS) -> Path:
-    """Return the program made from sources and headers; what has not changed is used again.
+    """Return the program made from sources and headers; unchanged parts are reused.
 
     Workers may build at the same time: each object that two build at once is built twice, and the
     last one stays.
@@ -324,7 +325,7 @@ def compile_once(
 def once(path: Path, make: Callable[[Path], object]) -> Path:
     """Return the file that `make` writes, which appears as a whole or not at all.
 
-    Of several workers that need it one makes it, and the others wait.
+    If several workers need it, one makes it, and the others wait.
     """
     if not path.exists():
         import fcntl

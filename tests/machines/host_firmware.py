@@ -1,7 +1,7 @@
 """A whole robot in C++ on this computer: its firmware, with the sanitizers of the compiler.
 
 Builds `vm_arduino/extras/host_firmware` with g++. One process is one robot, from power-on to
-power-off; what its memory holds goes on to the next one.
+power-off; the content of its memory passes to the next one.
 """
 
 from __future__ import annotations
@@ -116,7 +116,7 @@ class HostFirmware(Process):
         return (now_ms + self.clock_ms) % 2**32
 
     def _note(self, lines: list[str]) -> None:
-        """Note what the robot has done."""
+        """Record the robot's actions."""
         self.did += lines
         wrong = [line for line in lines if line.split()[1] in WRONG]
         assert not wrong, f"{wrong} after {self.did[-9:]}"
@@ -136,9 +136,9 @@ class HostFirmware(Process):
         return unpack("<8i", self.ask(b"K", b""))
 
     def discs(self, cm: int, degrees: int, left: int = 0, right: int = 0) -> None:
-        """Put discs on both wheels; what they go between two edges is as a robot's header says it.
+        """Put discs on both wheels; the distance between two edges is given as in a robot's header.
 
-        They stand so many thousandths of the way after an edge.
+        They are this many thousandths of the way after an edge.
         """
         self.ask(b"G", pack("<IIHH", cm, degrees, left, right))
 
@@ -229,7 +229,7 @@ class HostFirmware(Process):
 
 @lru_cache
 def build_host_firmware(sources: Path, defines: tuple[str, ...] = ()) -> Path:
-    """Return the program made from `sources`; what was made before from the same is used again."""
+    """Return the program made from `sources`; an earlier build from the same sources is reused."""
     parts = ("vm", "link", "text", "store", "firmware")
     folders = ("src", *(f"src/{part}" for part in parts), "extras/host_firmware")
     inputs = files_in(sources, *folders)

@@ -1,7 +1,7 @@
 """The robot's half of the link in C++ on this computer, with the sanitizers of the compiler.
 
 Builds `vm_arduino/extras/link` with g++ and talks to one process of it, as `host` does for the
-machine. What is asked for long asks a library: without sanitizers, and many times as quick.
+machine. Long conversations use a library: without sanitizers, and many times as fast.
 """
 
 from __future__ import annotations
@@ -62,9 +62,9 @@ class CppLink:
     def step(
         self, now_ms: int, data: bytes = b"", is_late: bool = False, is_slow: bool = False
     ) -> Step:
-        """Bytes arrive; where the robot is late it looks at none of them before the last.
+        """Bytes arrive; a late robot processes none of them before the last.
 
-        Where the line back is slow, nothing leaves the robot before all have arrived.
+        If the line back is slow, no byte leaves the robot before all have arrived.
         """
         how = 2 if is_slow else is_late
         answer = self.ask(b"S", pack("<IBI", now_ms, how, len(data)) + data)
@@ -88,7 +88,8 @@ class CppLink:
         return self.ask(b"H", key + texts(message))
 
     def seal(self, key: bytes, origin: bytes, heard: int, sent: int, frame: bytes) -> bytes:
-        """Return a frame of the robot, from its type to its MAC; nothing if no counter is left."""
+        """Return a frame of the robot, from its type to its MAC; or no bytes if no counter is
+        left."""
         body = b"\0" + frame[:3] + bytes(5) + frame[3:]
         answer = self._seal(key, origin, heard, sent, body, b"")
         return first_text(answer)[0][1:]
@@ -116,7 +117,7 @@ class LinkProcess(Process, CppLink):
 
 
 class LinkLibrary(CppLink):
-    """Within this process: nothing waits for another one. What aborts ends this process."""
+    """It runs within this process, so it waits for no other one. An abort ends this process."""
 
     def __init__(self, is_large: bool = False) -> None:
         self.is_large = is_large
@@ -132,7 +133,7 @@ class LinkLibrary(CppLink):
 
 @lru_cache
 def build_link(sources: Path, is_large: bool = False, flags: tuple[str, ...] = FLAGS) -> Path:
-    """Return the program or the library made from `sources`, or what was made from the same."""
+    """Return the program or the library made from `sources`, or an earlier build from the same."""
     inputs = files_in(sources, "src/vm", "src/link", "src/text", "extras/link")
     inputs.append(sources / "extras/host" / "wire.h")
     # the machine is not asked here, only its verifier and its checksum

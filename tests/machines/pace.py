@@ -1,6 +1,6 @@
 """The times of a machine's calls, and the readings that delay it: the same for every machine.
 
-`vm_arduino/extras/chip/runner.cpp` does in C++ what `trace_at` does here.
+`vm_arduino/extras/chip/runner.cpp` is the C++ version of `trace_at`.
 """
 
 from __future__ import annotations

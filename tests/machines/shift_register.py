@@ -1,8 +1,8 @@
-"""A 74HC595, the shift register of a motor shield, as a stand-in that refuses wrong timing.
+"""A stand-in for a 74HC595, the shift register of a motor shield, that refuses wrong timing.
 
-It is told each change of its inputs, with the time, and knows what its outputs then are. The times
-are the longest that the data sheets of Nexperia (74HC595) and Texas Instruments (SN74HC595) want at
-4.5 V, up to 85 degrees. Two inputs that change at the same time are a change too early.
+It gets each change of its inputs, with the time, and computes its outputs. The times are the
+longest that the data sheets of Nexperia (74HC595) and Texas Instruments (SN74HC595) want at 4.5 V,
+up to 85 degrees. Two inputs that change at the same time are a change too early.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class WrongTiming(AssertionError):
 class ShiftRegister:
     """The register's two rows of bits; the second one is at its outputs.
 
-    What they are when power comes is not known: None.
+    Their state at power-on is unknown: None.
     """
 
     def __init__(self) -> None:

@@ -1,7 +1,7 @@
 """An Arduino sketch of `tsc show --arduino` on a simulated Uno, Nano or Mega.
 
-Builds it with avr-g++ and the whole of Debian's Arduino core, and says what its pins and its
-UART did: signals that have a value from a time on, in milliseconds.
+Builds it with avr-g++ and the whole of Debian's Arduino core, and reports the activity of its pins
+and its UART: signals that have a value from a time on, in milliseconds.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ class SketchBoard(boards.Simulated):
         return run._replace(text=letters.decode("ascii"))
 
     def _level(self, now: dict[int, int], pin: int) -> int:
-        """Return 0 to 255: what a pin does on the average."""
+        """Return the average level of a pin, 0 to 255."""
         port, bit = self.bit(pin)
         if pin in self.avr.compare_by_pin:
             timer, channel = self.avr.compare_by_pin[pin]

@@ -15,7 +15,7 @@ SOURCES = Path(__file__).resolve().parent.parent / "uno"
 
 
 def skip_unless_available() -> None:
-    """Skip a test if there is no simulated Uno or nothing to build firmwares with."""
+    """Skip a test if there is no simulated Uno or no compiler for firmware."""
     need(uno.missing() or no_compiler())
 
 

@@ -43,6 +43,6 @@ class Wired:
         raise AssertionError(f"not over after {limit_ms} ms")
 
     def complete(self, request: PendingRequest[T]) -> T:
-        """Run until the robot has done a request; return what it answers."""
+        """Run until the robot has carried out a request; return its answer."""
         assert self.until(request) == OK and request.outcome
         return request.outcome.values

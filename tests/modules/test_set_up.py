@@ -50,8 +50,8 @@ def all_wanted(wire: SimulatedWire, end: Simulated, name: str, baud: int) -> Mod
 
 
 class Odd:
-    """A module, or a clone of it, on a wire: it says again what it hears, is late, or is silent at
-    some commands."""
+    """A module, or a clone of it, on a wire: it echoes its input, is late, or is silent at some
+    commands."""
 
     def __init__(
         self, module: Simulated, echoes: bool = False, late_ms: int = 0, deaf: str = "none"
@@ -221,7 +221,8 @@ def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, comman
 
 
 def test_a_clone_whose_numbers_are_others_is_found_where_it_went() -> None:
-    """Such a clone reports CC41-A and counts as an MLT-BT05 at another speed, which is reported."""
+    """Such a clone reports CC41-A and counts as an MLT-BT05 at another speed; the user sees that
+    speed."""
 
     class Liar(Cc41):
         bauds = Bt05.bauds
@@ -261,7 +262,7 @@ def test_a_module_that_refuses_is_not_said_to_have_done_it() -> None:
 def test_what_is_told_of_a_pin_is_what_the_module_has(
     kind: type[Hc05], forms: tuple[str, str]
 ) -> None:
-    """Whatever it does with either form: with quotes, and without."""
+    """This holds however it treats each form, with quotes and without."""
 
     class Quirky(kind):  # type: ignore[misc, valid-type]
         def answer(self, command: str) -> str:

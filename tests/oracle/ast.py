@@ -16,9 +16,9 @@ Value = int | bool
 class Expression:
     """An operator, a function or a leaf.
 
-    `operator` is NUMBER, TRUTH, VARIABLE, OWN, SENSOR, TIME, MINUS, NOT, or the word or sign of
-    the language. OWN is a value of the DEF around it; its name has both names: `SIDE.SIZE`.
-    `plain` marks a number that stands alone: with or without one minus, and without parentheses.
+    `operator` is NUMBER, TRUTH, VARIABLE, OWN, SENSOR, TIME, MINUS, NOT, or the word or sign of the
+    language. OWN is a value of the DEF around it; its name has both names: `SIDE.SIZE`. `plain`
+    marks a number on its own: with or without one minus, and without parentheses.
     """
 
     operator: str

@@ -1,4 +1,4 @@
-"""Reads the expressions of a program, and what stands in parentheses after its words."""
+"""It reads the expressions of a program, and the parentheses after its words."""
 
 from __future__ import annotations
 
@@ -53,7 +53,8 @@ class ExpressionParser:
         return self.token.kind in ("word", "symbol") and self.token.text in texts
 
     def accept(self, *texts: str) -> str:
-        """Takes the next token if it is one of these; else returns an empty string."""
+        """Consume and return the next token if it is one of these, otherwise return an empty
+        string."""
         if not self.next_is(*texts):
             return ""
         self.at += 1
@@ -74,7 +75,7 @@ class ExpressionParser:
     def arguments(
         self, count: int, forever: bool = False, unit: str = ""
     ) -> tuple[Expression | None, ...]:
-        """Exactly so many in parentheses; the first may be FOREVER (None) or have a unit."""
+        """Exactly this many in parentheses; the first may be FOREVER (None) or have a unit."""
         has_unit = False
         self.expect("(")
         expressions: list[Expression | None] = []
@@ -113,7 +114,7 @@ class ExpressionParser:
             self.fail("the number is out of range")
 
     def want_stack(self, arguments: tuple[Expression | None, ...]) -> None:
-        """Refuses what needs more values at once than there is room for."""
+        """Refuse an expression that needs more stack than there is."""
         for place, argument in enumerate(arguments):
             if place + (1 if argument is None else stack_need(argument)) > MAX_STACK:
                 self.fail("the expression is too long")

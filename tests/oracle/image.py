@@ -1,8 +1,7 @@
 """A second reader of images, written from the words of `bytecode_spec.md` alone.
 
-It shares nothing with the package. Where it gives another reason, the page is unclear, or one of
-them is wrong. Of the code it asks only for the names of its instructions, and of a robot for
-nothing.
+It shares nothing with the package. If it gives another reason, the page is unclear, or one of them
+is wrong. It knows only the names of the instructions, and no robot.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ MAJOR, MINOR = max(VERSIONS)
 
 
 def version(code: bytes, needs: int) -> tuple[int, int]:
-    """Return the lowest version that has all of verified code, and of what it needs."""
+    """Return the lowest version that has all instructions and needs of verified code."""
     at, names = 0, set()
     while at < len(code):
         name, at = spec_tables.instruction_at(code, at).name, spec_tables.decode(code, at)[2]
@@ -49,7 +48,7 @@ def version(code: bytes, needs: int) -> tuple[int, int]:
 
 
 def refusal(data: bytes) -> str:
-    """Return the first reason for which a machine refuses an image, or nothing."""
+    """Return the first reason for which a machine refuses an image, or an empty text."""
     if not data or data[:2] != b"TS"[: len(data)]:
         return "NOT_AN_IMAGE"
     if len(data) < 4:

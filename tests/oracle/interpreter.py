@@ -1,4 +1,4 @@
-"""Runs a TiniScript program straight from its text and tells what a robot does.
+"""Runs a TiniScript program straight from its text and returns a robot's behaviour.
 
 The interpreter shares nothing with the compiler and the bytecode machine, so that the tests can
 ask both and compare. It follows the language reference as literally as it can and prefers plain
@@ -32,7 +32,7 @@ def run(
     """Runs a program and returns all that the run prints; raises Mistake if it is wrong.
 
     Readings are in thousandths, 0 or 1 for yes/no. Wrong use is a ValueError. `is_slow` says
-    whether a sensor is not ready at a time; the program goes on at multiples of `every_ms`.
+    whether a sensor is not ready at a time; the program continues at multiples of `every_ms`.
     """
     ranges = {device.name: (device.low, device.high) for device in kit.readings}
     for name, values in sensors.items():

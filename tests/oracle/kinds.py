@@ -1,4 +1,4 @@
-"""Which kind each value of a DEF has: that of its first call, by a look at the tokens."""
+"""Finds the kind of each value of a DEF from its first call, by looking at the tokens."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NOWHERE = Def("", ())
 
 
 class Text:
-    """The tokens of a program, and the DEF that each stands in."""
+    """The tokens of a program, and the DEF of each."""
 
     def __init__(self, tokens: list[Token], yes_no_sensors: set[str]) -> None:
         self.tokens = tokens

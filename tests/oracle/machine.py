@@ -1,8 +1,8 @@
 """A second machine for the bytecode, written from the words of `bytecode_spec.md` alone.
 
 It shares nothing with the package: opcodes and operands come from the tables of the page. It runs
-verified code without tasks on the clock of a trace, plainly and slowly. What a robot has comes in
-as the kit of the interpreter beside it.
+verified code without tasks on the clock of a trace, plainly and slowly. The abilities of a robot
+come in as the kit of the interpreter next to it.
 """
 
 from __future__ import annotations

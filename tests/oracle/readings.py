@@ -63,8 +63,8 @@ def settle_readings(
 ) -> frozenset[str]:
     """Writes down which readings each instruction takes.
 
-    `sure` are the sensors that have surely been read by name before the body; what has surely
-    been read after it is returned. Only `X;` makes X surely read.
+    `sure` are the sensors certainly read by name before the body; return those certainly read after
+    it. Only `X;` certainly reads X.
     """
 
     def missing(
@@ -89,7 +89,7 @@ def settle_readings(
             for arm in statement.arms:
                 arm.reads = missing((arm.condition,), used_names)
                 used_names |= set(arm.reads)
-                # The readings for conditions are the compiler's: they make nothing surely read.
+                # The readings for conditions are the compiler's: they do not count as certain.
                 ends.append(settle_readings(arm.body, sure, defs))
             if statement.arms[-1].condition is not None:
                 ends.append(sure)  # a missing ELSE is an empty arm

@@ -78,18 +78,18 @@ class Robot:
 
     @property
     def own(self) -> dict[str, Value]:
-        """The values of DEFs in the task whose turn it is."""
+        """The values of DEFs in the current task."""
         raise NotImplementedError
 
     def play(self) -> None:
-        """Does what the program says, to its end."""
+        """Execute the program to its end."""
         raise NotImplementedError
 
     def note(self, what: str) -> None:
         self.trace.append(f"{self.now} {what}\n")
 
     def step(self) -> None:
-        """Counts something that could go on without any time passing."""
+        """Count a step that could repeat without any time passing."""
         self.steps += 1
         if self.steps > self.max_steps:
             raise Ending("LIMIT")
@@ -107,7 +107,7 @@ class Robot:
     # Statements
 
     def do(self, statement: Do) -> None:
-        """Does an instruction that takes no time and has nothing to do with the motors.
+        """Execute an instruction that takes no time and does not involve the motors.
 
         Its readings have been taken.
         """

@@ -1,7 +1,7 @@
-"""Reads the tables of `bytecode_spec.md`: what the oracles of the bytecode know of instructions.
+"""Reads the tables of `bytecode_spec.md`: the oracles' knowledge of instructions.
 
-Knows how the page is written, and nothing of the package: a table that says too little, or
-something wrong, makes an oracle disagree.
+It knows the layout of the page, but not the package: a table that says too little, or something
+wrong, makes an oracle disagree.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class Operand(NamedTuple):
 class Instruction(NamedTuple):
     """A row of the table of instructions.
 
-    `stem` is the name of what it does: that of the instruction that it is a short or far form of.
-    A short one has its operand `implied` by its code: the kind, and the value.
+    `stem` is the name of its action: that of the instruction of which it is a short or far form. A
+    short one has its operand `implied` by its code: the kind, and the value.
     """
 
     name: str

@@ -1,8 +1,7 @@
 """The sequence of a program's instructions, in one task or in several.
 
-Written from the language reference, section "Tasks" too, and from nothing of the compiler or the
-machine: there a task is a record, here it is a generator that gives its place away whenever it has
-to wait.
+Written only from the language reference, section "Tasks" included, not from the compiler or the
+machine: there a task is a record, here it is a generator that yields whenever it has to wait.
 """
 
 from __future__ import annotations
@@ -127,7 +126,7 @@ class TaskRobot(Robot):
         self.now = time
 
     def turn(self, runner: Runner) -> None:
-        """Lets one task go on until it has to wait, and then looks whose the motors are."""
+        """Run one task until it has to wait, and then find the owner of the motors."""
         self.who = runner
         assert runner.turns is not None
         try:
@@ -216,7 +215,7 @@ class TaskRobot(Robot):
         return self.owner is not None and self.owner.rank < self.who.rank
 
     def seize(self) -> None:
-        """Takes the motors for the task whose turn it is."""
+        """Give the motors to the current task."""
         loser = self.owner
         if loser is not None and loser is not self.who and loser.drives:
             if loser.driving_until is not None and loser.driving_until <= self.now:
@@ -225,7 +224,7 @@ class TaskRobot(Robot):
             else:
                 loser.due = None
             loser.robbed_at = self.now
-            loser.driving_until, loser.driving_forever = None, False  # the robot stands still
+            loser.driving_until, loser.driving_forever = None, False  # the robot does not move
         self.owner = self.who
 
     # -- statements ---------------------------------------------------------------------------
@@ -257,7 +256,7 @@ class TaskRobot(Robot):
                     yield from self.repeating(statement)
 
     def choosing(self, statement: If) -> Turns:
-        """Does the first arm whose condition holds."""
+        """Execute the first arm whose condition is true."""
         for arm in statement.arms:
             yield from self.reading(arm.reads)
             if arm.condition is None or self.value(arm.condition):
@@ -328,7 +327,7 @@ class TaskRobot(Robot):
                 owner.moving = False
                 owner.was_stopped = True
                 owner.due = self.now
-                # Its move has ended, so nobody can take the motors from it.
+                # Its move has ended, so no other task can take the motors from it.
                 owner.driving_until, owner.driving_forever = None, False
         if me.is_when:
             self.seize()

@@ -28,8 +28,8 @@ MAX_MS, MAX_STEPS = 20_000, 5000
 def assert_same_trace(code: bytes, number: int, readings: dict[str, list[int]], seed: int) -> str:
     """Assert that both machines print the same; return the last line.
 
-    Where one of them gives up a loop that takes no time is not part of the meaning: then what both
-    have printed until then is the same.
+    The point where one of them gives up a loop that takes no time is not part of the meaning: then
+    only their output up to there must be the same.
     """
     theirs, kit = KITS[number]
     senses = Senses(readings, MAX_MS, MAX_STEPS, seed)

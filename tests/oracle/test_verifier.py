@@ -1,4 +1,4 @@
-"""The verifiers agree with the one that stands in `bytecode_spec.md`, which runs here.
+"""The verifiers agree with the one in `bytecode_spec.md`, which runs here.
 
 `python -m tests.oracle.test_verifier 100000` compares more codes than the tests: random ones,
 programs that are damaged, and all of one or two bytes.
@@ -36,7 +36,7 @@ NEEDY = {spec_tables.ESCAPE} | {
 def compare(codes: Iterable[bytes], sensors: int = SENSORS, actuators: int = ACTUATORS) -> set[int]:
     """Assert that all verifiers say the same of each code; return the rules that were broken.
 
-    Those of code that needs something are compared twice, with all of `needs` and with none. The
+    Verdicts of code that needs something are compared twice, with all of `needs` and with none. The
     machine in C++ gets the second.
     """
     codes = list(codes)
@@ -115,7 +115,7 @@ def test_codes_of_up_to_two_bytes() -> None:
 
 
 def test_each_rule_is_broken_by_its_cases() -> None:
-    """Whatever random codes happen to break; of the length there is a test below."""
+    """This does not depend on what random codes happen to break; the length has a test below."""
     cases = [case for case in all_cases() if "refused" in case.parts]
     for case in cases:
         number = int(case.parts["refused"].split()[0])

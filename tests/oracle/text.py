@@ -87,7 +87,7 @@ class Parser(ExpressionParser):
         return Facts(nesting_depth, call_depth, settle_readings(body, frozenset(), defs))
 
     def ping(self) -> None:
-        """PING|check_connection has nothing else but empty instructions."""
+        """PING|check_connection has only empty instructions besides it."""
         while self.accept_separator():
             pass
         self.expect("CHECK_CONNECTION")

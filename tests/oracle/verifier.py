@@ -1,7 +1,7 @@
-"""The verifier of `bytecode_spec.md`: the program that stands in the page, run as it stands there.
+"""The verifier in `bytecode_spec.md`, run exactly as it is in the page.
 
-It shares nothing with the package: what an instruction is comes from the tables of the page. Where
-it disagrees with the others about a rule or an offset, the page is wrong, or one of them is.
+It shares nothing with the package: the instructions come from the tables of the page. If it
+disagrees with the others about a rule or an offset, the page is wrong, or one of them is.
 """
 
 from __future__ import annotations

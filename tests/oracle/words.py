@@ -103,7 +103,7 @@ _SIDE = (-100_000, 100_000)
 
 
 class Act(NamedTuple):
-    """An instruction that is over as soon as the robot has been told about it, or after its time.
+    """An instruction that is over at once, or after its time.
 
     `note` is its row of a trace, with the values by their places.
     """

@@ -1,7 +1,7 @@
 """Mutants that no test noticed once, and the test that notices each now.
 
-`test_mutation.py` tries each one at each run: such a gap does not open again in silence. A row
-whose code is gone goes with it, and so does one that a property of its kind notices.
+`test_mutation.py` tries each one at each run: such a gap does not open again in silence. A row is
+removed with its code, or once a property of its kind notices the mutant.
 """
 
 from __future__ import annotations

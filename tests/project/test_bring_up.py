@@ -1,7 +1,7 @@
-"""The list for a real board: the report has its steps, and what it types works on robots.
+"""The list for a real board: the report has its steps, and its typed commands work on robots.
 
-They are the firmware behind a pseudo-terminal, alone and in an ESP32; that the wheels stand is what
-it tells its motors. Bluetooth, WiFi and what hands do are not tried here.
+They are the firmware on a pseudo-terminal, alone and in an ESP32; its motor commands show that the
+wheels stand still. Bluetooth, WiFi and the manual steps are not tried here.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def test_both_lists_type_the_same() -> None:
 
 
 def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_path: Path) -> None:
-    """Whose robot it is stays out of it."""
+    """The report does not name the owner of the robot."""
     report = tmp_path / "bring-up.txt"
     result = on(pty_robot, "doctor", "--yes", "--report", report)
     assert result.code == 0

@@ -74,7 +74,7 @@ def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
 
 @each_row("path", [path for path in PORTABLE if path.name not in CHOOSING])
 def test_what_a_build_has_is_chosen_in_few_headers(path: Path) -> None:
-    """Elsewhere a condition encloses all of a file, or chooses which file is included."""
+    """In other files, a condition encloses the whole file, or chooses which file is included."""
     rows = [row.strip() for row in path.read_text(encoding="utf-8").splitlines() if row.strip()]
     rows = [row for row in rows if not row.startswith("//")]
     conditions = [k for k, row in enumerate(rows) if CONDITION.match(row)]
@@ -90,7 +90,7 @@ def test_what_a_build_has_is_chosen_in_few_headers(path: Path) -> None:
 
 @each_row("path", sorted(VM.glob("*.S")))
 def test_what_assembly_chooses_stands_in_the_files_that_build_h_names(path: Path) -> None:
-    """Elsewhere a condition encloses all of a file, or is an assertion."""
+    """In other files, a condition encloses the whole file, or is an assertion."""
     code = re.sub(r"#if [^#]*?#error[^\n]*\n#endif", "", code_of(path))
     code = re.sub(r"(?m)^#define.*\n|;.*", "", code)
     rows = [row.strip() for row in code.splitlines() if row.strip()]
@@ -119,7 +119,7 @@ WITH_TWIN = [
 
 @each_row("path", WITH_TWIN)
 def test_what_exists_in_assembly_too_exists_in_the_files_that_it_names(path: Path) -> None:
-    """Its first lines say what the other chips run, and a reader finds each function there."""
+    """Its first lines name the files for the other chips, and each function exists there."""
     about = first_comment(path)
     (same,) = re.findall(r"[Mm]eans? the same as (.*?)[.] [A-Z`]", about)
     twins = [path.parent / name for name in re.findall(r"`([\w/]+\.(?:cpp|h))`", same)]
@@ -144,7 +144,8 @@ def test_what_exists_in_assembly_too_says_what_it_saves_and_when_it_may_go(path:
 
 @each_row("path", BOARDS)
 def test_nothing_on_a_board_waits(path: Path) -> None:
-    """Nothing asks the core for work done here by registers; the core defines the clock alone."""
+    """The code does not ask the core for work done here by registers; the core defines only the
+    clock."""
     waiting = {"delay", "delayMicroseconds", "pulseIn", "_delay_ms", "_delay_us", "Serial", "tone",
                "noTone", "analogRead", "analogWrite", "digitalWrite", "digitalRead", "pinMode",
                "attachInterrupt", "Servo", "new", "malloc"}  # fmt: skip
@@ -166,7 +167,8 @@ def names_in(mangled_text: str) -> list[str]:
 
 
 def test_what_the_linker_places_by_name_has_that_name() -> None:
-    """Else a function that was called otherwise lies somewhere, and its calls take more flash."""
+    """Otherwise a renamed function would be placed anywhere, and its calls would take more
+    flash."""
     code = "\n".join(map(code_of, sorted((SOURCES / "src").rglob("*.[chS]*"))))
     order = (SOURCES / "src" / "boards" / "avr" / "order.ld").read_text(encoding="utf-8")
     mangled_names = re.findall(r"\*\(\.text\._ZNK?10tiniscript(?:12_GLOBAL__N_1)?(\d\w+)", order)
@@ -183,7 +185,7 @@ def test_what_the_linker_places_by_name_has_that_name() -> None:
 
 @pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 def test_each_header_compiles_alone_without_a_warning(tmp_path: Path) -> None:
-    """Twice in a file: the second time says nothing."""
+    """It is included twice in a file: the second time has no effect."""
     headers = [path for path in PORTABLE if path.suffix == ".h" and path.name not in OF_AVR]
     for number, header in enumerate(headers):
         twice = f'#include "{header}"\n' * 2

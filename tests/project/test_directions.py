@@ -20,7 +20,7 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 
 
 def test_a_stage_knows_what_stands_below_it() -> None:
-    """`[tool.importlinter]` in pyproject.toml says what that is."""
+    """`[tool.importlinter]` in pyproject.toml defines the order."""
     command = Path(sys.executable).with_name("lint-imports")
     completed = subprocess.run(
         [command, "--no-cache"], capture_output=True, text=True, cwd=PACKAGE.parent.parent
@@ -29,7 +29,7 @@ def test_a_stage_knows_what_stands_below_it() -> None:
 
 
 def test_no_circle_of_files() -> None:
-    """Whatever the import is for: at the top, inside a function, or for types alone."""
+    """This includes imports at the top, inside functions, and for types alone."""
     assert not measures.circles(measures.imports_of(FILES))
 
 
@@ -54,7 +54,7 @@ def test_importing_the_package_imports_nothing_else() -> None:
     assert modules == {"tiniscript"}
 
 
-# What a right program may have: names of all kinds, every block, a note, and a warning.
+# Features of a correct program: names of all kinds, every block, a comment, and a warning.
 RIGHT = """SB|SPEED = 40; // fast
 DEF TURN; R(0.5, SPEED + 10); END_DEF
 LOOP(3);
@@ -106,7 +106,7 @@ def test_programs_need_no_link() -> None:
 
 
 def test_every_verb_is_there_without_the_extras() -> None:
-    """A real robot needs nothing of a virtual one, and who has no radio installed has a cable."""
+    """A real robot needs no part of a virtual one, and a user without a radio has a cable."""
     verbs = [path.stem for path in (PACKAGE / "cli" / "commands").glob("*.py")]
     modules_imported_by(
         "sys.modules.update(dict.fromkeys(('bleak', 'paho', 'PIL', 'wasmtime', 'zeroconf'))); "

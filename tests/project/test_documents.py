@@ -1,4 +1,4 @@
-"""The documents keep their word: commands print what they show, and links lead somewhere."""
+"""The documents are right: commands print what they show, and links lead somewhere."""
 
 from __future__ import annotations
 
@@ -32,7 +32,8 @@ class Command(NamedTuple):
 
 
 def commands() -> list[Command]:
-    """Return every `tsc` command of every console fence, with what the document shows."""
+    """Return every `tsc` command of every console fence, with the output that the document
+    shows."""
     command_list: list[Command] = []
     for document in DOCUMENTS:
         fence, collecting = "", False
@@ -75,7 +76,8 @@ def test_console(
     command: Command, capsys: pytest.CaptureFixture[str], tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
-    """A command of a document prints what the document shows; files it needs are the examples."""
+    """A command of a document prints what the document shows; the files that it needs are the
+    examples."""
     for folder in (tmp_path / "examples", tmp_path):
         copytree(ROOT / "examples", folder, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
@@ -156,7 +158,7 @@ SOURCES = sorted(
     if not {".pio", "node_modules"} & set(path.parts)
 )
 FOLDERS = ("compiler", "tests", "tools", "docs", "examples", "vm_arduino")
-# Where a path in a document, a docstring or a comment begins.
+# The beginning of a path in a document, a docstring or a comment.
 BASES = (ROOT, ROOT / "compiler" / "tiniscript", ROOT / "vm_arduino", ROOT / "vm_arduino" / "src")
 # Names of files that a person has, and of those that a build makes.
 OTHERS_FILES = {"prog.ts", "own.h", "myrobot.toml", "my.toml", "firmware.elf"}

@@ -1,6 +1,6 @@
 """If a step of `test.sh`, `try.sh`, a release or the generator fails, so does the whole.
 
-Each step in its turn is one that fails; of the others nothing is there but their name.
+Each step fails once; the others are stubs.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from tools.release.parts import PARTS, Clone
 
 needs_sh = pytest.mark.skipif(not shutil.which("sh"), reason="no sh: Windows has no such scripts")
 
-# Writes down its steps; those in a file fail. To `-c` it answers that a test has failed.
+# Writes down its steps; those in a file fail. With `-c`, it reports that a test has failed.
 STEPS = """#!/bin/sh
 printf '%s\\n' "$*" >>"$HERE/steps"
 case "$1" in

@@ -1,9 +1,9 @@
-"""The guides for teachers keep their word: what they type at a robot prints what they show.
+"""The guides for teachers are right: their typed lines get the answers that they show.
 
-A fence `console robot` needs one: here it is the firmware behind a port, which has the name that
-the guide has used last. The commands of a guide run in their order, on one robot; a program that
-the guide has the reader save (`course.ts`, named before its fence) is saved. What a guide says that
-`tsc` says, `tsc` can say.
+A fence `console robot` needs one: here it is the firmware on a port, with the name that the guide
+used last. The commands of a guide run in their order, on one robot; a program that the guide has
+the reader save (`course.ts`, named before its fence) is saved. Every output of `tsc` that a guide
+shows must be possible.
 """
 
 from __future__ import annotations
@@ -114,15 +114,15 @@ def test_what_a_guide_types_prints_what_it_shows(
         name = next((word for word in step.words if word in PORTS), name)
         if step.words == ["set", "owner"]:
             pty_robot.hold(after_ms=HAND_MS, times=3)  # a hand that tries again
-        # In the robot's time, as a late answer counts as none; a terminal shows both streams in the
-        # order of their writing.
+        # It uses the robot's time, because a late answer counts as none; a terminal shows both
+        # streams in the order of their writing.
         with simulate(pty_robot), redirect_stderr(sys.stdout):
             main([pty_robot.port if word in PORTS else word for word in step.words])
         pty_robot.let_go()
         printed.append((step, capsys.readouterr().out.replace(pty_robot.port, name)))
     assert len(printed) >= 10
     if request.config.getoption("--accept"):
-        # From the end, so that earlier rows keep their places.
+        # It starts from the end, so that earlier rows keep their places.
         for step, said_now in reversed(printed):
             if mask_output(step.text) != mask_output(said_now):
                 rows[step.first : step.last] = [row for row in said_now.splitlines() if row]
@@ -132,7 +132,7 @@ def test_what_a_guide_types_prints_what_it_shows(
         assert mask_output(said_now) == mask_output(step.text), f"{guide.name}:{step.first}"
 
 
-# -- what the guides say of tsc
+# -- the guides' claims about tsc
 
 
 def _sentences(language: str) -> list[str]:

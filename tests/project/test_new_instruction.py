@@ -1,7 +1,7 @@
 """A word with an instruction of its own is a row of few tables: every stage takes it from there.
 
-CONTRIBUTING.md names the files of these tables, and three that no test can stand in for: what the
-C++ machine does, the language reference and what the block says.
+CONTRIBUTING.md names the files of these tables, and three that no test can replace: the code of the
+C++ machine, the language reference and the block's text.
 """
 
 from __future__ import annotations

@@ -114,7 +114,7 @@ def test_what_is_wrong_with_it_is_said(program: str, code: codes.Code) -> None:
     ],
 )  # fmt: skip
 def test_a_word_with_a_value_does_what_its_instructions_do(program: str, meant_text: str) -> None:
-    """Whatever the value is; in blocks, as text of a robot and in the reference it is its row."""
+    """This holds for any value; blocks, text for a robot and the reference use its row."""
     compilation = compile_text(program, KIT)
     assert not compilation.diagnostics
     assert compilation.image and compilation.image == compile_text(meant_text, KIT).image
@@ -282,7 +282,8 @@ def test_each_role_that_is_no_statement_of_its_own_has_an_instruction_and_a_help
 
 @each_row("stage", [lower, statements])
 def test_each_statement_of_the_ir_has_a_row_where_code_is_made_of_it(stage: Any) -> None:
-    """Else what a new word with a role of its own becomes would be found by who runs it."""
+    """Otherwise only a user would notice a new word with a role of its own that is not
+    generated."""
     assert set(stage._STATEMENTS) == {*get_args(ir.Statement)}
 
 

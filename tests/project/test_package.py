@@ -1,4 +1,4 @@
-"""The packages: a wheel that builds its own firmware, and sources whose tests run."""
+"""The packages: a wheel that builds its own firmware, and sources that can run their tests."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def build_package(repo: Path, what: str, target: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def wheel(repo: Path, repo_files: set[str], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A wheel, unpacked: what pip installs."""
+    """An unpacked wheel, as pip installs it."""
     stale = repo / "build" / "lib"
     for name in (
         "tiniscript/stale.py",
@@ -205,8 +205,8 @@ touch compiler/tiniscript/studio/page/index.html
 def test_a_wheel_says_what_it_is_made_without(
     source_folder: Path, tmp_path: Path, page: str
 ) -> None:
-    """Only who is at a terminal is asked for the page, as with `python -m build --wheel`; pip,
-    which gives no terminal, needs no npm."""
+    """Only a person at a terminal is asked to build the page, as with `python -m build --wheel`;
+    pip, which has no terminal, needs no npm."""
     folder = tmp_path / "sources"
     shutil.copytree(source_folder, folder)
     if page == "built":

@@ -58,7 +58,7 @@ def test_the_drawing_is_whole(language: str) -> None:
 
 @in_both
 def test_the_pdf_is_whole(language: str) -> None:
-    """Each object is where the table at its end says, and nothing leaves the page."""
+    """Each object is where the table at its end says, and no part leaves the page."""
     data = (ROOT / "docs" / "poster" / f"poster.{language}.pdf").read_bytes()
     assert data.startswith(b"%PDF-1.4\n") and data.endswith(b"%%EOF\n")
     start = int(data.rsplit(b"startxref\n", 1)[1].split(b"\n")[0])
@@ -82,7 +82,7 @@ def test_nothing_is_written_over_something_else(language: str) -> None:
 
 
 def test_the_poster_names_own_words_in_its_language() -> None:
-    """STEP and SPEED are words of nobody who reads Spanish."""
+    """A reader of Spanish does not use STEP and SPEED."""
     spanish = " ".join(line.text for line in lines_of("es"))
     assert re.search(r"DEF PASO .* VELOCIDAD = 50", spanish)
     assert not re.search(r"\b(STEP|SPEED)\b", spanish)

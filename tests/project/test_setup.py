@@ -1,4 +1,4 @@
-"""The scripts that set TiniScript up and test it: on a machine that has nothing special."""
+"""The scripts that set TiniScript up and test it: on an ordinary machine."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ exit 7
 
 
 def ci(folder: Path) -> tuple[list[str], dict[str, str]]:
-    """Run CI in a clone with an own test command. Return what it said, and its variables."""
+    """Run CI in a clone with an own test command. Return its output, and its variables."""
     files = {"tools/venv.sh": HELPS, "tools/test.sh": TESTS, "new": "",
              "tools/bare.sh": 'echo "BARE=$*, $(id -un)"\n',
              "tests/x.py": "@pytest.mark.root\n", "tests/y.py": "",
@@ -75,7 +75,7 @@ def ci(folder: Path) -> tuple[list[str], dict[str, str]]:
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root is another user there")
 def test_ci_runs_the_tests_as_users_do(tmp_path: Path) -> None:
-    """Without what hides failing tests; with the pip configuration that the machine has."""
+    """It uses no options that hide failing tests, and the pip configuration of the machine."""
     rows, environment = ci(tmp_path / "clone")
     assert rows[0].startswith("BARE=-m not root, ")
     assert rows[1].startswith("--tenth -m not root, ")
@@ -86,7 +86,7 @@ def test_ci_runs_the_tests_as_users_do(tmp_path: Path) -> None:
 
 @pytest.mark.root
 def test_ci_of_root_runs_the_tests_as_a_new_user(tmp_path: Path) -> None:
-    """With packages of Debian, and root's own tests as root; repeatedly."""
+    """It uses packages of Debian, runs root's own tests as root, and works repeatedly."""
     clone = tmp_path / "clone"
     for _ in range(2):
         rows, environment = ci(clone)
@@ -126,7 +126,7 @@ ENGLISH = {**os.environ, "LC_ALL": "C"}
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder as a clone, whose Python installs nothing and writes down what it should."""
+    """A folder like a clone, whose Python installs nothing and records the requests."""
     clone = tmp_path / "clone"
     (clone / "tools").mkdir(parents=True)
     (clone / ".venv" / "bin").mkdir(parents=True)
@@ -197,8 +197,8 @@ class Pip:
 def test_what_is_there_is_what_is_asked_for(
     seed: int, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """After any history of states of the repository, of extras, and of ends of pip. What is there
-    asks for no network."""
+    """After any history of states of the repository, of extras, and of ends of pip. Existing
+    packages need no network."""
     rng, pip = random.Random(seed), Pip(folder)
     monkeypatch.setattr(subprocess, "run", pip)
     for _ in range(12):
@@ -245,7 +245,7 @@ def test_the_shell_leaves_the_work_to_python(tmp_path: Path) -> None:
 def test_the_shell_leaves_an_environment_alone_that_cannot_install(
     left: str, tmp_path: Path
 ) -> None:
-    """Where its making was interrupted, or the system has another Python since."""
+    """Its creation may have been interrupted, or the system may have a new Python since."""
     python = 'case "$*" in *environment*) echo python3;; esac'
     completed = script(tmp_path, {"../.venv/bin/python": left, "python3": python})
     assert completed.stdout == "python3\n", completed.stderr
@@ -256,7 +256,7 @@ PYTHONS = ("python3", "python3.13", "python3.12", "python3.11", "python3.10", "p
 
 @pytest.mark.parametrize("seed", range(12))
 def test_the_shell_takes_a_python_that_is_new_enough(seed: int, tmp_path: Path) -> None:
-    """Whatever others there are, and in which order they are found."""
+    """Other versions, and their order, do not matter."""
     rng = random.Random(seed)
     minors = {name: rng.randint(7, 14) for name in PYTHONS if rng.random() < 0.5}
     programs = {
@@ -370,12 +370,12 @@ def test_the_first_command_drives_the_virtual_robot(
     assert "way.png" in capture_result.err
     assert "Ahora el tuyo" in capture_result.err
     assert "Aviso" not in capture_result.err
-    # Nobody can answer the question.
+    # There is no one to answer the question.
     assert "estudio" not in capture_result.out + capture_result.err
 
 
 class Calls:
-    """Stands in for `subprocess.run`: what the first command starts, and what that answers."""
+    """Replaces `subprocess.run`: records the first command's children and plays their answers."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, megabytes: int) -> None:
         self.words: list[list[str]] = []

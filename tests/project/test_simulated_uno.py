@@ -129,7 +129,7 @@ def test_a_power_cut_leaves_half_a_byte(tmp_path: Path, ms: float, left: bytes) 
 
 @pytest.mark.parametrize("is_off", [0, 1, 2])
 def test_the_second_time_out_resets(is_off: int) -> None:
-    """Also where interrupts are off, so that nobody answers the first one, and where it sleeps."""
+    """This holds with interrupts off, so that the first one is not handled, and during sleep."""
     with Uno(build_uno("watchdog", IsOff=is_off)) as uno:
         uno.run_ms(100)
     resets = [event for event in uno.events if event.kind == "reset"]

@@ -1,8 +1,8 @@
 """Code that is there in C++ and in Python has the same names.
 
-Who has read one of the two finds the way in the other: a method of one is a method of the other, or
-a table here says by which names the other has it, or why it has none. So has what both keep of a
-program one name.
+A reader of one of the two knows the other: each method of one is a method of the other, or a table
+here gives its other names, or the reason why it has none. Values that both keep of a program also
+have the same name.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ METHOD = re.compile(r"^  (?:[\w:<>]+[ *&]+)+?(\w+)\([^()]*\)(?: const)?[ \w]*[;{
 
 
 class Twins(NamedTuple):
-    """Classes in both languages, and what the one and the other has alone: where, or why."""
+    """Classes in both languages, and the members that only one of them has: where, or why."""
 
     cpp: tuple[tuple[str, str], ...]
     python: tuple[tuple[str, str], ...]
@@ -208,7 +208,8 @@ def fields_in_cpp(text: str, opening: str) -> set[str]:
 
 
 def test_what_both_keep_of_a_program_has_one_name() -> None:
-    """Fields of what a program without tasks is: a Task, and in C++ the record of the only task."""
+    """These are the fields of a program without tasks: a Task, and in C++ the record of the only
+    task."""
     text = code_of(CPP / "vm" / "state.h")
     cpp = fields_in_cpp(text, "struct TaskOf<false>") | fields_in_cpp(text, "struct TaskRecord")
     only_cpp = {

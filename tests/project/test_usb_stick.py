@@ -1,6 +1,6 @@
 """The USB stick for a room without internet: `tools/builds/usb_stick.py`.
 
-The packages of the test are those that are installed, made wheels again: so nothing is fetched.
+The packages of the test are the installed ones, repacked as wheels, so no download is needed.
 """
 
 from __future__ import annotations
@@ -186,7 +186,7 @@ def test_each_system_has_its_script_with_its_line_ends(stick: Path) -> None:
 
 
 def test_the_script_of_windows_keeps_the_rules_of_cmd(stick: Path) -> None:
-    """Only readable rules are checked, because the script is not run."""
+    """It checks only rules that can be read from the text, because the script is not run."""
     lines = (stick / "start.bat").read_text(encoding="ascii").splitlines()
     labels = {line[1:] for line in lines if line.startswith(":")} | {":eof"}
     for line in lines:
@@ -246,7 +246,7 @@ def test_the_pages_speak_one_language_and_have_boxes_to_tick(stick: Path) -> Non
 
 
 def test_a_phone_shows_each_page_of_a_teacher_whole(stick: Path) -> None:
-    """Nothing is cut at 390 px except the wiring, which has a note about scrolling."""
+    """Only the wiring is cut at 390 px, and it has a note about scrolling."""
     pages = [*sorted(stick.glob("pages/**/*.es.html")), stick / "pages" / "index.es.html"]
     cut = """[...document.querySelectorAll('pre, table, .finished')]
         .filter(each => each.scrollWidth > each.clientWidth + 1).length"""
@@ -285,7 +285,7 @@ def wheel(folder: Path, name: str, needs: Sequence[str] = (), tag: str = "py3-no
 def fetch_packages(
     folder: Path, target: Path, system: str, python: str, wanted: str | Path
 ) -> set[str]:
-    """Return the names of what pip takes from a folder for a system and a Python."""
+    """Return the names of the packages that pip chooses from a folder for a system and a Python."""
     words = ["download", "--quiet", "--no-index", "--find-links", str(folder), "--dest",
              str(target), "--only-binary=:all:", "--python-version", python]  # fmt: skip
     for tag in SYSTEMS[system].tags:
@@ -296,7 +296,7 @@ def fetch_packages(
 
 @pytest.mark.sampled(of="sticks that pip reads")
 def test_markers_are_those_of_the_target(tmp_path: Path) -> None:
-    """pip resolves for Windows what only Windows needs, and for an old Python what it lacks."""
+    """pip resolves additional packages for Windows, and for an old Python."""
     for name in ("only_windows", "only_old"):
         wheel(tmp_path, name)
     needs = ["only_windows; sys_platform == 'win32'", "only_old; python_version < '3.11'"]

@@ -1,4 +1,4 @@
-"""Which warnings programs get, the rarest first."""
+"""The warnings that programs get, the rarest first."""
 
 from __future__ import annotations
 

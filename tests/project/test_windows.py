@@ -209,7 +209,8 @@ for words in commands:
 
 
 def test_nothing_but_unix_knows_unix(tmp_path: Path) -> None:
-    """Each module can be imported, and what needs no robot runs, without what Windows lacks."""
+    """Without the modules that Windows lacks, each module can be imported, and commands without a
+    robot run."""
     for needed_module in ("wasmtime", "PIL", "bleak", "zeroconf"):
         pytest.importorskip(needed_module)
     (tmp_path / "prog.ts").write_text(PROGRAM)
@@ -366,7 +367,7 @@ def test_a_reader_that_has_left_is_no_mistake(
 def test_a_file_that_is_open_elsewhere_is_replaced_a_moment_later(
     opened_s: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A virus scanner looks at what was just written; a spreadsheet keeps it."""
+    """A virus scanner opens a newly written file; a spreadsheet keeps it open."""
     path = tmp_path / "keys.json"
     path.write_bytes(b"old")
     now_s, tries = [0.0], [0]

@@ -1,4 +1,4 @@
-"""The workflows for a forge: nobody here can run one, so what can be read of them is read."""
+"""The workflows for a forge: they cannot run here, so the tests check their text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which programs of the corpus a run takes."""
+"""Chooses the programs of the corpus that a run uses."""
 
 from __future__ import annotations
 

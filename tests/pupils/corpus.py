@@ -62,7 +62,7 @@ def entries() -> tuple[Entry, ...]:
 
 
 def _mend(program: list[str], messages: list[str], changed_lines: list[str]) -> str | None:
-    """Return the program that the rows below it say, or None if they change nothing."""
+    """Return the program that results from the rows below it, or None if they change nothing."""
     if changed_lines and not changed_lines[0][1:2].isdigit():
         return "\n".join(row[1:].removeprefix(" ") for row in changed_lines)
     lines = [line.rstrip() for line in program]
@@ -79,7 +79,7 @@ def _mend(program: list[str], messages: list[str], changed_lines: list[str]) -> 
 
 
 def _part(line: str, fix: str, new: str) -> str:
-    """Return the part of a line in whose place `fix` makes a new line of it, or nothing."""
+    """Return the part of a line that `fix` replaces to get the new line, or an empty text."""
     for start in range(len(line)):
         if new.startswith(line[:start] + fix):
             rest = len(new) - start - len(fix)
@@ -96,7 +96,7 @@ def _indent(line: str) -> str:
 
 @lru_cache(maxsize=10_000)
 def check(text: str) -> list[Diagnostic]:
-    """Return the diagnostics of a program, in a shared list that nobody changes."""
+    """Return the diagnostics of a program, in a shared list that must not be changed."""
     robot = robots.load(robots.DEFAULT)
     return compile_source(text.encode(), robot, "prog.ts", is_strict=False).diagnostics
 

@@ -2,10 +2,10 @@
 
 python -m tests.pupils.cover    chooses them again, in some minutes, and writes `cover.txt`
 
-A commit is tested with these; `python -m tools.campaign pupils`, or `--whole`, takes all. What
-`--accept` pins first is one of them, too. They are to be chosen again when other programs come and
-go, or when the code that judges them has changed so much that a fiftieth of its branches may be
-others: a test says so.
+A commit is tested with these; `python -m tools.campaign pupils`, or `--whole`, takes all. It also
+includes the first programs that `--accept` pins. Select them again when other programs come or go,
+or when the code that judges them has changed so much that a fiftieth of its branches may differ: a
+test reports this.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ def list_reached_branches(programs: Sequence[Entry]) -> list[frozenset[Branch]]:
 
 
 def _branches(branches: Sequence[frozenset[Branch]]) -> list[frozenset[Branch]]:
-    """Return the steps between lines that might have gone elsewhere."""
+    """Return the steps between lines at which there was a choice."""
     ways: dict[tuple[str, int], set[int]] = {}
     for file, start, end in frozenset().union(*branches):
         ways.setdefault((file, start), set()).add(end)
@@ -126,7 +126,7 @@ def _branches(branches: Sequence[frozenset[Branch]]) -> list[frozenset[Branch]]:
 
 
 def choose_cover(branches: Sequence[frozenset[Branch]], before: Iterable[int] = ()) -> list[int]:
-    """Return the numbers of few sets that have together what all have.
+    """Return the numbers of a few sets whose union is that of all.
 
     Each time the one that adds most; of two, rather one of `before`, so that little changes.
     """

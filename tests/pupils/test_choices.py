@@ -1,4 +1,4 @@
-"""Repairs are made in few steps, and none has a mistake in it."""
+"""Repairs take few steps, and none contains a mistake."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_a_long_hostile_text_takes_few_steps(piece: str, monkeypatch: pytest.Mon
 
 
 def test_a_program_is_checked_so_often_and_no_more() -> None:
-    """Whatever its repairs uncover."""
+    """This limit holds whatever its repairs uncover."""
     (missing,) = check("F(2 80)")
     texts: list[str] = []
 

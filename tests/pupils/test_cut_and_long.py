@@ -12,7 +12,7 @@ from tiniscript.recovery.told import MOST_CHARACTERS
 
 WORDS = re.compile(r"\w+|[^\w\s]")
 # Calls for each character: of a row so long that it is read word by word, and of one that is read
-# as a whole. Where each word reads the whole row, they are far more.
+# as a whole. If each word reads the whole row, there are far more.
 MOST_CALLS, MOST_CALLS_WHOLE = 250, 8_000
 
 

@@ -1,4 +1,4 @@
-"""A text that is twice as long takes twice the work: nobody waits for a hostile one."""
+"""A text that is twice as long takes twice the work: a hostile one causes no long wait."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Offers of messages are right: every edit, and every line that they show, compiles.
 
-The law is stated here once more, without the code that keeps it: what is put into a program has no
-mistake, but one of which another message tells.
+The law is stated here independently of the code that enforces it: inserted text contains no mistake
+except those that another message reports.
 """
 
 from __future__ import annotations
@@ -29,7 +29,8 @@ def put_in(edits: list[Edit]) -> list[Span]:
 
 
 def ways(diagnostic: Diagnostic, text: str) -> list[list[Edit]]:
-    """Return the changes that a message offers, or what the line may stand for that it shows."""
+    """Return the edits that a message offers, or the possible readings of the line that it
+    shows."""
     if edits := edits_of(diagnostic):
         return [edits]
     fix = diagnostic.values.get("fix", "")
@@ -46,7 +47,7 @@ def wrong_in(
     other_codes: set[str],
     other_words: set[str],
 ) -> list[str]:
-    """Return the codes of mistakes in what a message shows of the changed program."""
+    """Return the codes of mistakes in the part of the changed program that a message shows."""
     changed_text = apply_edits(text, edits)
     own = sorted(edits_of(diagnostic) or edits)
     spans = [span for edit, span in zip(sorted(edits), put_in(edits), strict=True) if edit in own]

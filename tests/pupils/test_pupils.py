@@ -150,7 +150,8 @@ WRITTEN = {
 
 
 def test_what_a_message_says_to_write_is_offered(programs: tuple[Entry, ...]) -> None:
-    """Also a warning's, which is gone then; `tsc check --fix` makes none of a warning."""
+    """This includes a warning, which then disappears; `tsc check --fix` applies no repair of a
+    warning."""
     go_through(offers_what_it_says, programs)
 
 

@@ -1,4 +1,4 @@
-"""Conservation: what `tsc check --fix` makes keeps what was written, whichever row makes it."""
+"""Conservation: the result of `tsc check --fix` keeps the written values, whichever row made it."""
 
 from __future__ import annotations
 
@@ -228,7 +228,7 @@ def test_digits_of_a_decimal_comma_are_no_other_number(wrong: str, digits: str) 
 
 
 def test_no_repair_takes_a_sign_for_a_command_out() -> None:
-    """A stop sign is S, wherever it stands; a sign that nothing is said with may go."""
+    """A stop sign is S, in any place; a sign without meaning may be removed."""
     rows = (read_language_file(language, "lexicon.txt").split("\n") for language in languages())
     command_rows = [row.partition("|") for its in rows for row in its if re.match("[FBLRS] ", row)]
     signs = [(it[0].strip(), s) for it in command_rows for s in it[2].split() if not s.isascii()]
@@ -245,7 +245,7 @@ def test_no_repair_takes_a_sign_for_a_command_out() -> None:
 
 
 def test_what_one_line_would_lose_costs_the_others_nothing() -> None:
-    """A number of another line is not that of this one, and nobody knows what BLA is."""
+    """A number of another line is not that of this one, and BLA is unknown."""
     wrong = "IF(LUZ_ESQ > 50%)\nF(2 80)\nENDIF\nBLA(3);F(1, 50)"
     right = wrong.replace("F(2 80)", "F(2, 80)").replace("LUZ_ESQ", "LIGHT_L")
     assert repair_program(wrong, check).text == right

@@ -1,4 +1,4 @@
-"""A counter of a loop keeps its values: LOOP counts nothing, so a variable grows in its body."""
+"""A counter of a loop keeps its values: LOOP has no counter, so a variable grows in its body."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""A block of one line that lacks its end: the message says where it may end, `--fix` guesses none.
+"""A block of one line without its end: the message lists possible ends, `--fix` guesses none.
 
-Where only one place is possible, the message names it, and what is repaired is that block.
+If only one place is possible, the message names it, and the repair changes that block.
 """
 
 from __future__ import annotations

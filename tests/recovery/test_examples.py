@@ -1,4 +1,4 @@
-"""A number that nobody wrote is taken from the program, or said to be an example."""
+"""A missing number is taken from the program, or marked as an example."""
 
 from __future__ import annotations
 

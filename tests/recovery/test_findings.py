@@ -1,4 +1,4 @@
-"""The findings of wrong programs, and what comes after them."""
+"""The findings of wrong programs, and their consequences."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A sign that nobody sees is named by its number, wherever it stands."""
+"""An invisible sign is named by its number, in any place."""
 
 from __future__ import annotations
 

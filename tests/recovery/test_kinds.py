@@ -33,7 +33,7 @@ def messages(text: str) -> list[str]:
 
 
 def apply_fix(text: str, diagnostic: Diagnostic) -> str:
-    """Return a program with what a diagnostic offers."""
+    """Return a program with a diagnostic's offer applied."""
     return apply_edits(text, edits_of(diagnostic) or [])
 
 
@@ -267,7 +267,7 @@ def test_a_wrong_head_of_a_def_makes_no_name_of_its_body_unknown(between: str) -
     assert [code for code, _ in codes_and_fixes(between.join(lines))] == ["TS091", "TS103"]
 
 
-# -- what a message says --------------------------------------------------------------------------
+# -- the content of a message ----------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -376,7 +376,7 @@ def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
         )
 
 
-# -- what is named, and what is told once -----------------------------------------------------
+# -- what is named, and what is reported once -------------------------------------------------
 
 
 @pytest.mark.parametrize("between", BETWEEN)

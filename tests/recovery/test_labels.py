@@ -1,4 +1,4 @@
-"""Labels: whatever counts an instruction is taken out, alike in each place and language."""
+"""Labels: anything that numbers an instruction is removed, in each place and language."""
 
 from __future__ import annotations
 

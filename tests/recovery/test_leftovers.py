@@ -1,4 +1,4 @@
-"""Superfluous text in an instruction is named as what it is, in each place."""
+"""Superfluous text in an instruction gets its own name, in each place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Motors that are set one by one: a pair is one M with both powers, wherever it stands."""
+"""Motors set individually: a pair is one M with both powers, in any place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A note of another language is a note up to the end of its line, and nothing in it is read."""
+"""A comment in another language's style lasts to the end of its line and is not read."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A DEF with values is read, and told of, alike for each count of values.
+"""A DEF with values is read and reported in the same way for each number of values.
 
 The brackets of its header and of its call may be missing, with or without commas, and what is said
 of a word of the program's own ends with no gap.
@@ -66,7 +66,7 @@ def test_no_sentence_on_a_def_ends_with_a_gap_or_takes_another_word(language: st
                 assert not re.match(r"Y\b", full_message.message), full_message
 
 
-# -- what is said of each call, in every language -----------------------------------------------
+# -- the message about each call, in every language ---------------------------------------------
 
 GIVEN = ("3", "30 CM", "-3", "TRUE", "DISTANCE", "DISTANCE < 10", "(1)", "MAX(1, 2)", "X", "1, 2")
 UNTAUGHT = ("A", "Q", "AB", "ABC", "LADO", "SIDE", "CUADRADO", "HOLA_2", "ZIGZAG")  # no other word
@@ -126,7 +126,7 @@ EXTRAS = (" = 5", "=5", " + 1", "=-5", " = (5)", " = MAX(1, 2)", " < 3")
 
 @each_row("count, extra", product(COUNTS, EXTRAS))
 def test_what_follows_a_name_in_a_def_is_named_and_its_header_shown(count: int, extra: str) -> None:
-    """Python's values for calls that give none. All names are known below."""
+    """Default values of Python for calls without any. All names are known below."""
     names = NAMES[:count]
     right = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
     for place in range(count):

@@ -118,7 +118,8 @@ def test_a_name_is_renamed_wherever_it_is_meant(word: str) -> None:
 
 @pytest.mark.parametrize("word", sorted(WORDS))
 def test_no_word_becomes_the_name_of_a_def(word: str) -> None:
-    """Whatever stands before and after it; a block there stays as it is under the other name."""
+    """This holds whatever is before and after it; a block there stays as it is under the other
+    name."""
     for blocks in OWN_BLOCKS:
         for text_before, text_after in ((blocks, "S"), ("S", blocks), (blocks, blocks)):
             text = f"{text_before}\nDEF {word}(A, K)\nF(A, K)\nEND_DEF\n{text_after}"

@@ -1,4 +1,4 @@
-"""The caret stands at what the message names: over all programs of pupils."""
+"""The caret points at the text that the message names, in all programs of pupils."""
 
 from __future__ import annotations
 

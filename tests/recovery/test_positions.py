@@ -1,4 +1,4 @@
-"""Position: a row means the same wherever its instruction stands.
+"""Position: a row means the same in any place of its instruction.
 
 The example of each row is read alone, and then first, last and in the middle of one line, and in an
 IF, a DEF and a TASK. A row of a whole line says so with `^^`, `$$`, `\\A` or `\\Z`.

@@ -1,4 +1,4 @@
-"""A right line is never told of because another line is wrong.
+"""A correct line is never reported because another line is wrong.
 
 python -m tests.recovery.test_right_lines 10000    so many right programs with a wrong line
 """
@@ -39,7 +39,7 @@ def right() -> list[str]:
 
 @cache
 def wrong() -> list[str]:
-    """Return lines that are wrong for themselves: of pupils, none of them meant for a block."""
+    """Return lines of pupils that are wrong on their own and do not belong to a block."""
     lines = ["F(2;80)"]
     for entry in entries():
         line = entry.program

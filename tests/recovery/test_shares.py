@@ -1,4 +1,4 @@
-"""A percentage of a sensor: both numbers that may be meant are shown, and none is made."""
+"""A percentage of a sensor: both possible numbers are shown, and neither is applied."""
 
 from __future__ import annotations
 

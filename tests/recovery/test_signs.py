@@ -1,4 +1,4 @@
-"""A plus that says nothing, and one more or one less: read alike wherever they stand."""
+"""A redundant plus, and increments and decrements, are read in the same way in every place."""
 
 from __future__ import annotations
 

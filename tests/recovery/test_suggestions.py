@@ -93,7 +93,7 @@ def test_what_is_wrong_beside_the_words_is_told_too() -> None:
     assert [(diagnostic.code.number, diagnostic.values["fix"]) for diagnostic in diagnostics] == [
         ("TS017", "F(2, 80)"),
         ("TS085", "// hola"),  # its instruction has a repair of its own
-        ("TS085", ""),  # something else follows on the line
+        ("TS085", ""),  # more text follows on the line
         ("TS102", "F(1, 80)"),
     ]
 

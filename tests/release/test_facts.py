@@ -175,7 +175,7 @@ def test_an_address_is_kept_where_it_is_another_one(
 
 
 def test_this_repository_agrees_with_itself() -> None:
-    """But for what a release alone brings: a date, an address, a commit of everything."""
+    """The exceptions come only with a release: a date, an address, a commit of everything."""
     brought = ("CHANGELOG.md", "not committed", "does not say", "The tag", "The commit has")
     assert [complaint for complaint in facts.complaints(ROOT)
             if not any(word in complaint for word in brought)] == []  # fmt: skip

@@ -1,4 +1,4 @@
-"""The command: what it makes in which order, and with what it builds."""
+"""The command: its products in order, and its tools."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def test_a_driver_is_told_to_who_writes_a_profile(driver: Driver) -> None:
 
 
 def test_a_driver_that_a_sketch_does_not_know_is_named() -> None:
-    """Whatever its pins are called."""
+    """This holds for any names of its pins."""
     for driver in DEVICES:
         robot = robot_with("l298n", [driver])
         board = robot.board
@@ -119,7 +119,7 @@ def test_a_robot_without_a_buzzer_has_no_tone() -> None:
     assert "waitMs(ms);" in sketch, "a sound takes its time"
 
 
-# -- what is written is C++ ------------------------------------------------------------------------
+# -- the result is valid C++ -----------------------------------------------------------------------
 
 
 def is_shield(motors: str) -> bool:
@@ -142,7 +142,7 @@ ALL = [
 
 
 def compile_all(robot: Robot, folder: Path) -> None:
-    """Compile without output: a compiler quickly reports what no text test shows."""
+    """Compile without output: a compiler quickly reports errors that no test of the text finds."""
     header, own = firmware.header([robot], "a test."), folder / "own.h"
     own.write_text(header, encoding="utf-8")
     own_define = f'-Dtiniscript_own="{own}"'

@@ -1,4 +1,4 @@
-"""Which of the shipped robots is nearest to somebody's own."""
+"""Finds the shipped robot nearest to a person's own."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ BATTERY = '[[kit.sensors]]\nname = "BATTERY"\nkind = "number"\nunit = "V"\nrange
 
 @pytest.mark.parametrize("name", robots.names())
 def test_a_shipped_robot_is_nearest_to_itself(name: str) -> None:
-    """Robots with the same kit are told apart by their boards. A kit does not say whether the
+    """Robots with the same kit are distinguished by their boards. A kit does not say whether the
     wheels have discs.
     """
     nearest = nearest_to(robots.load(name))

@@ -1,6 +1,6 @@
 """Refused robot profiles: each code, its sentences, failure with files, and broken files.
 
-What a good profile gives is in `test_robots`.
+The results of a good profile are in `test_robots`.
 """
 
 from __future__ import annotations
@@ -219,7 +219,8 @@ def test_pins_of_esp32s(name: str, old: str, pin: int, code: str) -> None:
 
 
 def test_pwm_of_an_esp32_c3() -> None:
-    """Three timers, for two pins of one frequency each: a fan beside four motor pins has none."""
+    """It has three timers, for two pins of one frequency each, so a fan in addition to four motor
+    pins has none."""
     text_before, mark, text_after = TEXTS["tinibotc3"].partition("[board.sensors.LIGHT_R]")
     text = text_before + FAN.format(pin=9) + mark + text_after
     refused = refusal(text)

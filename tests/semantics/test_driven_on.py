@@ -62,7 +62,7 @@ def test_nothing_else_does(around: str, tail: str) -> None:
 @pytest.mark.parametrize("around", AROUND)
 @pytest.mark.parametrize("word", [*WORDS, "espera"])
 def test_no_word_with_forever_is_taken_for_a_move(around: str, word: str) -> None:
-    """Whatever its number of values: FOREVER alone, first, last or between others."""
+    """This holds for any number of values: FOREVER alone, first, last or between others."""
     for values in ("FOREVER", "FOREVER, 60", "60, FOREVER", "FOREVER, 60, 60", ""):
         check(around.format(f"{word}({values});W(3);S"))
     check(f"{word} hasta que presione el boton")

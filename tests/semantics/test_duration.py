@@ -43,7 +43,7 @@ def lasting(text: str, is_optimized: bool = True) -> Duration:
         ("DEF A;W(2);END_DEF;A;A", 4000, 4000),
         ("DEF A;W(2);END_DEF;DEF C;A;W(1);END_DEF;LOOP(2);C;END_LOOP", 6000, 6000),
         ("DEF A;W(DISTANCE);END_DEF;W(1);A", 1000, None),
-        # several tasks: the longest counts, and a turn that waits for nothing lasts a millisecond
+        # several tasks: the longest counts, and a turn without a wait lasts a millisecond
         ("W(1);TASK;W(3);END_TASK", 3000, 3000),
         ("TASK;LOOP(3);SHOW(1);END_LOOP;END_TASK", 0, 3),
         ("LOOP(3);W(2);END_LOOP;TASK;W(1);END_TASK", 6000, 6000),

@@ -24,7 +24,7 @@ def defs(count: int) -> str:
 
 
 def calls(count: int) -> str:
-    """Return so many nested calls; the first DEF calls nothing."""
+    """Return this many nested calls; the first DEF calls none."""
     def_rows = ["DEF C0;S;END_DEF", *(f"DEF C{k};C{k - 1};END_DEF" for k in range(1, count))]
     return ";".join([*def_rows, f"C{count - 1}"])
 
@@ -74,6 +74,6 @@ def test_what_just_fits_and_what_does_not(
 
 
 def test_the_second_value_of_an_argument_lies_above_the_first() -> None:
-    """`5 - (…)` keeps 5 while the brackets are calculated; `(…) - 5` keeps nothing."""
+    """`5 - (…)` keeps 5 while the brackets are calculated; `(…) - 5` does not."""
     assert check_text(f"SHOW({deep(STACK_VALUES)} - 5)", KIT).is_right
     assert not check_text(f"SHOW(5 - {deep(STACK_VALUES)})", KIT).is_right

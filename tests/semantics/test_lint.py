@@ -1,4 +1,4 @@
-"""The lint: what it warns of, and what it leaves alone. `tests/cases/lint.md` has sentences."""
+"""The lint: which code gets a warning, and which gets none. `tests/cases/lint.md` has sentences."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ def test_a_row_reports_its_codes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_kit_without_numbers_has_a_usual_speed() -> None:
-    """Centimetres were meant there, too; as it has no CM, the message offers none."""
+    """Centimetres were meant there, too; because it has no CM, the message offers no repair."""
     kit = KIT._replace(speed=0, turn=0)
     (diagnostic,) = check_text("F(20, 60)", kit).diagnostics
     assert diagnostic.code.number == "TS811"

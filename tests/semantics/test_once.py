@@ -1,6 +1,6 @@
 """Actions or readings that happen once, or alone, where the author meant more.
 
-A key of the remote control outside all that repeats, and a TASK with nothing beside it.
+A key of the remote control that is read only once, and a TASK that has no other task.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The optimiser: what it makes shorter, and what it must leave alone.
+"""The optimiser: code that it shortens, and code that it must leave alone.
 
-That it never changes a trace or a fault, `test_agreement` shows on random programs.
+`test_agreement` shows on random programs that it never changes a trace or a fault.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Which reading a sensor's name means: where the checker puts readings, and which are kept.
+"""The reading that a sensor's name means: where the checker puts readings, and which are kept.
 
-A reading is kept when it is `surely read`: whatever way the program took. In the text of the IR
+A reading is kept when it is `surely read`, on every path of the program. In the text of the IR
 `Read 2` takes a reading of DISTANCE and `s2` is the reading that was taken last.
 """
 

@@ -42,7 +42,7 @@ def codes_of(compilation: Compilation) -> list[str]:
     return [diagnostic.code.number for diagnostic in compilation.diagnostics]
 
 
-# -- what programs of before see of it ----------------------------------------------------------
+# -- older programs and the remote control ---------------------------------------------------------
 
 
 def test_the_contract_has_eight_in_this_order() -> None:
@@ -194,7 +194,7 @@ def fill_in_name(text: str, name: str) -> str:
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("role", GIVES_WAY)
 def test_what_compiled_before_compiles_still(role: str, name: str) -> None:
-    """There is a warning at the name's first place, and the code is that of any other name."""
+    """There is a warning where the name first appears, and the code is that of any other name."""
     text = fill_in_name(GIVES_WAY[role], name)
     compilation = compile_text(text, TINIBOT)
     assert compilation.is_right, codes_of(compilation)
@@ -290,7 +290,7 @@ def test_a_sketch_has_none(tsc: Tsc) -> None:
 def test_a_robot_without_room_for_it_is_told_before_anything_is_sent(
     tsc: Tsc, robot: str, has: bool
 ) -> None:
-    """An Uno with discs; what sends nothing takes the program."""
+    """This is an Uno with discs; commands that send nothing accept the program."""
     text = "SHOW(1)\nF(1, 50) UNTIL(KEY_A)\n"
     of = ("-e", text, "--robot", robot)
     for sends in (["compile", "--text"], ["upload", "--virtual"]) if not has else []:

@@ -30,7 +30,7 @@ SHOWN = {"event": "SHOW", "ms": 5, "values": protocol.event_fields(ShownEvent(5,
 class Holder:
     """The socket to a holder of a port: each heartbeat is answered so much later.
 
-    After `dies_s` it neither answers nor says anything. Time passes while somebody waits for it.
+    After `dies_s`, it is silent. Time passes while somebody waits for it.
     """
 
     def __init__(self, answer_s: Callable[[], float], dies_s: float = float("inf")) -> None:

@@ -1,7 +1,7 @@
-"""Ten thousand connections to what listens on this computer: nothing grows, a stop gets through.
+"""Ten thousand connections to this computer's servers: nothing grows, a stop gets through.
 
-`python -m tests.sharing.test_many_strangers 10000` makes so many of each kind and prints what grew;
-the tests make fewer.
+`python -m tests.sharing.test_many_strangers 10000` makes this many of each kind and prints the
+growth; the tests make fewer.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ def wait_until_settled(pid: int, files: int) -> Had:
 def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
     """Come to a virtual robot and to the command that drives it. Return what each process had.
 
-    Before, while they are there, and when they have gone.
+    Measure before they connect, while they are there, and after they have left.
     """
     with drive_robot() as (robot, port, command, _):
         places = [
@@ -133,7 +133,7 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
         out, err = command.communicate(timeout=HANGS_S)
         assert command.returncode == 3
         assert b"was stopped from a computer" in out + err
-        # Without a holder, clients are admitted in order, 256 a second at most. Half a greeting is
+        # Without a holder, clients are admitted in order, at most 256 a second. Half a greeting is
         # text, and a typing client holds the robot.
         with visitors(places[0][2], kind, min(count, TESTED)):
             result = process("stop", "--port", port)

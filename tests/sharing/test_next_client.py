@@ -1,9 +1,9 @@
 """A later client of a shared port has the same actions and messages as the first one.
 
 A command asks random things of a simulated robot and leaves, breaks off, falls silent or breaks the
-protocol at any moment; then comes the next one. Of it all that can be seen, its answers, its events
-and what the robot does, is what there is if nobody came before. Port, robot and server take
-their turns on the clock of the test.
+protocol at any moment; then comes the next one. All visible effects, its answers, its events and
+the robot's actions, are those without an earlier client. Port, robot and server take their turns on
+the clock of the test.
 
 `python -m tests.sharing.test_next_client 500` tries more.
 """

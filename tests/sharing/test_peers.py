@@ -106,7 +106,7 @@ def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) ->
         monkeypatch.setattr(peers, "_socket_owner", failing(errno.EOPNOTSUPP))
         assert peers.is_of_this_user(own_end)
         monkeypatch.setattr(sys, "platform", "linux")
-        for number in (errno.ENOENT, errno.EMFILE, errno.ENFILE):  # gone, or nothing can be asked
+        for number in (errno.ENOENT, errno.EMFILE, errno.ENFILE):  # closed, or the query failed
             monkeypatch.setattr(peers, "_socket_owner", failing(number))
             assert not peers.is_of_this_user(own_end)
 
@@ -132,7 +132,7 @@ def test_another_user_moves_nothing(how: str) -> None:
         assert running_robot.until("DONE")[1:] == ["0 MOTORS 50 50", "100 MOTORS 0 0", "100 DONE"]
 
 
-# -- who listens where a robot was ----------------------------------------------------------------
+# -- another server in a robot's place -------------------------------------------------------------
 
 # Listens at a port as another user, and prints what it receives.
 LISTENER = """
@@ -153,7 +153,7 @@ def test_whoever_listens_at_a_port_has_its_user(monkeypatch: pytest.MonkeyPatch)
         assert not peers.is_of_another_user(number)
         monkeypatch.setattr(os, "geteuid", lambda: NOBODY)
         assert peers.is_of_another_user(number) == (os.getuid() != 0)  # root has every right
-    assert not peers.is_of_another_user(number)  # nobody is listening
+    assert not peers.is_of_another_user(number)  # no server listens there
 
 
 def test_a_robot_at_whose_port_another_user_listens_is_none(
@@ -176,7 +176,7 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
         peer, _ = server.accept()
         with peer:
             peer.settimeout(HANGS_S)
-            assert peer.recv(1000) == b""  # nothing was sent
+            assert peer.recv(1000) == b""  # no bytes were sent
         inside("start", "--port", address, "--lang", "es").gives(3, "escucha otro usuario")
         monkeypatch.setattr(peers, "is_of_another_user", lambda port: False)
         assert directory.is_virtual(address)

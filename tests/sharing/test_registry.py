@@ -1,8 +1,8 @@
-"""Anyone who has a port has it, whatever other commands do to the files of ports at any moment.
+"""The holder of a port keeps it, whatever other commands do to the files of ports at any moment.
 
 Something happens before each line of the registry that another command is at: a server registers,
-or a lock is taken or let go. What is there then is what would be there had they come one after the
-other: the server is found, and a lock has one owner.
+or a lock is taken or let go. The result is the same as if they had come one after the other: the
+server is found, and a lock has one owner.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def dead() -> Registration:
 
 
 def at_line(wanted: int, does: Callable[[], object], runs: Callable[[], object]) -> bool:
-    """Run something; before its so many-th line in the registry something else happens. Return
+    """Call `runs`, and call `does` just before its line number `wanted` in the registry. Return
     whether it has so many lines."""
     lines = 0
 
@@ -108,7 +108,7 @@ def lock() -> IO[bytes] | None:
 
 
 def check_one_owner(owners: list[IO[bytes] | None]) -> None:
-    """No two have the lock; once they let go, the next one gets it, and nothing is left."""
+    """Only one has the lock; after its release, the next one gets it, and no file is left."""
     holders = [file for file in owners if file is not None and not file.closed]
     assert len(holders) <= 1, "two have the same lock"
     next_one = lock()
@@ -177,7 +177,7 @@ def test_who_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one() -> 
 def test_a_computer_leaves_what_another_one_has_written_in_a_shared_home(
     does: str, other: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Only the other computer can check whether somebody listens at the number."""
+    """Only the other computer can check whether a server listens at that port number."""
     foreign = dead()
     monkeypatch.setattr(registry, "gethostname", lambda: other)
     registry.write(foreign)

@@ -25,7 +25,7 @@ IMAGE = Image("SI", 3, b"\x44\xf0\x50", 0xFFFFFFFF, (2, 0), b"\1")
 
 
 class Asked(NamedTuple):
-    """A method of a client, with what it is given."""
+    """A method of a client, with its arguments."""
 
     method: str
     given: tuple[Any, ...] = ()
@@ -140,7 +140,8 @@ def _knows_nod(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("_knows_nod")
 @pytest.mark.parametrize("values", [(0, -128, 0, b"a"), (255, 127, (1 << 32) - 1, b"abc")])
 def test_a_message_of_the_table_and_its_method_are_a_request(values: tuple[Any, ...]) -> None:
-    """From this process and from a client of a shared port; no other file has to know it."""
+    """This works from this process and from a client of a shared port; no other file has to know
+    it."""
     session = Mock()
     request_maker(Asked("nod", values).message(), 700)(session)
     ((name, taken, _),) = session.method_calls

@@ -1,4 +1,4 @@
-"""Whose run goes on: it is stopped when its command has left, in whatever order that is noticed."""
+"""Decides whose run continues: it is stopped when its command has left, in any order of events."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ def hellos(pty_robot: PtyRobot) -> int:
     return sum(frame is not None and frame.number == 1 for frame in frames)
 
 
-# -- what others can do -------------------------------------------------------------------------
+# -- others' abilities -----------------------------------------------------------------------------
 
 
 def test_stop_works_while_another_terminal_drives(pty_robot: PtyRobot) -> None:
@@ -188,7 +188,7 @@ def test_a_command_imports_no_more_than_it_needs(
         assert sorted((NEVER | OF_A_PORT | unwanted_modules) & imported_by(shared_robot.port)) == []
 
 
-# -- whose run it is ------------------------------------------------------------------------------
+# -- the owner of a run ---------------------------------------------------------------------------
 
 
 def test_a_robot_stops_without_the_command_that_has_started_it(
@@ -243,7 +243,7 @@ def test_a_program_ends_with_its_command_unless_it_needs_nobody(
 def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
     pty_robot: PtyRobot,
 ) -> None:
-    """Through the first command, which has nothing more to do of its own."""
+    """It runs through the first command, whose own work is over."""
     first = uploading(pty_robot)
     second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
     second.wait_for_result().gives(0, out="Done.")
@@ -370,7 +370,7 @@ def test_of_three_who_want_a_place_one_gets_it(
 
 
 def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
-    """A client whose server leaves is told so, and connects again."""
+    """A client is notified when its server leaves, and connects again."""
 
     def start_command(*words: str) -> Command:
         return Command(*words, "--port", pty_robot.port, code=PATIENT)

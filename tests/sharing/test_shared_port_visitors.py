@@ -75,7 +75,7 @@ def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
 
 
 def test_wrong_messages_of_a_client_end_its_visit_alone() -> None:
-    """Which are wrong is in `test_requests.py`."""
+    """`test_requests.py` lists the wrong messages."""
     with Shared() as (pty_robot, registration):
         for wrong in ({"do": "fly"}, {"do": "name", "name": "zz"}, {"do": "ping", "id": "1"}):
             with visitor(registration) as peer:

@@ -1,4 +1,4 @@
-"""Whatever a client without the token sends to a shared port, the session there goes on."""
+"""Whatever a client without the token sends to a shared port, the session there continues."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.support.pty_robot import PtyRobot, on, uploading
 
 
 def test_no_bytes_of_a_stranger_end_a_run_or_its_server(pty_robot: PtyRobot, link: Command) -> None:
-    """The heartbeat of the command that has started it goes on."""
+    """The heartbeat of the command that has started it continues."""
     command = uploading(pty_robot)
     say_all(pty_robot.port, 14, 1500)
     assert pty_robot.moves

@@ -137,7 +137,7 @@ def test_a_link_that_leads_nowhere_ends_the_build(
 def test_a_dead_link_ends_the_build(
     tmp_path: Path, site_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Links that neither half sees: those between the halves, and in templates."""
+    """These are links that neither half sees: those between the halves, and in templates."""
 
     def render(half: Path, folder: Path, link: object, has_studio: bool) -> None:
         folder.mkdir(parents=True)

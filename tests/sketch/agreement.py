@@ -1,7 +1,7 @@
 """Compares a sketch on a simulated board with a trace: the same actions at the same times.
 
-A trace says what motors, buzzer, actuators and SHOW get, and when. Both are signals; what is
-shorter than the tolerance may be missing in the other.
+A trace lists the outputs to motors, buzzer, actuators and SHOW, with their times. Both are signals;
+a change shorter than the tolerance may be missing in the other.
 """
 
 from __future__ import annotations
@@ -270,10 +270,10 @@ class Example(NamedTuple):
 
 
 def example(seed: int, robot: Robot) -> Example | None:
-    """Return a random program and what the oracle says of it.
+    """Return a random program and the oracle's result.
 
-    None if it calculates without end, which takes no time for the oracle, or where TIME can
-    tell how long it waited for an echo.
+    None if it calculates endlessly, which takes no time for the oracle, or if TIME could show how
+    long it waited for an echo.
     """
     rng = random.Random(seed)
     kit: OracleKit = KITS[1][0]._replace(has_remote=False)
@@ -299,7 +299,7 @@ def example(seed: int, robot: Robot) -> Example | None:
 
 
 def check(example: Example, robot: Robot, language: str = "en") -> None:
-    """The sketch of a random program does what the oracle says."""
+    """Check that the sketch of a random program agrees with the oracle."""
     compilation = compile_text(example.text, robot.kit, "prog.ts")
     assert compilation.program is not None and compilation.is_right
     board = SketchBoard(robot, sketch_of(compilation.source, compilation.program, robot, language))

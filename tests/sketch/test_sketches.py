@@ -1,7 +1,7 @@
-"""A sketch of `tsc show --arduino` builds, and does on a simulated board what the program does.
+"""A sketch of `tsc show --arduino` builds, and behaves on a simulated board like the program.
 
-`python -m tests.sketch.test_sketches 200` tries the programs of so many seeds; a quarter
-of them has no sketch.
+`python -m tests.sketch.test_sketches 200` tries the programs of this many seeds; a quarter of them
+have no sketch.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def run_sketch(text: str, ms: float, robot: Robot | None = None) -> Ran:
 
 
 def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float) -> None:
-    """A sketch does what the trace says, with readings that stay as they are."""
+    """Check that a sketch agrees with the trace, with constant readings."""
     compilation = compile_text(text, robot.kit, "prog.ts")
     assert compilation.program is not None and compilation.is_right
     board = SketchBoard(robot, sketch_of(compilation.source, compilation.program, robot, "es"))
@@ -148,7 +148,8 @@ def test_a_tb6612_is_awake_while_it_drives() -> None:
 
 
 def test_servos_that_turn_get_their_pulses() -> None:
-    """Still for a second after a stop, then none; the right one turns the other way."""
+    """They get them for one more second after a stop, then none; the right one turns the other
+    way."""
     robot = robot_with(SERVOS)
     board = SketchBoard(robot, sketch("SI|F(0.2, 100);W(2)", robot))
     run = board.run_for(1900)

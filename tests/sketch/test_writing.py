@@ -1,4 +1,4 @@
-"""The text of a sketch: what stands beside each line, names, comments, limits."""
+"""The text of a sketch: the comments of each line, names, notes, limits."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def sketch(text: str, language: str = "en", robot: str = "tinibot") -> str:
 
 
 def part(text: str, header: str) -> list[str]:
-    """Return the body of a function without what stands beside it."""
+    """Return the body of a function without its comments."""
     body = text.partition(f"\n{header} {{")[2].partition("\n}\n")[0]
     return [re.sub(r"  +//.*", "", row) for row in body.splitlines()[1:]]
 
@@ -197,7 +197,7 @@ def test_no_name_of_a_helper_is_in_the_other_language() -> None:
     assert local & names == {"valor"}
 
 
-# -- what it says of itself
+# -- its own comments
 
 
 @pytest.mark.parametrize("language", ["en", "es"])

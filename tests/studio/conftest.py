@@ -53,7 +53,7 @@ def server(browser: Browser) -> Iterator[serving.Server]:
 
 @pytest.fixture
 def hosted_pages(browser: Browser, server: serving.Server) -> Iterator[studio.Pages]:
-    """Pages of that server, on which nothing goes wrong."""
+    """Pages of that server, which must not report errors."""
     opened_pages = studio.Pages(browser, server.address, entrance=server.entrance)
     yield opened_pages
     opened_pages.close()
@@ -84,7 +84,7 @@ def only_page(browser: Browser, address: str) -> Iterator[tuple[studio.Pages, Pa
 
 @pytest.fixture
 def page(only_page: tuple[studio.Pages, Page]) -> Iterator[Page]:
-    """The page as `begin_anew` has it. What it says of errors is looked at after each test."""
+    """The page as `begin_anew` has it. Its errors are checked after each test."""
     pages, current_page = only_page
     studio.begin_anew(current_page)
     yield current_page

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 Size = tuple[int, int]  # width and height in pixels
-# Beside the program; on a phone a screen of their own.
+# They are next to the program; on a phone they have their own screen.
 BESIDE = {"running", "paused", "driven", "trace", "plot", "floor", "drawing", "box", "flag",
           "lesson", "checked", "real", "teacher", "programs"}  # fmt: skip
 STARTS = {"start", "own programs"}  # screens without halves

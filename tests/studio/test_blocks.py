@@ -1,4 +1,4 @@
-"""Blocks and text: neither loses anything of the other. In Python alone, as the page asks it."""
+"""Blocks and text: each keeps all content of the other. In Python alone, as the page asks it."""
 
 from __future__ import annotations
 

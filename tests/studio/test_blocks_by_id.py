@@ -1,5 +1,5 @@
-"""Changes of blocks in a group, in Python alone: operations of the blocks that were touched, and of
-no others, whatever the others of the group do meanwhile."""
+"""Changes of blocks in a group, in Python alone: operations only of the blocks that were touched,
+whatever the others of the group do meanwhile."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ def test_a_text_has_the_places_of_the_english_one(language: str) -> None:
 
 
 def test_every_sentence_is_said_somewhere() -> None:
-    """By its name, or by a name in two parts: `why_${reason}` and the reason's name."""
+    """The code has its name, or a name in two parts: `why_${reason}` and the reason's name."""
     sources = "".join(PAGE_SOURCES.values())
     names = set(re.findall(r"['\"]([\w/]+)['\"]", sources))
     heads = tuple(re.findall(r"`(\w+[_/])\$\{", sources))

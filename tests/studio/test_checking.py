@@ -110,7 +110,7 @@ def test_a_button_does_what_the_message_names(program: str, wanted_text: str) ->
 
 
 def test_each_of_many_mistakes_has_its_own_button() -> None:
-    """Pressed one after the other, and none of them again."""
+    """They are pressed one after the other, each once."""
     program = "F(1, 800)\nN = N + 1\nM(50, 50)\nR(90, 60)\nR(90, 60)\n"
     for _ in range(9):
         repair = next(filter(None, buttons(program)), ())

@@ -1,9 +1,9 @@
-"""A class is as the law says it is, whatever has happened in it before.
+"""A class obeys its laws after any history.
 
 Pupils come, report their work, want robots, fall silent, come back and are removed; robots are
-given and taken, meet nobody, or end; the teacher gives work and begins anew. After each step: all
-that was told is there, a crash loses none of what is kept, and who is next is whose turn it is. A
-class that was begun anew is as one that was just made.
+given and taken, are unreachable, or disconnect; the teacher gives work and begins anew. After each
+step: all reported work is there, a crash loses none of the saved state, and the turn belongs to the
+next in the queue. A class that was begun anew is as one that was just made.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ LESSONS = ("01_first_line", "02_there_and_back", "03_turns")
 
 
 class Page:
-    """A pupil's page: what it has told, and the connection of its turn."""
+    """A pupil's page: its reports, and the connection of its turn."""
 
     def __init__(self, name: str, token: str) -> None:
         self.name, self.token = name, token
@@ -57,7 +57,7 @@ class History:
         return self.room.teaches("class")
 
     def answer(self, who: Page, do: str, **more: Any) -> Json | None:
-        """Ask as a page; None if it was taken out."""
+        """Send a request as a page; None if it was removed."""
         try:
             answer = self.room.made.answer(who.token, "192.0.2.9", {"do": do, **more})
         except BadRequest:
@@ -71,7 +71,7 @@ class History:
         if page.text:
             self.gone[page.name] = page
 
-    # -- what happens
+    # -- events
 
     def act(self) -> None:
         ways = (self.comes, self.tells, self.tells, self.tells, self.wants, self.wants,
@@ -142,7 +142,7 @@ class History:
             page.robot = self.room.hosting.robots[self.room.hosting.asked[-1]["page"]]
 
     def ends(self) -> None:
-        """A connection ends by itself: the robot has met its page, or nobody."""
+        """A connection ends by itself: the robot has met its page, or none."""
         driving = [page for page in self.pages.values() if page.robot and not page.robot.has_ended]
         if not driving:
             return
@@ -209,7 +209,7 @@ class History:
         self.room.teaches("class_bring", name="Old", text=text, robot="", lessons=[LESSONS[0]])
         self.brought.add(text)
 
-    # -- what is always so
+    # -- invariants
 
     def look(self) -> None:
         state = self.state()
@@ -218,7 +218,8 @@ class History:
         self.crash_loses_nothing(state)
 
     def all_is_there(self) -> None:
-        """Each page's newest program, and that of who has gone, as often as it was made."""
+        """Return each page's newest program, and those of pupils who left, as many times as they
+        were made."""
         texts = {page.text for page in (*self.pages.values(), *self.gone.values()) if page.text}
         texts_there = {pupil["text"] for pupil in self.room.teaches("class_work")["pupils"]}
         present_names = {row["name"] for row in self.rows()}

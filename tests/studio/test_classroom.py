@@ -1,4 +1,4 @@
-"""A class's rules: who joins, who waits, whose turn it is, and what only the teacher may do."""
+"""A class's rules: joining, waiting, turns, and the teacher's rights."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def test_a_page_that_did_not_hear_of_its_robot_keeps_the_turn_for_another_connec
 
 
 def test_who_leaves_in_whatever_way_is_followed_within_three_seconds() -> None:
-    """A page that was closed gets no turn and keeps none; who was passed over keeps the place. A
+    """A closed page gets no turn and keeps none; a pupil who was passed over keeps the place. A
     robot that a page has left before it answered is as good as before."""
     asleep: list[FakeRobot] = []
 
@@ -215,7 +215,7 @@ def test_codes_are_not_guessed() -> None:
         right += room.made.answer("", HERE, guess)["failure"] == "class_wrong"
         room.now_s += 0.01
     assert right <= 20 + 50 / 3 + 1
-    # Not even the right one, from there; from elsewhere it is.
+    # From that address, even the right code is refused; from others it is accepted.
     known = {"do": "join", "code": code, "name": "Eve"}
     assert room.made.answer("", HERE, known) == {"failure": "class_slow"}
     assert "token" in room.made.answer("", "192.0.2.10", known)
@@ -423,7 +423,7 @@ def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
     ana, eve = room.joins("Ana"), room.joins("Eve")
     key = key_of(room)
     right = {"key": key, "text": WORK["text"]}
-    room.checks_in(ana, took=right)  # nobody has offered it
+    room.checks_in(ana, took=right)  # it was not offered
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
     wrong: list[object] = [True, None, 5, [], {}, {"key": key}]
     wrong += [{**right, "text": text} for text in ("F(1, 51)", None)]
@@ -456,7 +456,7 @@ def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
 
 
 def test_a_crash_between_giving_and_having_loses_no_work(kept_at: Path) -> None:
-    """Whichever of the states of a class was the newest that was kept."""
+    """This holds whichever state of a class was the last one saved."""
     room = Room()
     room.teaches("class_bring", name="Ana", **WORK)
     ana = room.joins("Ana")
@@ -509,7 +509,8 @@ def test_no_name_overwrites_the_work_of_who_is_absent() -> None:
 
 @pytest.mark.parametrize("places", [classroom.PLACES_PER_ADDRESS, class_keeping.MOST_PUPILS])
 def test_no_number_of_names_pushes_kept_work_out(places: int) -> None:
-    """Not of one address, and, where the teacher has allowed that, not of a whole network's."""
+    """This holds for the names of one address and, if the teacher has allowed it, of a whole
+    network."""
     room = Room()
     room.teaches("class_places", places=places)
     for k in range(29):
@@ -720,14 +721,14 @@ def test_one_class_of_a_user_has_the_file(kept_at: Path, keeper: Keeper) -> None
     keeper.close()  # the command has ended
     with closing(Keeper()) as other:
         assert other.read() is not None
-        keeper.keep(None)  # a closed keeper does nothing
+        keeper.keep(None)  # a closed keeper has no effect
         assert kept_at.exists()
 
 
 def test_a_class_whose_folder_cannot_be_written_is_held_all_the_same(
     kept_at: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Once there is room, it gets the file, unless another class has it."""
+    """Once there is room, it gets its file, unless another class has it."""
     room = Room()
 
     def full(*_: object) -> int:
@@ -882,8 +883,8 @@ def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() ->
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) -> None:
-    """Whatever pages tell again: their work has another version where it is another, and who has
-    raised a hand is as early as before."""
+    """Repeated reports of pages do not matter: only changed work gets a new version, and a raised
+    hand keeps its place."""
     chance, room = Random(seed), Room()
     tokens = [room.joins(name) for name in ("Ana", "Ben", "Eve")]
     works, hands = dict.fromkeys(tokens, ""), list[str]()

@@ -1,5 +1,5 @@
-"""Access to the robots of `tsc studio`: the user who started it, but not someone who reads the
-address on a command line.
+"""Access to the robots of `tsc studio`: the user who started it, not someone who reads the address
+on a command line.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ echo $$ "$@" > {folder}/opened.new
 mv {folder}/opened.new {folder}/opened
 while [ ! -e {folder}/closed ]; do sleep 0.1; done
 """
-# Finds the address on the command line of a process, as another user, and asks what its page asks.
+# Finds the address on the command line of a process, as another user, and sends its page's
+# requests.
 STRANGER = """
 import encodings.idna, http.client, json, os, sys
 os.setgid(65534); os.setuid(65534)

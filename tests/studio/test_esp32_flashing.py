@@ -122,7 +122,7 @@ Object.defineProperty(navigator, 'serial', {value: {
 
 @contextmanager
 def at_the_teachers(browser: Browser, folder: Path) -> Iterator[Page]:
-    """A page beside the firmware of a folder, opened where a teacher finds it."""
+    """Return a page next to the firmware of a folder, opened where a teacher finds it."""
     need(studio.missing())
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ready.files, "__defaults__", (folder,))

@@ -74,8 +74,8 @@ def test_what_goes_on_is_written_and_what_does_not_ends_soon() -> None:
 def test_a_new_board_becomes_a_robot(
     board: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """An old Nano is found at the second speed, as by `tsc firmware`; an Uno that was left without
-    firmware by somebody who cancelled is no worse than a new one."""
+    """An old Nano is found at the second speed, as by `tsc firmware`; an Uno left without firmware
+    by a cancelled write is no worse than a new one."""
     skip_unless_available()
     from tests.support.flashed_boards import new_board, to_hex
 
@@ -210,12 +210,12 @@ def test_how_it_may_end(
     with plug_in(board) as port:
         assert flash(port, "uno", hex_file(tmp_path, b"\x01" * 1000)) == how
     if how in ("flash_nobody", "flash_other_chip", "port_gone"):
-        assert set(board.flash) == {255}  # nothing was written
+        assert set(board.flash) == {255}  # no byte was written
 
 
 def test_it_can_be_cancelled(tmp_path: Path) -> None:
     """Before the first byte the board stays as it is; in the middle it is left without firmware;
-    after the last byte nothing is cancelled any more."""
+    after the last byte it cannot be cancelled any more."""
     file = hex_file(tmp_path, b"\x01" * 1000)
     for part, how in (("-1", "flash_not_begun"), ("0.25", "flash_cancelled"),
                       ("0.75", "flash_cancelled"), ("1", "done")):  # fmt: skip

@@ -33,7 +33,7 @@ PUPILS = ("Ana", "Luz", "Teo")
 
 
 class Mate:
-    """A pupil's page, which beats while it drives; what it asks for may be late."""
+    """A pupil's page, which beats while it drives; its requests may be late."""
 
     def __init__(self, group: Group, name: str) -> None:
         self.group, self.name = group, name
@@ -75,7 +75,7 @@ class Mate:
         self.is_there = "failure" not in answer
 
     def runs(self, stops: int, number: int) -> None:
-        """Ask for a run, which was pressed after so many presses of STOP, and so much news."""
+        """Ask for a run, which was pressed after this many presses of STOP and this much news."""
         self.ids += 1
         self.asked.append({"do": "upload", "id": self.ids, "image": PROGRAM, "robot": "tinibot",
                            "runs": True, "stops": stops, "seen": number})  # fmt: skip
@@ -113,7 +113,7 @@ class Group:
         self.late[-1].start()
 
     def drives(self, mate: Mate) -> None:
-        """Let a pupil drive, whoever drove before."""
+        """Let a pupil drive, whoever is driving."""
         end_s = time.monotonic() + HANGS_S
         while not self.robot.moves:
             assert time.monotonic() < end_s, "it never drives"

@@ -23,7 +23,7 @@ ENDS: tuple[Json, ...] = (
 
 
 class Robot:
-    """A robot that tells of random runs, and what of that is meant for others."""
+    """A robot that reports random runs, and the part of the reports for other members."""
 
     def __init__(self, chance: Random) -> None:
         self.chance = chance
@@ -98,8 +98,8 @@ class Page:
 
 @pytest.mark.parametrize("seed", range(50))
 def test_each_hears_each_run_in_its_order(seed: int) -> None:
-    """Whatever a robot reports, and however rarely a page polls: events come once, begins and ends
-    alternate, the newest place is the robot's, and missing values can be counted.
+    """Whatever a robot reports, and however rarely a page polls, events arrive once, begins and
+    ends alternate, the newest place is the robot's, and missing values can be counted.
     """
     chance = Random(seed)
     runs, robot = GroupRuns(lambda: 0.0), Robot(chance)

@@ -343,7 +343,8 @@ def test_nobody_sends_as_another_page(school: School) -> None:
 
 
 def test_a_hostile_pupil_spoils_the_own_group_alone(school: School) -> None:
-    """Whatever he sends is refused or a program; other groups, and the class, do not notice."""
+    """Each message is refused or makes a valid program; other groups, and the class, do not
+    notice."""
     chance = Random(3)
     eve = Member(school, "Eve", "Bad")
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
@@ -477,7 +478,7 @@ def test_the_teacher_takes_no_place_of_a_pupil(school: School) -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed: int) -> None:
-    """Whatever the teacher's page does there: turns, places and robots are as without it."""
+    """Whatever the teacher's page does there, turns, places and robots are as without it."""
     chance = Random(seed)
     schools = [School(tmp_path / str(k), robots=2) for k in range(2)]
     both = [[Member(school, name, name) for name in NAMES] for school in schools]
@@ -586,7 +587,7 @@ def test_who_joins_a_group_brings_the_earlier_place(school: School) -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: int) -> None:
-    """Whoever joins it or leaves it, waits or drives, and in which order."""
+    """This holds whoever joins, leaves, waits or drives, in any order."""
     chance, school = Random(seed), School(tmp_path, robots=2)
     members = [Member(school, name, name) for name in NAMES]
     for step in range(60):
@@ -640,8 +641,8 @@ def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:
 
 @pytest.mark.parametrize("seed", range(100))
 def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> None:
-    """Wherever in connects and runs of the others it arrives, and however often a page was opened
-    anew, which counts from 1 again: no robot that was there drives on."""
+    """It may arrive at any point in connections and runs of others, and a page that was opened
+    again counts from 1: no robot that was there keeps driving."""
     chance = Random(seed)
     members = [Member(school, name) for name in ("Ana", "Luz", "Teo")]
     school.checks_in(members[0].token, True)

@@ -1,7 +1,7 @@
 """The place of a WHEN, a TASK or a DEF of the blocks in the text.
 
-Who looks at a text's blocks changes nothing; whatever is moved, nothing is lost, and a DEF stands
-before its calls.
+Viewing a text's blocks changes nothing; whatever is moved, nothing is lost, and a DEF is before its
+calls.
 """
 
 from __future__ import annotations

@@ -181,7 +181,7 @@ def test_nothing_passes_while_it_is_held() -> None:
 
 
 def test_a_stop_ends_a_held_program() -> None:
-    """Nothing of it is executed any more."""
+    """No more of it is executed."""
     simulation = started_simulation("F(1, 80);\nR(1, 60)", at=(1,))
     simulation.go(5000)
     simulation.state()

@@ -1,6 +1,6 @@
-"""Keys of a remote control through `tsc studio`: they reach the robot of who presses, and no other.
+"""Keys of a remote control through `tsc studio` reach only the robot of the person who presses.
 
-The robots' firmware is behind ptys; the pages are the tests' own.
+The robots' firmware is on ptys; the pages are the tests' own.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ def test_who_has_no_turn_drives_nothing(lesson: Class, two: list[PtyRobot]) -> N
 
 
 def test_a_teachers_stop_is_no_key_of_a_pupils(lesson: Class, two: list[PtyRobot]) -> None:
-    """Earlier keys are void, and held keys start nothing."""
+    """Earlier keys are void, and held keys start no program."""
     ana = lesson.pupil("Ana")
     assert ana.asks("connect") == {}
     ana.beats_until(lambda item: "connected" in item, "it is met")
@@ -168,7 +168,7 @@ def hand(two: list[PtyRobot]) -> Iterator[Hand]:
 
 
 def test_a_page_that_falls_silent_holds_nothing(hand: Hand, two: list[PtyRobot]) -> None:
-    """Also where the run is not its own, so that nobody stops it."""
+    """This holds even if the run is not its own, so that it continues."""
     robot = two[0]
     image = compile(STICK.replace("SI|", "SB|")).image.hex()
     sent = hand.says(do="upload", image=image, robot="tinibot", runs=False)

@@ -120,7 +120,7 @@ def test_an_answer_comes_before_what_follows_from_it(page: Page) -> None:
 
 
 def test_a_start_says_whether_it_is_a_program_of_the_page(page: Page) -> None:
-    """A page records programs: a line that is tried is none of them."""
+    """A page records programs, but not a line that is tried."""
     image = compile("SHOW(1)").image.hex()
     for do, is_program in (("upload", True), ("live", False), ("start", True), ("live", False)):
         fields = {} if do == "start" else {"image": image, "robot": "tinibot"}
@@ -182,7 +182,7 @@ def test_a_page_that_is_heard_goes_on(page: Page, robot: PtyRobot) -> None:
 def test_nobody_pings_for_a_page_that_is_silent(
     page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Not even where the thread that should stop the robot hangs."""
+    """This holds even if the thread that should stop the robot hangs."""
     drives(page, robot)
     monkeypatch.setattr(attending.Attending, "attend", lambda *_: time.sleep(0.1))
     page.beat()
@@ -297,7 +297,7 @@ def test_a_page_hears_why_it_is_over_when_another_one_has_its_robot(
 def test_a_stop_at_the_end_of_a_turn_is_confirmed_or_not_before_it_is_over(
     hosting: Hosting, page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, is_silent: bool
 ) -> None:
-    """Whoever ends the server is told about a silent robot."""
+    """The person who ends the server is told about a silent robot."""
     drives(page, robot)
     page.beat()
     if is_silent:
@@ -384,7 +384,7 @@ def test_what_is_no_request_is_refused(hosting: Hosting) -> None:
     ],
 )
 def test_a_wrong_request_harms_nothing(page: Page, request: dict[str, Any]) -> None:
-    """Nor the one after it in the same beat."""
+    """It does not harm the request after it in the same beat either."""
     wrong = page.count + 1
     page.count += 2
     page.beat({"id": wrong, **request}, {"id": page.count, "do": "identify"})

@@ -92,7 +92,7 @@ def test_the_run_that_was_judged_is_the_one_that_is_seen(
 
 
 def test_a_run_whose_keys_the_judge_presses_is_seen_with_them() -> None:
-    """Nobody else presses keys."""
+    """No one else presses keys."""
     drives = "LOOP(FOREVER); IF(KEY_UP); M(60, 60); ELSE; M(0, 0); END_IF; W(0.02); END_LOOP"
     answer, judged_run = judge(18, drives)
     assert "KEY_RIGHT was held" in answer["said"][0]  # type: ignore[index]

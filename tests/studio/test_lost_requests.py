@@ -102,7 +102,7 @@ def stepped_hosting(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hosting]:
 
 
 class TornPage:
-    """A page as `host.js` is one, whose requests and answers are torn."""
+    """A page that behaves like `host.js`, with torn requests and answers."""
 
     def __init__(self, hosting: Hosting, chance: Random, ask: Callable[[Json], Json]) -> None:
         self.hosting, self.chance, self.ask = hosting, chance, ask
@@ -166,7 +166,7 @@ class TornPage:
 
 
 def check_stops_kept(page: TornPage) -> None:
-    """Whatever has arrived until now."""
+    """Check this for all events so far."""
     newest = 0
     accepted_count = 0
     for what, stops, _ in World.actions:
@@ -238,7 +238,7 @@ PAGE_SCRIPT = Path(__file__).with_name("lost_requests_in_node.mjs")
 
 
 def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
-    """Nothing follows its end. If a few in a row are lost, each is still done once, and the page's
+    """No event follows its end. If a few in a row are lost, each is still done once, and the page's
     next connection is like that of a fresh page.
     """
     rows = [json.loads(line) for line in in_node(PAGE_SCRIPT, "400")]
@@ -253,7 +253,7 @@ def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
             assert set(part["heard"]) <= {"STOPPED"}, row
             assert len(part["heard"]) <= part["presses"], row
         assert len(set(row["made"])) == len(row["made"]), row
-        # A word of a remote control is sent at most once, and none is older than one before.
+        # A remote control's word is sent at most once, and none after a newer one.
         assert set(row["first"]["words"] + row["second"]["words"]) <= {1}, row
         for words in (row["held"], row["said"]):
             assert words == sorted(set(words)), row
@@ -261,7 +261,7 @@ def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
             first = row["first"]
             assert first["isThere"] and len(row["made"]) == len(first["ends"]), row
             assert bool(first["heard"]) == bool(first["presses"]), row
-        # Nothing is lost: each press of STOP stops.
+        # No press is lost: each press of STOP stops.
         assert len(row["second"]["heard"]) == row["second"]["presses"], row
         assert (row["second"], row["secondDone"]) == (row["fresh"], row["freshDone"]), row
 
@@ -312,7 +312,7 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
     for _ in range(10):
         asker.asks("beat", stops=1)
     assert robot.moves and b"\0" * 4 not in robot.heard[began:]
-    # Another tab, and a page that counts nothing, always stop.
+    # Another tab, and a page without a count, always stop.
     other_tab = {"page": "other"} if asker.port == "turn" else {"tab": "other"}
     others: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]
     for other in others:
@@ -324,8 +324,8 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
 def test_a_connect_whose_answer_is_lost_is_offered_again(
     asker: AskingPage, robot: PtyRobot
 ) -> None:
-    """The same one is offered, or the page's next one takes its port over; a late one does
-    nothing.
+    """The same one is offered, or the page's next one takes over its port; a late one has no
+    effect.
     """
 
     def meets(connection: int) -> None:

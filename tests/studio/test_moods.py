@@ -99,7 +99,7 @@ def test_it_is_as_what_happens_to_it() -> None:
 
 
 def test_each_mood_is_drawn_in_its_own_way_and_in_the_chosen_colour() -> None:
-    """Also on robots without a sensor of distance, whose face is theirs alone."""
+    """This includes robots without a distance sensor, which have their own face."""
     calm = {"mood": "calm", "ahead": 0, "aside": 0, "isBlinking": False}
     looks = [*({**calm, "mood": mood} for mood in MOODS), {**calm, "isBlinking": True}]
     for name in ("tinibot", "liner", "grabber"):

@@ -1,4 +1,4 @@
-"""Names of pupils: nothing is hidden, and names that a teacher cannot distinguish are equal."""
+"""Pupils' names hide no characters, and names that a teacher cannot distinguish are equal."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_a_name_that_is_taken_gets_a_number() -> None:
 
 
 def test_the_table_is_unicodes() -> None:
-    """Each row's signs fold to what they look like, and what they look like to itself."""
+    """Each row's sign folds to its look-alike, and the look-alike to itself."""
     table = names._table()
     assert len(table) > 2500
     for sign, looks in table.items():

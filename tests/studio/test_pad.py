@@ -1,6 +1,6 @@
 """The page as a remote control: the messages to its robot, on a clock of the script.
 
-What is held is said at each change and every 200 ms, and nothing is said while nothing is held.
+Held keys are sent at each change and every 200 ms; without held keys, the pad is silent.
 """
 
 from __future__ import annotations

@@ -211,7 +211,7 @@ class Scene:
         self.page.wait_for_timeout(500)
 
     def _next_try(self) -> list[str]:
-        """Connect if that is needed, run, and stop; return what does not work."""
+        """Connect if that is needed, run, and stop; return the failures."""
         why = self._connect() or self._run() or self._stop()
         return [f"the next try: {why}"] if why else []
 
@@ -322,7 +322,7 @@ class ClassScene(Scene):
     def _mend(self, fault: Fault | Between) -> None:
         super()._mend(fault)
         self.line.begin(Fault("nothing"))
-        self.page.wait_for_timeout(1000 * LATCH_S)  # nobody drives after a teacher's stop
+        self.page.wait_for_timeout(1000 * LATCH_S)  # no page drives after a teacher's stop
 
     def _connect(self) -> str:
         page, end_s = self.page, CLOCK.now_s + AGAIN_S

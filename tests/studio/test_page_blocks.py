@@ -1,4 +1,4 @@
-"""The program as blocks in the page: what a person does with a mouse, a finger or keys."""
+"""The program as blocks in the page: used with a mouse, a finger or keys."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ if TYPE_CHECKING:
 drawn = pytest.mark.sampled(of="details of blocks", keep=4)
 
 SAMPLE = 8  # random programs
-# Whether a field of text keeps the key of undo.
+# Whether a text field handles the undo key itself.
 KEPT_KEY = """field => field.dispatchEvent(new KeyboardEvent('keydown',
   {key: 'z', ctrlKey: true, bubbles: true, cancelable: true, composed: true}))"""
 
@@ -80,7 +80,7 @@ def page(page: Page) -> Page:
 def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None:
     """Every tenth program of the documents and 30 random ones: the visible blocks are those read.
 
-    In a page of its own: what it makes there takes the keys of undo from the page's blocks. And
+    It gets its own page: its test blocks would take the undo keys from the page's blocks. And
     random programs get the image of the command.
     """
     page = pages.open()
@@ -103,7 +103,7 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None
 
 
 def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
-    """With the mouse, and on a small screen with a finger."""
+    """It works with the mouse, and on a small screen with a finger."""
     page = pages.open(view="blocks", locale="es-PE", has_touch=True)
     page.locator("#level").wait_for()
     assert block(page, "al empezar").count() == 1
@@ -251,7 +251,7 @@ def test_a_block_is_joined_near_its_place_and_stays_where_it_hangs_on_nothing(pa
 
 
 def test_a_block_with_room_takes_in_what_follows(page: Page) -> None:
-    """As it is shown before it is dropped; what already has something in it does not."""
+    """The preview before the drop shows it; a block that already has content does not do this."""
     before = "SI|F(2, 80);\nL(1, 60);\nBEEP(0.5, 440);\n"
     start(page, before)
     page.locator(".blocklyToolboxCategory", has_text="Repeat").click()
@@ -263,7 +263,7 @@ def test_a_block_with_room_takes_in_what_follows(page: Page) -> None:
     marker = page.locator(f"{PROGRAM} .blocklyInsertionMarker")
     moves_and_beeps = ".move, .beep"
     for above, taken in (("forward", 2), ("turn left", 1), ("beep", 0), ("forward", 2)):
-        page.mouse.move(700, 330, steps=8)  # away from all: nothing is lost
+        page.mouse.move(700, 330, steps=8)  # away from all others: no block is lost
         assert block(page, "when it starts").locator(moves_and_beeps).count() == 3
         place = box_of(block(page, above))
         page.mouse.move(place["x"] + 10, place["y"] + place["height"] + 8, steps=8)
@@ -486,8 +486,8 @@ def test_the_names_of_the_program_are_blocks_unless_it_is_too_long(page: Page) -
     assert "HOP" in flyout(page, "My words")
 
 
-# Opens one group after the other: how far its lowest block is below the pane, in pixels, and its
-# widest one beside it.
+# Opens one group after the other and measures how many pixels its lowest block is below the pane,
+# and its widest one beyond the side.
 LOWEST = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].map((row) => {
   const { x, y, width, height } = row.getBoundingClientRect();
   const words = document.elementFromPoint(x + width / 2, y + height / 2);
@@ -579,7 +579,7 @@ def test_a_lesson_offers_its_words_while_it_is_open(
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
         page.locator("#lesson:enabled").wait_for()
         words = list_offered_blocks(page)
-        assert few_before - {"set"} <= words, number  # the robot may have nothing to switch
+        assert few_before - {"set"} <= words, number  # the robot may have no actuator to switch
         few_before = set(words)
         words |= {"call"} if "def" in words else set()  # a word defined by the pupil
         answers = [
@@ -851,7 +851,8 @@ LACKS = re.compile(  # things that no page has; names of shortcuts, which only a
 
 
 def test_the_catalogue_has_what_blockly_says() -> None:
-    """All that Blockly's core names, but for LACKS: the page uses none of its ready blocks."""
+    """It has all names in Blockly's core except LACKS: the page uses none of Blockly's ready-made
+    blocks."""
     need("" if BLOCKLY.is_dir() else why_stale() or f"there is no {BLOCKLY}")
     core = (BLOCKLY / "blockly_compressed.js").read_text(encoding="utf-8")
     names = set(re.findall(r"[A-Z][A-Z0-9_]+", core))

@@ -190,7 +190,7 @@ def test_a_phone_shows_the_robot_in_a_corner_while_a_block_is_tried(pages: Pages
 
 
 def test_a_block_that_is_tried_goes_on_where_the_robot_is(page: Page) -> None:
-    """Until it touches something; the program begins at the start."""
+    """It goes on until it touches something; the program begins at the start."""
     start(page, "SI|F(0.5, 60);\n")
     page.select_option("#world", "obstacles")
     page.select_option("#speed", "0.5")
@@ -220,7 +220,7 @@ def test_a_block_that_is_tried_goes_on_where_the_robot_is(page: Page) -> None:
         assert page.locator("#values div", has_text="Collisions").inner_text().split()[-1] == bumps
 
 
-# -- what a block shows ----------------------------------------------------------------------------
+# -- the content of a block ------------------------------------------------------------------------
 
 
 # The word of each move, and its arrow.
@@ -297,7 +297,7 @@ def test_a_message_is_at_its_block(page: Page) -> None:
 
 @drawn
 def test_warnings_wait_at_their_blocks_until_somebody_asks(pages: Pages) -> None:
-    """Whoever builds has many of them for a while: blocks keep their room."""
+    """An unfinished program has many of them, so blocks keep their size."""
     for size in ((1366, 768), (390, 844)):
         page = pages.open(viewport={"width": size[0], "height": size[1]})
         start(page, "SI|S;\n")
@@ -382,7 +382,7 @@ def test_a_tone_is_chosen_by_its_name_and_written_in_hertz(page: Page) -> None:
 
 
 def test_escape_takes_back_in_the_text_what_it_takes_back_in_the_block(page: Page) -> None:
-    """Else another change would bring it back, later."""
+    """Otherwise a later change would bring it back."""
     text = "// one\nSI|BEEP(0.5, 440);\nF(5, 80);\n"
     start(page, text)
     for new_text, typed_text in (("80", "12"), ("one", "two"), ("440", "330")):
@@ -416,7 +416,7 @@ def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
     assert pitch(page, "1234").text_content() == "1234"
 
 
-# -- what somebody looks for -----------------------------------------------------------------------
+# -- searching ------------------------------------------------------------------------------------
 
 
 @pytest.mark.sampled("language", "words")
@@ -476,7 +476,7 @@ def test_a_list_of_blocks_goes_with_the_block_that_is_dragged_out_of_it(
     becomes_other(page, "SI|S;\n")
 
 
-# Whether nothing of another pile is before the middle of a block.
+# Whether no other pile covers the middle of a block.
 IS_SEEN = """(path) => {
   const {left, top, width, height} = path.getBoundingClientRect();
   const front = document.elementFromPoint(left + width / 2, top + height / 2);
@@ -503,7 +503,7 @@ def test_a_pile_that_is_tried_hides_no_smaller_one(page: Page) -> None:
     assert path_of(value).evaluate(IS_SEEN)
 
 
-# -- nothing over blocks ---------------------------------------------------------------------------
+# -- no overlays on blocks -------------------------------------------------------------------------
 
 
 WIDE = "IF(DISTANCE < 20 AND LIGHT_L > 10 AND LIGHT_R > 10)\n  BEEP(0.1, 440)\nENDIF\n"

@@ -1,8 +1,8 @@
 """The page and a robot by Web Bluetooth: the browser's own emulation is the radio.
 
-The emulation has no notifications, so a page of these tests reads what the robot says; whoever
-reads in a browser gets the event of a notification. The robot's clock goes on while the page reads,
-and waits for a page that a busy computer keeps from speaking.
+The emulation has no notifications, so a page of these tests reads the robot's output; a reader in a
+browser gets the event of a notification. The robot's clock advances while the page reads, and waits
+for a page that is slow on a busy computer.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ NORDIC = "6e400001-b5a3-f393-e0a9-e50e24dcca9e"
 HM10 = "0000ffe0-0000-1000-8000-00805f9b34fb"
 MOST = 20  # bytes that every module accepts
 READ_MS = 30
-SILENT_MS = 300  # a robot stops when it hears nothing for 500
+SILENT_MS = 300  # a robot stops after a silence of 500
 READ_INSTEAD = f"""
 BluetoothRemoteGATTCharacteristic.prototype.startNotifications = async function () {{
   globalThis.isDeaf = false;

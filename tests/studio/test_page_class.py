@@ -52,7 +52,7 @@ NOTES = """() => { window.noted = '';
   const all = {childList: true, subtree: true, characterData: true};
   new MutationObserver(() => { window.noted += wall.textContent; }).observe(wall, all); }"""
 
-# How many lines the bar has, if each of its pictures is as wide as it is high.
+# The number of lines of the bar, if each of its pictures is as wide as it is high.
 IN_ONE_LINE = """() => {
   const pictures = [...document.querySelectorAll('#bar button > svg')].filter((each) => each.checkVisibility());
   if (pictures.some((each) => each.clientWidth < each.clientHeight)) return 0;
@@ -64,7 +64,7 @@ IN_ONE_LINE = """() => {
   return Math.max(...[...document.querySelectorAll('#bar button:not(:has(> svg:only-child))')].map(tops));
 }"""  # noqa: E501
 
-# Whether the tabs, and the buttons of the bar, are each in one row inside the page.
+# Whether the tabs and the buttons of the bar are each in one row inside the page.
 ARE_IN_ONE_ROW = """() => ['#sides', '#bar'].map((row) => {
   const buttons = [...document.querySelectorAll(`${row} > button`)];
   const boxes = buttons.filter((it) => it.checkVisibility()).map((it) => it.getBoundingClientRect());
@@ -125,7 +125,7 @@ def teacher(shared_pages: Pages, shared_class: Class) -> Page:
 
 @pytest.fixture
 def ana(first: Page, pages: Pages, shared_class: Class, robot: PtyRobot) -> Iterator[Page]:
-    """The page of a pupil, who has no robot before and after each test."""
+    """The page of a pupil without a robot before and after each test."""
     yield first
     robot.switch_on()
     for pupil in shared_class.room.teach({"do": "class"})["pupils"]:
@@ -143,7 +143,7 @@ def tile(teacher: Page, name: str) -> Locator:
 
 
 def only_ana(taught: Class) -> None:
-    """Remove the others, and what they leave."""
+    """Remove the others, and their remains."""
     for pupil in taught.room.teach({"do": "class"})["pupils"]:
         if pupil["name"] != "Ana":
             taught.room.teach({"do": "class_remove", "pupil": pupil["number"]})
@@ -169,14 +169,14 @@ def test_three_pupils_share_a_robot(
     wait_for_status(teo, "Your place in the queue: 2 of 2.")
     wait_for_status(ana, "It is your turn. Time left: ")
     drives(ana, robot)
-    # Only the own robot is stopped by a pupil.
+    # A pupil stops only their own robot.
     luz.click("#stop")
     luz.keyboard.press("Escape")
     time.sleep(0.5)
     assert robot.moves
     tile(teacher, "Ana").locator(".badge.drives").wait_for()
     tile(teacher, "Teo").filter(has_text="place 2").wait_for()
-    for name, is_driving in (("Teo", False), ("Ana", True)):  # a pupil without a turn loses none
+    for name, is_driving in (("Teo", False), ("Ana", True)):  # one without a turn loses none
         tile(teacher, name).locator(".see").click()
         assert big.locator("h2").inner_text() == name
         for action in ("stop", "class_next"):
@@ -246,7 +246,7 @@ def test_what_plain_http_has_not_is_not_offered(ana: Page) -> None:
 def test_who_opens_the_address_of_a_class_joins_it_at_once(
     pages: Pages, shared_class: Class, size: tuple[int, int]
 ) -> None:
-    """Code and name are before all else; the code is where one types."""
+    """Code and name come before everything else; the focus is in the code."""
     page = pages.open("blocks", viewport={"width": size[0], "height": size[1]}, locale="es-AR")
     page.locator("#class_entry").wait_for()
     assert page.inner_text("#class_entry h2") == "Entra a la clase"
@@ -440,7 +440,7 @@ DRAWINGS = """() => { window.told = []; window.drawn = [];
 
 @drawn
 def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, shared_class: Class) -> None:
-    """Whatever the page writes meanwhile; and the newest is drawn then. Others wait for nothing."""
+    """Whatever the page writes meanwhile, the newest is drawn then. Others have no wait."""
     teacher = teaches(pages, shared_class)
     only_ana(shared_class)
     tile(teacher, "Ana").locator("img[src^=blob]").wait_for()
@@ -674,7 +674,7 @@ def test_who_closes_the_page_and_comes_back_is_the_same_pupil(
 def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
     ana: Page, teacher: Page, shared_class: Class
 ) -> None:
-    """The very run: with what was pressed in it, and its own program and world."""
+    """It is exactly that run: with its key presses, its program and its world."""
     only_ana(shared_class)
     ana.reload()  # the page forgets the runs of other tests
     wait_until_checked(ana)

@@ -51,7 +51,7 @@ def test_a_new_board_becomes_a_robot(
         first_page.click("#side_real")
         first_page.locator("#link_port option").first.wait_for(state="attached")
         first_page.click("#link_teacher summary")
-        # There is no firmware for other robots here, and other files are not written.
+        # There is no firmware for other robots here, and no other file is written.
         first_page.select_option("#robot", "liner")
         first_page.click("#flash_write")
         wait_for_message(first_page, "There is no firmware here for this robot on this board.")
@@ -63,7 +63,7 @@ def test_a_new_board_becomes_a_robot(
         first_page.click("#flash_write")
         wait_for_message(first_page, "That is not a complete HEX file")
         assert first_page.locator("#flash_board option").all_inner_texts() == ["Uno"]
-        # Cancelled in the middle it does nothing, and is whole once it has got its firmware again.
+        # If cancelled in the middle, it does nothing, and is whole once it has its firmware again.
         first_page.click("#flash_write")
         progress = "document.querySelector('#flash_progress').value"  # the page evaluates no text
         until(lambda: float(first_page.evaluate(progress)) >= 0.1, "a tenth is written")

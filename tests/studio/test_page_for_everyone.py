@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 # 1366x768 and 1280x1024 at 200 and 400 %, and a low window.
 LOW = ((683, 384), (640, 512), (320, 256), (1024, 500))
-# How wide and high something is at least.
+# The minimum width and height of an element.
 LEAST = {"wrong": ("#editor", 0, 96), "blocks": ("#blocks", 300, 96), "drawing": ("#arena", 120, 120),
          "plot": ("#plot_place", 300, 60), "trace": ("#trace_place", 300, 60)}  # fmt: skip
 # The same where the page is scrolled: it is at most too long, and STOP lies over it.
@@ -63,7 +63,7 @@ DIALOG = """() => {
   if (stop.top < 0 || stop.bottom > innerHeight) found.push('no stop in reach');
   return found;
 }"""
-# Each choice whose name is cut where it is chosen.
+# Each choice whose name is cut in its list.
 CUT = """() => [...document.querySelectorAll('select')].filter((e) => e.checkVisibility()).flatMap((e) => {
   const chosen = e.value;
   const cut = [...e.options].filter((each) => {
@@ -159,7 +159,8 @@ def test_it_is_dark_where_the_system_is_or_somebody_wants_it(page: Page) -> None
 
 
 def test_the_keyboard_alone_is_enough(page: Page) -> None:
-    """From the robot's choice to the button of a repair, and out of the editor."""
+    """It reaches everything from the robot's choice to the button of a repair, and leaves the
+    editor."""
     page.set_viewport_size({"width": 1366, "height": 768})
     write(page, "F(-2, 80)")
     page.locator("#messages .repair").wait_for()
@@ -236,7 +237,7 @@ KEPT = """async (names) => {
 
 
 def test_it_works_without_its_server(playwright: Playwright, tmp_path: Path) -> None:
-    """After one visit: the server is gone, and the browser was closed in between."""
+    """After one visit, the server is shut down, and the browser was closed in between."""
 
     def visit(address: str, text: str) -> bytes:
         context = playwright.chromium.launch_persistent_context(

@@ -256,8 +256,8 @@ BROUGHT = [
 def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     page: Page, pages: Pages, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Not before a breakpoint is set. What it leaves out is said before anything is written, and
-    another board or robot has no such firmware here."""
+    """No breakpoint is set yet. What it leaves out is said before anything is written, and another
+    board or robot has no such firmware here."""
     monkeypatch.setattr(robot_link, "BREAKPOINTS", 0)
     leave(page)
     other = pages.blank(is_alone=True)

@@ -47,7 +47,8 @@ def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
 
 
 class Held:
-    """Requests that nobody answers until they are let go; later ones, then, at once."""
+    """Requests that stay unanswered until they are released; later ones are then answered at
+    once."""
 
     def __init__(self, page: Page, what: str) -> None:
         self.routes: list[Route] = []
@@ -69,7 +70,7 @@ class Held:
 
 
 def with_serial(pages: Pages, server: serving.Server, has_clock: bool = False) -> Page:
-    """A page beside a port that takes no bytes; it may be on a clock of the test."""
+    """Return a page with a port that accepts no bytes, perhaps on a clock of the test."""
     page = pages.blank(is_alone=True)
     page.add_init_script(SILENT_SERIAL)
     if has_clock:
@@ -158,7 +159,7 @@ def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: servi
     assert page.locator("#link_serial:enabled").is_visible()
 
 
-# -- what a run needs
+# -- requirements of a run
 
 # The page's message when a request hangs; the browser fetches the pictures and the style itself.
 WORDS = ("#coming, #status:has-text('not load'), #status:has-text('not arrive'), "
@@ -208,7 +209,7 @@ TRIES = 10
 
 
 def check_dance_goes_on(page: Page) -> None:
-    """A run that was asked for goes on."""
+    """Check that a requested run continues."""
     page.locator("html[data-phase=running]").wait_for(state="attached")
 
 

@@ -1,4 +1,4 @@
-"""A lesson hands over what it teaches, and speaks as this person writes: in blocks or as text."""
+"""A lesson provides the blocks that it teaches, and matches the pupil's form: blocks or text."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def open_lesson(page: Page, number: int, step: int = 0) -> None:
 
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_each_kind_of_block_is_new_in_the_first_lesson_that_speaks_of_it(language: str) -> None:
-    """Each lesson has a block to look for; what one has brought, no later one takes away."""
+    """Each lesson has a block to look for; no later lesson removes a block."""
     taught_words: set[str] = set()
     for number in LESSONS:
         taught, new = (
@@ -68,8 +68,8 @@ def test_a_piece_is_what_somebody_looks_for() -> None:
 def test_the_level_rises_to_what_a_lesson_needs_and_never_falls(
     page: Page, pytestconfig: pytest.Config
 ) -> None:
-    """Each kind that it needs is there without the lesson, one level below some are missing. Who
-    has more keeps it, after a reload, too."""
+    """Each kind that it needs is there without the lesson, one level below some are missing. A page
+    that has more keeps it, even after a reload."""
     kinds: dict[str, set[str]] = {}
     for level in LEVELS:
         page.select_option("#level", level)
@@ -102,7 +102,7 @@ def test_each_lesson_has_a_block_that_glows_at_a_first_visit(page: Page) -> None
 
 
 def test_a_lesson_takes_no_block_away(page: Page) -> None:
-    """Lesson 13 is solved best by what lesson 7 has brought."""
+    """The best solution of lesson 13 uses a block of lesson 7."""
     open_lesson(page, 13)
     page.select_option("#level", "few")
     assert "endless" in list_offered_blocks(page)
@@ -183,7 +183,7 @@ READ = """() => {
   const names = [...document.querySelectorAll('#lesson option')].map((each) => each.textContent);
   return [page.textContent, codes, onBlocks, names.join('; ')];
 }"""
-# Labels that a place of the table, nothing, a call or the end of a line in a text has left.
+# Labels left over from a place of the table, an empty text, a call or the end of a line in a text.
 NO_LABEL = re.compile(r"%\d|\{|undefined|\w\(|;|\bEND|^\s*$")
 
 
@@ -192,7 +192,7 @@ NO_LABEL = re.compile(r"%\d|\{|undefined|\w\(|;|\bEND|^\s*$")
 def test_what_a_lesson_names_of_a_block_is_what_the_block_says(
     page: Page, language: str, pytestconfig: pytest.Config
 ) -> None:
-    """It contains nothing of a text, except for names that a program defines."""
+    """It contains no program text, except for names that a program defines."""
     speak(page, language)
     wait_for_blocks(page)
     count = 0

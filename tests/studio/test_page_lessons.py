@@ -1,4 +1,4 @@
-"""The lessons beside the simulator: step by step, checked as by the command, kept on the device."""
+"""Lessons next to the simulator: step by step, checked as by the command, kept on the device."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def test_a_check_can_be_ended(page: Page) -> None:
 
 @drawn
 def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
-    """The robot stands at the wall that it touched; then the answer comes."""
+    """The robot stays at the wall that it touched; then the answer appears."""
     choose_lesson(page, 1)
     write(page, "SI|F(5, 80)")
     page.select_option("#speed", "1")
@@ -192,7 +192,7 @@ def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
     assert label == "Lesson 3"
 
 
-# How high a page of a step is at least, by the size of the screen.
+# The minimum height of a page of a step, by the size of the screen.
 PAGES = {
     (1366, 768): 500, (1024, 600): 280, (390, 844): 260, (320, 640): 150, (844, 390): 150,
 }  # fmt: skip
@@ -221,7 +221,7 @@ def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]
                 height = page.evaluate("document.querySelector('#lesson_page').clientHeight")
                 assert height >= 100, "what is to be done, beside a hint"
                 page.click("#lesson_hint summary")
-    for number in (1, 7):  # the name is shown in full, beside its number or above the step
+    for number in (1, 7):  # the name is shown in full, next to its number or above the step
         page.select_option("#lesson", str(number))
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
         is_phone = page.locator("html[data-phone]").count()
@@ -389,7 +389,7 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
     page.locator(".cm-content", has_text=own).wait_for(state="detached")
     wait_until_checked(page)
     assert page.locator("#messages li").count() == 0
-    page.click("#side_virtual")  # without work, nothing is lost
+    page.click("#side_virtual")  # without work, there is nothing to lose
     page.locator(".cm-content", has_text=own).wait_for()
     assert page.input_value("#robot") == robot
     page.click("#side_lessons")
@@ -460,7 +460,7 @@ def test_who_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page
 
 @drawn
 def test_who_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
-    """From another lesson, from the start and after a reload; the own program returns later."""
+    """After another lesson, the start screen, or a reload; the own program returns later."""
     own, first, second = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"
     editor = page.locator(".cm-content")
     write(page, own)

@@ -1,4 +1,4 @@
-"""The session with a robot in the page, in the robot's own time: nobody waits."""
+"""The session with a robot in the page, in the robot's own time, without real waits."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Page:
         self._back = b""
 
     def go(self, milliseconds: int, *requests: dict[str, Any], is_away: bool = False) -> None:
-        """Advance time. A page that is away asks for nothing."""
+        """Advance time. A hidden page sends no requests."""
         for ms in range(milliseconds):
             now_ms = self.robot.now_ms + 1
             sent_bytes = b""
@@ -146,8 +146,8 @@ def ask(data: bytes, **fields: object) -> dict[str, Any]:
 
 @pytest.mark.parametrize("seed", range(10))
 def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Out of a list, here or in another tab, or out of a claim: the page keeps the newest of each
-    robot and person, and the session with a robot that is connected has the same.
+    """Keys from a list, here or in another tab, or from a claim: the page keeps the newest of each
+    robot and person, and so does the session with a connected robot.
     """
     monkeypatch.setattr(page_line, "_robot", None)
     chance, kept_text = Random(seed), ""

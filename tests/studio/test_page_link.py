@@ -94,7 +94,7 @@ def test_a_robot_that_restarts_is_told(page: Page, robot: PtyRobot) -> None:
 
 
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
-    """By its button, by a key in the editor, and while the virtual robot is shown."""
+    """It stops by its button, by a key in the editor, and while the virtual robot is shown."""
     for way in ("button", "Escape", "virtual"):
         drives(page, robot)
         if way == "Escape":
@@ -284,7 +284,7 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
 
 @drawn
 def test_what_the_robot_shows_has_the_name_of_its_show(page: Page) -> None:
-    """Also beside another text; a line of the same code has its own names."""
+    """This holds next to another text, too; a line of the same code has its own names."""
     shown_element = page.locator("#link_shown")
     write(page, "X = 3;\nSHOW(X);\nSHOW(DISTANCE < -1);\nSHOW(x);\nW(1)")
     upload_until_it_runs(page)
@@ -472,7 +472,7 @@ def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> 
 
 
 def upload_until_told(page: Page, at: int) -> None:
-    """Upload, and wait until the page was told `at` in place of where the robot is."""
+    """Upload, and wait until the page got the place `at` instead of the robot's."""
     places: list[int] = []
 
     def change_places(route: Route) -> None:
@@ -500,7 +500,7 @@ def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:
 
 @drawn
 def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
-    """Both are held at the first line, then one goes on, then the other one."""
+    """Both are held at the first line, then one continues, then the other one."""
     first, second = "W(0.1)", "F(60, 80)"
     write(page, f"{first};\n{second}")
     page.click("#side_virtual")

@@ -1,4 +1,4 @@
-"""The page, where what it asks of `tsc studio` is lost, refused on the way, or comes late."""
+"""The page, with requests to `tsc studio` that are lost, refused on the way, or late."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
     ]
 
 
-# -- what is said of a stop
+# -- reports of a stop
 
 
 class Mute:
@@ -208,7 +208,7 @@ def test_who_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
 def test_who_presses_five_times_stops_once_more_and_is_told_once(
     page: Page, robot: PtyRobot
 ) -> None:
-    """Be every request of it lost; and the run after it is stopped by none of them."""
+    """This holds even if every request of it is lost; and none of them stops the next run."""
     connect(page, robot)
     drives(page, robot)
     torn = tear_requests(page, "stop", lambda route: route.abort(), times=99)

@@ -1,4 +1,4 @@
-"""The robot that somebody calls their own: its colour and its name, and what its lessons bring."""
+"""A person's own robot: its colour, its name, and the extras from lessons."""
 
 from __future__ import annotations
 

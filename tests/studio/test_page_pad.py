@@ -73,7 +73,7 @@ def middle(page: Page, place: str) -> tuple[float, float]:
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [PHONE, DESK], ids=["phone", "desk"])
 def test_a_picture_of_the_start_is_driven_at_once(pages: Pages, size: dict[str, int]) -> None:
-    """With one finger, and another one on A; releasing it stops the robot."""
+    """One finger drives, another one may hold A; releasing it stops the robot."""
     page = pages.visit(pages.entrance(), "start", viewport=size, has_touch=True)
     page.click("[data-begin=drive]")
     in_phase(page, "running")

@@ -202,7 +202,7 @@ def test_what_is_chosen_and_runs_is_seen_without_backgrounds(page: Page) -> None
     page.click("#view_text")
 
 
-# The height of letters in a box of blocks, and how wide and high what can be touched in it is.
+# The height of letters in a box of blocks, and the width and height of its touch targets.
 TOUCHED = """all => all.map((e) => {
   const isNumber = e.matches('.blocklyNumberField'); // which is all of its block
   const shape = e.querySelector(':scope > .blocklyFieldRect') ?? e;
@@ -251,8 +251,8 @@ def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> 
 @drawn
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_moves_and_messages_of_a_phone_are_seen_whole(pages: Pages, language: str) -> None:
-    """Under one row of buttons: a move has a second row where it needs one,
-    and no scrollbar lies over what a message says."""
+    """They are below one row of buttons: a move gets a second row if it needs one, and no scrollbar
+    covers a message."""
     for size in ((390, 844), (360, 740)):
         page = pages.open(viewport={"width": size[0], "height": size[1]})
         speak(page, language)
@@ -277,7 +277,7 @@ def test_moves_and_messages_of_a_phone_are_seen_whole(pages: Pages, language: st
         assert 0 < bubble_box["right"] <= bar.evaluate("e => e.getBoundingClientRect().left")
 
 
-# Tappable elements below STOP; those scrolled out at the top are below nothing.
+# Touch targets below STOP; those scrolled out at the top are not below anything.
 UNDER_STOP = """() => {
   const stop = document.querySelector('#stop').getBoundingClientRect();
   const top = document.querySelector('body > header').getBoundingClientRect().bottom;
@@ -293,7 +293,7 @@ UNDER_STOP = """() => {
 
 @drawn
 def test_a_new_program_is_begun_from_the_bar_of_a_phone(phone: Page) -> None:
-    """Beside all else that the bar has, in one row, whatever the language."""
+    """Its button shares one row with the rest of the bar, in every language."""
     bar = phone.locator("body > header")
     for language in ("en", "es", "pt"):
         speak(phone, language)

@@ -256,7 +256,8 @@ def read_picture(page: Page) -> str:
 
 @drawn
 def test_the_pictures_hold_what_is_shared(page: Page) -> None:
-    """No phone can open an address of this computer alone, so that has none."""
+    """A phone cannot open an address that only this computer has, so such a link gets no
+    picture."""
     write(page, TEXT)
     assert share(page, "link") and page.locator("#shared_picture").is_hidden()
     assert "QR" not in page.inner_text("#shared_told")
@@ -317,7 +318,7 @@ def picture_of_blocks(page: Page) -> tuple[int, int, dict[str, int]]:
 
 @drawn
 def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
-    """From the text view, too, unless there are too many of them."""
+    """This works from the text view, too, unless there are too many blocks."""
     for view in ("text", "blocks"):
         page.click("#view_text")
         write(page, "SI|F(2, 80)")

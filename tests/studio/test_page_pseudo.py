@@ -1,4 +1,4 @@
-"""The page in a language whose texts are a third longer: nothing is cut or too wide."""
+"""The page in a language whose texts are a third longer: no text is cut or too wide."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ WINDOWS = (("#class_come", "#big_code"), ("#wall .see >> nth=0", "#big_pupil"),
            ("#class_settings", "#class_window"))  # fmt: skip
 WANTS = {"do": "here", "text": "SI|F(1, 50)", "robot": "tinibot", "lessons": [], "wants": True,
          "hand": True}  # fmt: skip
-# Each text that can be seen, and whether what holds it cuts it, or it leaves its button or the
-# page. What may be scrolled, and what only screen readers read, cuts nothing; the title of
-# a program of one's own ends in an ellipsis.
+# Each visible text, and whether its container cuts it, or it leaves its button or the page.
+# Scrollable parts, and text for screen readers only, count as not cut; the title of a person's own
+# program ends in an ellipsis.
 CUT = """() => {
   const found = new Set();
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
@@ -99,7 +99,7 @@ def would_be_noticed(page: Page, button: str) -> None:
 
 @pytest.mark.sampled(of="longer texts")
 def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
-    """The wall of ten pupils who want a robot and help, and each window in front of it."""
+    """It shows ten pupils who want a robot and help, and each window in front of it."""
     with studio.serve_class([]) as taught_class:
         joins = {"do": "join", "code": taught_class.room.code}
         for number in range(10):

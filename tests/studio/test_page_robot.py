@@ -131,7 +131,7 @@ def test_a_change_of_the_text_ends_the_mark(page: Page) -> None:
     assert running(page) == ""
 
 
-# All in one turn: nothing has been compiled when the buttons are pressed.
+# All in one turn: no compilation has happened when the buttons are pressed.
 PASTED_AND_PRESSED = (
     "(editor, [text, ...buttons]) => { const data = new DataTransfer();"
     " data.setData('text/plain', text);"
@@ -142,7 +142,7 @@ PASTED_AND_PRESSED = (
 
 
 def test_run_waits_for_the_compiler(page: Page) -> None:
-    """A fast user is not told to repair a correct program: the newest text runs."""
+    """A fast user gets no advice to repair a correct program: the newest text runs."""
     write(page, "F(1, ")
     page.select_option("#speed", "20")
     page.locator(".cm-content").focus()
@@ -192,9 +192,9 @@ PLACES = """() => 'arena controls told run pause step speed world values'.split(
 @pytest.mark.sampled("screen")
 @pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
 def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) -> None:
-    """Nor when it ends; a task's sentence is the longest that is said above the values.
+    """Nor does anything jump when it ends; a task's sentence is the longest one above the values.
 
-    Beside a program the first run in a world makes room for the robot, which it keeps.
+    Next to a program, the first run in a world makes room for the robot and keeps it.
     """
     page.set_viewport_size({"width": screen[0], "height": screen[1]})
     turn(page, "program")
@@ -202,7 +202,7 @@ def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) ->
     turn(page, "robot")
     for language, world in (("es", "obstacles"), ("es", "maze"), ("en", "maze")):
         speak(page, language)
-        page.select_option("#world", world)  # nothing has run in this world
+        page.select_option("#world", world)  # no program has run in this world
         if not page.locator("html[data-phone]").count():
             page.click("#run")
             page.locator("#push").wait_for()

@@ -1,4 +1,4 @@
-"""The page and a robot that is connected: what it senses without a program, and what it does."""
+"""The page and a connected robot: its readings without a program, and its actions."""
 
 from __future__ import annotations
 
@@ -188,7 +188,7 @@ def test_a_program_that_waits_for_the_robots_button_gets_it(
     page.click("#link_upload" if way == "waits for it" else "#link_send")
     wait_for_message(page, re.compile("The robot has the program.|Done."))
     rests(page)
-    page.wait_for_timeout(1500)  # nothing may start by itself in this time
+    page.wait_for_timeout(1500)  # no run may start by itself in this time
     robot.push()
     robot.until(lambda: robot.moves, "it drives")
     does(page, "own")
@@ -215,7 +215,7 @@ def test_a_stop_is_a_stop_until_somebody_wants_more(page: Page, robot: PtyRobot)
         page.click("#stop")
         wait_for_message(page, "Stopped: the robot has confirmed the stop.")
         rests(page)
-        page.wait_for_timeout(1500)  # nothing may start by itself in this time
+        page.wait_for_timeout(1500)  # no run may start by itself in this time
         does(page, "stopped")
     watch(page)
     senses(page, robot, 9, 8, 7)

@@ -33,7 +33,7 @@ FOREVER = "SI|LOOP(FOREVER);\n  F(1, 60);\n  R(0.5, 60);\nEND_LOOP;\n"
 AREA = (
     "(() => { const { width, height } = arena.getBoundingClientRect(); return width * height; })()"
 )
-# How long the robot is on the screen: its green is on no floor.
+# How long the robot is on the screen: its green does not occur on any floor.
 LONG = """() => {
   const { width, height } = arena;
   const pen = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
@@ -165,7 +165,7 @@ def test_a_run_that_is_judged_is_as_large_until_it_is_told(
 
 
 def test_a_finger_drags_the_block_that_it_touches_after_a_run(pages: Pages) -> None:
-    """The program gets its room back once the finger has gone: a group would come under it, which
+    """The program gets its room back once the finger has left: a group would come under it, which
     takes blocks away."""
     page = pages.open(viewport={"width": 1024, "height": 768}, has_touch=True)
     page.select_option("#world", "free")
@@ -267,7 +267,7 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
 
 
 def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
-    """However the mouse comes there. Once it lets go, or rests on no block, there is the room
+    """However the mouse comes there. Once it lets go, or rests on no block, the room is there
     again."""
     page.select_option("#world", "free")
     write(page, HATS)
@@ -318,7 +318,7 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
 
 
 def test_who_scrolls_the_blocks_during_a_run_sees_what_they_chose(page: Page) -> None:
-    """Until the run is over, and after it; the next one is in sight again."""
+    """This lasts beyond the end of the run; the next run scrolls into view again."""
     page.select_option("#world", "free")
     write(page, "SI|LOOP(FOREVER)\n" + "F(0.1, 60)\n" * 30 + "END_LOOP")
     page.click("#view_blocks")

@@ -87,7 +87,7 @@ def test_one_click_moves_the_robot(start: Page) -> None:
 
 @drawn
 def test_what_comes_late_leaves_a_run_alone(pages: Pages) -> None:
-    """The robot moves before the blocks are fetched, and goes on when the lessons come."""
+    """The robot moves before the blocks are fetched, and continues when the lessons arrive."""
     page = pages.blank()
     fetched: list[str] = []
     page.on("request", lambda request: fetched.append(request.url))
@@ -119,7 +119,8 @@ def test_what_comes_late_leaves_a_run_alone(pages: Pages) -> None:
 
 
 def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> None:
-    """Nothing is shown before the texts arrive; a missing compiler is reported beside the robot."""
+    """Before the texts arrive, the page shows nothing; a missing compiler is reported next to the
+    robot."""
     page = pages.blank()
     held_routes: list[Route] = []
     page.route("**/texts.*.json", lambda route: held_routes.append(route))
@@ -267,7 +268,7 @@ def test_a_world_that_is_solved_is_celebrated_and_its_stars_are_kept(start: Page
 
 
 def test_a_new_program_finds_the_robot_at_its_start(start: Page) -> None:
-    """Neither a way on the floor nor a crash is of the program before."""
+    """Neither the path on the floor nor a crash remains from the program before."""
     start.click("[data-begin=obstacle]")
     start.locator("#values dd").first.filter(has_text="1.").wait_for()
     screenshot_before = start.locator("#arena").screenshot()

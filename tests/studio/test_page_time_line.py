@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
 drawn = pytest.mark.sampled(of="looks back at a run", keep=2)
 
-# How many points of the line have the color of a WHEN.
+# The number of points of the line that have the color of a WHEN.
 MARKED = """() => {
   const paper = () => document.createElement('canvas').getContext('2d', {willReadFrequently: true});
   const pen = paper(), colored = paper();

@@ -119,7 +119,7 @@ def test_a_program_of_a_tab_that_is_hidden_is_kept(page: Page) -> None:
 
 
 def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Pages) -> None:
-    """Else the next tab would begin with an older program, and nobody would know why."""
+    """Otherwise the next tab would begin with an older program for no visible reason."""
     page = pages.open(is_alone=True)
     page.evaluate(FULL, ["localStorage"])
     write(page, "SI|F(2, 20)")

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
 drawn = pytest.mark.sampled(of="what is heard and seen", keep=3)
 
-# The computer's sound, noted as often as it is opened. What closes it after a while is `rest`: the
-# test says when that is over, for a run on a slow computer may last longer.
+# The computer's sound, noted as often as it is opened. `rest` closes it after a while: the test
+# decides when, since a run on a slow computer may take longer.
 OPENED = """window.opened = []; window.closings = 0; window.rest = null;
 const {setTimeout: wait, clearTimeout: forget} = window;
 window.setTimeout = (act, ms, ...more) => {
@@ -53,7 +53,7 @@ def count(page: Page, color: str) -> int:
 
 @pytest.fixture
 def listening(page: Page) -> Page:
-    """A page whose sound is noted, and in which no way is drawn."""
+    """A page that records its sound, and draws no path."""
     if not page.evaluate("'heard' in window"):
         page.reload()  # earlier sounds are not recorded
         wait_until_checked(page)
@@ -110,7 +110,8 @@ def test_each_show_of_a_run_has_a_row_of_its_own(page: Page) -> None:
 
 @drawn
 def test_no_sound_is_open_at_rest(pages: Pages) -> None:
-    """An open one works all the time, and empties a battery. To close it, a page waits."""
+    """An open one works all the time, and empties a battery. A page must wait before it closes
+    this."""
     page = pages.blank(is_alone=True)
     page.context.add_init_script(OPENED)
     enter(page, pages.address)

@@ -1,6 +1,6 @@
 """A service worker that another user's server has left at the studio's address in a browser.
 
-That server had the port before; the studio's page runs under its worker when it is opened.
+That server had the port before; the studio's page opens under that server's worker.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ TOKEN = "sessionStorage.getItem('tiniscript.token')"
 
 
 class Stranger(ThreadingHTTPServer):
-    """Another user's server; `taken` is what its worker has told it."""
+    """Another user's server; `taken` has its worker's reports."""
 
     daemon_threads = True
 
@@ -136,7 +136,7 @@ def check_own_worker(page: Page, server: serving.Server) -> None:
 def test_no_worker_of_a_stranger_hears_the_code(
     context: BrowserContext, loot: Stranger, name: str, options: dict[str, str]
 ) -> None:
-    """Whatever it calls itself, and however long a browser may keep it."""
+    """This holds for any name of the worker, and however long a browser keeps it."""
     port = leave_worker(context, loot, name, options)
     with serve_robots(port) as server:
         page = context.new_page()
@@ -152,7 +152,7 @@ def test_no_worker_of_a_stranger_hears_the_code(
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
 def test_the_own_worker_stays(context: BrowserContext) -> None:
-    """A page with a code is loaded once where the server's own worker is, or none."""
+    """A page with a code loads once if there is the server's own worker, or none."""
     with serve_robots() as server:
         loads: list[str] = []
         for _ in range(2):

@@ -1,4 +1,4 @@
-"""Files of recorded runs: what anybody may send, and where a robot and the virtual one part."""
+"""Files of recorded runs: arbitrary input, and where a robot and the virtual one diverge."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_what_is_pressed_is_known_where_the_program_shows_it() -> None:
 
 @pytest.mark.parametrize("value", ["17.5", "38.7"])
 def test_after_a_reading_that_is_not_recorded_no_parting_is_marked(value: str) -> None:
-    """Whether the rest is the same or not."""
+    """This holds whether the rest is the same or not."""
     text = "SHOW(1);\nX = DISTANCE + 0;\nSHOW(X);\nSHOW(2)"
     lines = [(20, "SHOW 1"), (40, f"SHOW {value}"), (60, "SHOW 2"), (61, "DONE")]
     divergence = parting(*lines, text=text)
@@ -113,7 +113,7 @@ def test_who_goes_on_alone_is_told() -> None:
 def test_a_recording_that_ends_early_is_compared_as_far_as_it_goes(
     end: list[tuple[int, str]],
 ) -> None:
-    """Ended by a person, by the link, or while the robot still runs: none of these is a
+    """A person or the link may end it, or the robot may still be running: none of these is a
     difference.
     """
     assert parting(*LINES[:2], *end) == Divergence("same", 2)

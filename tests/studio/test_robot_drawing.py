@@ -1,4 +1,4 @@
-"""The picture of the virtual robot says what it does: drawn by the page's own code, in node."""
+"""The picture of the virtual robot shows its actions: drawn by the page's own code, in node."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def after(text: str, robot: str, ms: int) -> dict[str, Any]:
 
 
 def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
-    """Such a servo has no jaws."""
+    """A servo with a sensor has no jaws."""
     known = {robot["name"]: robot for robot in description()["robots"]}
     grabber = json.loads(json.dumps(known["grabber"]))
     grabber["places"]["DISTANCE"]["turns_with"] = "GRIPPER"

@@ -1,4 +1,4 @@
-"""What a page knows of the runs of its robot: which is its own, and whether that still goes on."""
+"""A page's view of its robot's runs: which one is its own, and whether it still continues."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ACTIONS = ("ask", "answer", "refuse", "other", "end", "lost", "restart")
 
 
 class Robot:
-    """A connection whose robot does what a test says: it runs one thing at a time."""
+    """A connection to a robot scripted by the test, with one run at a time."""
 
     robot = None
     boot = 1
@@ -31,12 +31,12 @@ class Robot:
     def __init__(self) -> None:
         self.events: list[Event] = []
         self.run = 0  # the last one that has begun
-        self.runs_own: bool | None = None  # what goes on is the page's; None: nothing does
+        self.runs_own: bool | None = None  # the current run is the page's; None: no run
         self.is_program = False
         self.pending: PendingRequest[Any] | None = None
 
     def enable_place_events(self) -> None:
-        """None come."""
+        """The robot sends none."""
 
     def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
         session = SimpleNamespace(
@@ -50,7 +50,7 @@ class Robot:
         return (0, self.events.pop(0)) if self.events else None
 
     def ends(self, how: str) -> None:
-        """What runs ends so, or what has run: such a word comes late."""
+        """Report that a run has ended so: the current one or, as a late message, an earlier one."""
         self.runs_own = None
         if how == "DONE":
             self.events.append(DoneEvent(self.run))
@@ -60,7 +60,7 @@ class Robot:
             self.events.append(event("STOPPED") if how == "STOPPED" else LostEvent())
 
     def begins(self, is_own: bool, look_at_end: Callable[[], object] | None = None) -> None:
-        """A run begins; the answer to who has started it may come after its end."""
+        """A run begins; the answer about its starter may come after its end."""
         self.run += 1
         self.runs_own = is_own
         if look_at_end is not None:
@@ -80,8 +80,8 @@ class Robot:
 
 @pytest.mark.parametrize("seed", range(40))
 def test_a_page_leaves_its_own_run_alone_to_be_stopped(seed: int) -> None:
-    """Whatever runs began and ended before, by whomever, and whatever came late: what it has
-    started goes on until that ends, or something else begins."""
+    """Earlier runs, whoever started them, and late messages do not matter: its run counts until it
+    ends, or another one begins."""
     chance = random.Random(seed)
     robot = Robot()
     link = RobotLink(cast(LinkConnection, robot), "en")
@@ -107,9 +107,9 @@ def test_a_page_leaves_its_own_run_alone_to_be_stopped(seed: int) -> None:
             case "end":
                 robot.ends(chance.choice(("DONE", "FAULT", "STOPPED")))
             case "lost" | "restart" as how:
-                link.news()  # what was told before it has come
+                link.news()  # earlier reports have arrived
                 robot.ends("LOST") if how == "lost" else robot.restarts()
-                link.news()  # nothing begins soon after it
+                link.news()  # no run begins soon after it
             case _:
                 continue
         if chance.random() < 0.7:

@@ -28,7 +28,7 @@ from tools.builds.page_texts import page_texts
 SCRIPT = Path(__file__).with_name("said_in_node.mjs")
 CODE = re.compile("`([^`]+)`")
 WORD = re.compile(r"[^\W\d_]+|\d+")
-NEAR = 2  # words beside a block
+NEAR = 2  # words next to a block
 STEM = 4  # letters that the forms of a word share
 AGAIN = re.compile(r"\b(\w+)[ (%]{1,3}\1\b", re.IGNORECASE)
 
@@ -49,7 +49,7 @@ def stem(word: str) -> str:
 
 
 def twice(parts: Parts) -> list[str]:
-    """Return immediate repetitions: a word after itself, or one of a block beside it."""
+    """Return immediate repetitions: a word after itself, or after a block that shows it."""
     text = "".join(part for _, part in parts)
     repeated_words = [
         repeated

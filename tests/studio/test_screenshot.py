@@ -1,4 +1,4 @@
-"""The pictures of the studio show what its page says: seen without a browser."""
+"""The pictures of the studio show what its page says: checked without a browser."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""The second time of whatever a studio does is as the first one, however the first one has ended.
+"""Everything works the second time in a studio as it did the first time, however that ended.
 
-Who comes late, comes back or comes again finds what a fresh one finds: after a STOP for all nobody
-starts, each silence of a page stops its robot, and a connection carries any number of requests.
+A page that arrives late, returns or connects again finds what a fresh one finds: after a STOP for
+all no robot starts, each silence of a page stops its robot, and a connection carries any number of
+requests.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ RUN = {"do": "upload", "runs": True}
 
 
 class Room:
-    """The clock, and what robots have done."""
+    """The clock, and the robots' actions."""
 
     now_ms = 0
     actions: ClassVar[list[tuple[str, int]]] = []  # actions with their times
@@ -75,8 +76,8 @@ class NotingLink:
 
 
 class ThreadlessRobot:
-    """A connection whose steps are the test's; it takes a while until it meets its robot, and until
-    its port is closed."""
+    """A connection whose steps the test controls; it takes a while until it meets its robot, and
+    until its port is closed."""
 
     is_holding_port = is_unconfirmed = False
 
@@ -152,7 +153,7 @@ def hosting(monkeypatch: pytest.MonkeyPatch) -> Hosting:
     return Hosting()
 
 
-# -- a STOP for all, and whoever comes after it
+# -- a STOP for all, and later clients
 
 
 class ComingPage:
@@ -260,10 +261,10 @@ def test_nobody_starts_after_a_stop_for_all_whenever_it_has_come(
 
 @pytest.mark.parametrize("seed", range(12))
 def test_who_has_had_a_port_matters_to_nobody_after_it(hosting: Hosting, seed: int) -> None:
-    """Whoever connects waits for all that still have the port, and is connected once; a STOP for
-    all is one of those that drive, and of each it is known soon what came of it; a page's STOP
-    stops what it drives, though it was loaded again; a page hears why its connection has ended,
-    whoever connects meanwhile; and at the end none is left open."""
+    """A new connection waits for all that still have the port, and is made once. A STOP for all
+    stops those that drive, and the result of each is soon known. A page's STOP stops its robot even
+    after a reload. A page learns why its connection has ended, whoever connects meanwhile, and at
+    the end no connection is left open."""
     chance = Random(seed)
     pages = [ComingPage(hosting, f"page{k}", chance) for k in range(4)]
     for page in pages:
@@ -345,7 +346,7 @@ def test_each_silence_of_a_page_stops_what_it_drives_once(seed: int) -> None:
 
 
 class HeldClient:
-    """Another command drives the robot through it, until all have left it who leave it."""
+    """Another command drives the robot through it until all its clients have left."""
 
     all_left: ClassVar[Event] = Event()
     was_held: ClassVar[bool | None] = None
@@ -373,7 +374,8 @@ class HeldClient:
 def test_a_port_that_is_let_go_once_is_held_for_nobody(
     monkeypatch: pytest.MonkeyPatch, leaves: tuple[int, ...]
 ) -> None:
-    """Whoever else leaves it, before or after: a page, the end of a turn, and the studio's end."""
+    """It does not matter who else releases it, before or after: a page, the end of a turn, or the
+    studio's end."""
     monkeypatch.setattr(hosted_robot, "Client", HeldClient)
     monkeypatch.setattr(hosted_robot, "robot_data", lambda robot: {})
     monkeypatch.setattr(opening, "remember", lambda *_: None)
@@ -444,7 +446,7 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
     server: serving.Server, ask: Callable[[HTTPConnection, str, int], tuple[int, bytes, bool]],
     seed: int,
 ) -> None:  # fmt: skip
-    """Whatever was asked there before, and however much."""
+    """The kind and the number of earlier requests there do not matter."""
     chance = Random(seed)
     httpconnection = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
     longest = begun = 0

@@ -1,4 +1,4 @@
-"""A class at an address of the network: who is answered there, and what keeps nobody out.
+"""A class at an address of the network: who gets an answer there, and loads that keep no one out.
 
 `STRANGERS=10000 pytest -k many tests/studio/test_serving_class.py` takes a minute.
 """
@@ -113,7 +113,7 @@ def test_who_has_no_token_sends_little(served_class: Class) -> None:
 
 @pytest.mark.parametrize("is_same", [False, True], ids=["another computer", "the same"])
 def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) -> None:
-    """They come from one computer, of a pupil or another, and send nothing or half a request. The
+    """They come from one computer, a pupil's or another, and send nothing or half a request. The
     pupil's connection stays, and a new pupil is answered.
     """
     token = joins(served_class)
@@ -194,7 +194,7 @@ def test_the_second_class_of_a_user_is_refused_and_touches_nothing(
         result = tsc(*words)
         assert result.code == 3 and "another tsc studio." in result.err
         assert class_keeping.path().read_bytes() == kept_bytes
-    # The first one has ended without a lock; one that cannot start leaves none either.
+    # The first one has ended without a lock; one that cannot start does not leave one either.
     for _ in range(2):
         result = tsc(*words, "--listen", "1", "--address", "203.0.113.5")
         assert result.code == 3 and "203.0.113.5" in result.err

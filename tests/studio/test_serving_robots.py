@@ -21,7 +21,7 @@ from tiniscript.studio.robot_link import BadRequest
 
 
 class Recorder:
-    """Robots that a test plays: they note what reached them."""
+    """Robots played by a test: they record their requests."""
 
     def __init__(self) -> None:
         self.asked: list[dict[str, Any]] = []
@@ -206,7 +206,7 @@ def test_the_page_that_has_asked_last_is_kept(
     server: serving.Server, own: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """If all have shown the token, the one idle for longest is closed."""
-    monkeypatch.setattr(serving._Handler, "timeout", 10 * HANGS_S)  # none is dropped as silent
+    monkeypatch.setattr(serving._Handler, "timeout", 10 * HANGS_S)  # so silence drops none
     server.most_connections = 2
     headers = {"Origin": f"http://{own}", serving.TOKEN_HEADER: server.entrances.token}
     pages = [HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S) for _ in range(3)]

@@ -69,7 +69,7 @@ END_TASK
 
 
 def test_it_is_told_where_each_task_is() -> None:
-    """The parts that wait; a task that has ended is nowhere."""
+    """The parts that wait; an ended task has none."""
     simulation = started_simulation(TASKS, robot="tinibot32")
     places = check(TASKS.encode(), "tinibot32", "en").places
 
@@ -127,7 +127,7 @@ PUSHED = "SB|LOOP(3);SHOW(TIME);F(0.1, 60);R(0.1, 40);END_LOOP;F(60, 20)"
 
 @pytest.mark.parametrize("seed", range(16))
 def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> None:
-    """Each stop is one, whatever has stopped the robot before."""
+    """Each stop counts, whatever stopped the robot before."""
     rng = random.Random(seed)
     fresh, simulation = (
         started_simulation(PUSHED),
@@ -218,7 +218,7 @@ def test_what_is_held_while_it_is_held_or_stopped_counts_when_it_goes_on() -> No
 
 
 def test_the_page_says_what_is_held_of_a_remote_control() -> None:
-    """A run that begins anew begins with nothing."""
+    """A new run begins without held keys."""
 
     def motors(do: str, data: bytes = b"", **more: object) -> object:
         return json.loads(worker.answer(json.dumps({"do": do, **more}), data))["motors"]

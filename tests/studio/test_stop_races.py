@@ -134,7 +134,7 @@ def test_a_robot_that_hears_no_stop_is_told() -> None:
 
 
 class LateLink:
-    """A robot that confirms a stop after some looks, or never; what it has told before waits."""
+    """A robot that confirms a stop after some polls, or never; its earlier reports wait."""
 
     has_run = True
 
@@ -145,7 +145,7 @@ class LateLink:
         self._confirms_ms = float("inf")
 
     def tells(self) -> None:
-        """Stops of somebody else, and what there is between them."""
+        """Report stops of other clients, and the events between them."""
         names = self._chance.choices(("STOPPED", "STARTED", "SHOW"), k=self._chance.randrange(6))
         self._news += [{"event": name} for name in names]
 
@@ -169,7 +169,7 @@ class LateLink:
 def test_no_stop_of_before_confirms_the_newest_one(
     monkeypatch: pytest.MonkeyPatch, seed: int, end: str
 ) -> None:
-    """Whatever their number, their source, and whether they were confirmed."""
+    """This holds for any number of stops, from any source, confirmed or not."""
     chance = Random(seed)
     link = LateLink(chance)
     attending = Attending(lambda: link.now_ms / 1000)
@@ -195,7 +195,7 @@ def test_no_stop_of_before_confirms_the_newest_one(
 
 @pytest.mark.parametrize("seed", range(10))
 def test_what_is_known_of_a_stop_is_final_once_its_connection_has_ended(seed: int) -> None:
-    """Whenever a cable is pulled: nobody is left waiting for a word."""
+    """A cable may be pulled at any time: no page waits in vain."""
     chance = Random(seed)
     link = LateLink(chance)
     attending = Attending(lambda: link.now_ms / 1000)

@@ -1,8 +1,7 @@
 """The record of a virtual robot's run, for looking back.
 
-Each moment that is kept is what it was, with all that had been shown until then; no event is
-forgotten, but for the oldest ones of a run that is too long; the second run knows nothing of the
-first one.
+Each stored moment is unchanged, with all values shown until then; only the oldest events of a run
+that is too long are forgotten; the second run is independent of the first.
 """
 
 from __future__ import annotations

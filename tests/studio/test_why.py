@@ -1,4 +1,4 @@
-"""Why a program was at an instruction: the conditions around it, with what was read."""
+"""Why a program was at an instruction: the conditions around it, with their readings."""
 
 from __future__ import annotations
 

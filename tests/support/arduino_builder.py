@@ -1,4 +1,4 @@
-"""The Arduino IDE's own builder for tests: what it needs here, and the sketch that it builds."""
+"""The Arduino IDE's own builder for tests: its requirements here, and the sketch that it builds."""
 
 from __future__ import annotations
 

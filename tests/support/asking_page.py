@@ -1,4 +1,4 @@
-"""A page as `tsc studio` or a class sees it: what it asks, and the news that it gets."""
+"""A page as `tsc studio` or a class sees it: its requests, and the news that it gets."""
 
 from __future__ import annotations
 

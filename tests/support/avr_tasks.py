@@ -1,7 +1,7 @@
-"""Programs with tasks that show what the assembly of an Uno could get wrong and little else shows.
+"""Programs with tasks for errors that the assembly of an Uno could have and others rarely show.
 
-In most of them what tasks do lies after the first 256 bytes of code, and ticks come late. Times
-are milliseconds.
+In most of them, the code of tasks is after the first 256 bytes, and ticks come late. Times are
+milliseconds.
 """
 
 from __future__ import annotations

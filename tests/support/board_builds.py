@@ -1,4 +1,4 @@
-"""Boards whose firmware is tried."""
+"""Boards whose firmware is tested."""
 
 from __future__ import annotations
 

@@ -104,7 +104,7 @@ ISR(PCINT1_vect) { tiniscript::motors_stop(); }
 __attribute__((constructor)) static void begin() { PCICR = 1 << 1; PCMSK1 = 1 << 5; }
 """
 LAMP = '[[kit.actuators]]\nname = "LAMP"\nkind = "yes/no"\n\n[board]\n'
-# What the shipped robots do not have: a lamp that is on when its pin is low, a fan, a threshold
+# Features that the shipped robots lack: a lamp that is on when its pin is low, a fan, a threshold
 WORKSHOP = (
     ("[[kit.sensors]]", '[[kit.sensors]]\nname = "BRIGHT"\nkind = "yes/no"\n\n[[kit.sensors]]'),
     (

@@ -1,4 +1,4 @@
-"""The firmware's code of the button alone: what it makes of the edges on its wire."""
+"""The firmware's code of the button alone: its reaction to edges on its wire."""
 
 from __future__ import annotations
 

@@ -23,7 +23,8 @@ class SmallRobot(HostFirmware):
 
 
 class Table:
-    """A robot in a state. `program` is the power of what a press starts, `runs` of what runs."""
+    """A robot in a state. `program` is the power of the program that a press starts, `runs` of the
+    running one."""
 
     def __init__(self, has_draft: bool = True) -> None:
         self.robot = switched_on() if has_draft else SmallRobot(KIT)

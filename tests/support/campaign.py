@@ -23,7 +23,7 @@ def make_options(count: int, seed: int, *flags: str) -> Namespace:
 def each_seed(check: Callable[[int], object], options: Namespace) -> None:
     """Run a check with each seed; print how many times each thing came of it, or a seed that fails.
 
-    `check` returns what came of it, or None if that is always the same.
+    `check` returns the outcome, or None if that is always the same.
     """
     counts: Counter[str] = Counter()
     begun_s = time.monotonic()

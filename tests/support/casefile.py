@@ -5,9 +5,9 @@ language of the fence says which: `tiniscript` (the program), `senses` (readings
 `robot` (the trace), `bytecode` (the disassembly), `plain` (that of its plain code), `line` (what a
 robot that reads text gets), `mistake` and `warning` (what is said; without a program above, the
 line that it shows is the program). A fence `mistake` or `warning` may have many cases, each below a
-row that says what it is about. So has a fence `refused`, where the rule that a disassembly breaks
-is in that row; rows that begin with `//` are for people, and so are fences of other languages. A
-row of a disassembly that ends in `, 17 times` stands for so many.
+row that says what it is about. A fence `refused` has it, too, with the rule that a disassembly
+breaks in that row; rows that begin with `//` are for people, and so are fences of other languages.
+A row of a disassembly that ends in `, 17 times` stands for so many.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def documents() -> list[Path]:
 
 
 def read(path: Path) -> list[Case]:
-    """Return the cases of one file. A case whose fences repeat continues in a case of its own."""
+    """Return the cases of one file. A case whose fences repeat continues as a separate case."""
     cases: list[Case] = []
     title, fence, count = "", "", 0
     lines: list[str] = []
@@ -184,7 +184,7 @@ def sketch_examples() -> list[Path]:
 
 
 def accept(case: Case, part: str, actual: str) -> None:
-    """Write `actual` where the case says something else; git shows what changed."""
+    """Write `actual` where the case differs; git shows the changes."""
     rows = case.path.read_text(encoding="utf-8").splitlines(keepends=True)
     # The current place of the case, which earlier accepts may have moved.
     now = next(other for other in read(case.path) if other.title == case.title)

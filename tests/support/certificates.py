@@ -1,4 +1,4 @@
-"""Certificates for tests, made by openssl: an authority, and what it signs for a name."""
+"""Certificates for tests, made by openssl: an authority, and the certificates that it signs."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Authority:
         return f"certfile {file}\nkeyfile {key}"
 
     def sign(self, name: str) -> Path:
-        """Return the file with what was signed for a name."""
+        """Return the file with the certificate signed for a name."""
         return self._folder / f"{name}.pem"
 
 

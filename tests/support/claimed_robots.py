@@ -15,7 +15,7 @@ from tiniscript.link.keys import KeyFile
 
 
 def claim_with_button(pty_robot: PtyRobot, *options: str) -> CommandResult:
-    """Claim the robot, with a hand on its button: a press before it is asked counts for nothing."""
+    """Claim the robot, with a hand on its button: an earlier press does not count."""
 
     def print_and_press(words: str, file: object = None, flush: bool = False) -> None:
         print(words, file=sys.stdout if file is None else sys.stderr, flush=flush)

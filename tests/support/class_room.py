@@ -41,7 +41,7 @@ class FakeRobot:
 
 
 class FakeHosting:
-    """Notes what reaches robots."""
+    """Records the requests that reach robots."""
 
     def __init__(self) -> None:
         self.asked: list[Json] = []
@@ -63,7 +63,7 @@ class FakeHosting:
 
 
 class Room:
-    """A class with so many robots, whose clock a test moves."""
+    """A class with this many robots, and a clock that the test moves."""
 
     def __init__(self, robots: int = 1) -> None:
         self.now_s = 1000.0

@@ -132,7 +132,7 @@ class Command:
 
 
 def rest_of(terminal: int) -> bytes:
-    """Return the output at a pseudo-terminal, or nothing once it is closed."""
+    """Return the output at a pseudo-terminal, or no bytes once it is closed."""
     try:
         return os.read(terminal, 65536)
     except OSError:  # Linux: the other end is closed

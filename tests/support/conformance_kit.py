@@ -1,4 +1,4 @@
-"""The cases of `tsc doctor --conform` in this clone: git keeps none, so tests have them made."""
+"""The cases of `tsc doctor --conform` in this clone: git keeps none, so the tests create them."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ def link_copy(source: Path, target: Path, *ignored_patterns: str) -> Path:
     """Return a copy of a folder without files of these names.
 
     It is made of links to the one copy that a process has, in a thirtieth of the time. So no test
-    writes into a file of it, as root could: it puts another one in its place.
+    writes into a file of it, as root could: it replaces the file.
     """
     kept_path = Path(_make_copy(source, ignored_patterns).name) / source.name
     return Path(shutil.copytree(kept_path, target, copy_function=_link))

@@ -1,7 +1,7 @@
 """Properties of the machine in C++: each check asks one process, and compares with Python.
 
-`test_cpp_agreement` runs these on this computer, `test_cpp_chips` on chips. Nothing asked depends
-on time or chance: the same machine gives the same answers.
+`test_cpp_agreement` runs these on this computer, `test_cpp_chips` on chips. No question depends on
+time or chance: the same machine gives the same answers.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ def run_late(
     return "".join(f"{event}\n" for event in robot.events)
 
 
-# Ticks at 2^31 - 8 and 2^32 - 16 ms, both multiples of 20, and then in time, for what waits from 0.
+# Ticks at 2^31 - 8 and 2^32 - 16 ms, both multiples of 20, and then on time, for waits since 0.
 ROUND_MS = (2**31 - 28, 2**31 - 28, 0, 0, 0, 7, 30, 0, 0)
 ROUND = "F(FOREVER, 80) UNTIL(DISTANCE < 10); W(0.1)"
 ROUND_TRACE = """\
@@ -217,7 +217,7 @@ FAR = f"A = 0;N = 0;IF(N > 0);{'SHOW(8);' * 140}ENDIF;"  # more than 256 bytes
 def some_task_programs(
     first: int, count: int, text_before: str = ""
 ) -> Iterator[tuple[bytes, Senses]]:
-    """Yield images of random programs with tasks, and what their sensors read.
+    """Yield images of random programs with tasks, and the readings of their sensors.
 
     All that a program does lies after the code of the text `before`.
     """
@@ -351,7 +351,7 @@ def check_way_programs(machine: Process, first: int, count: int) -> None:
 
 
 def some_way_programs(first: int, count: int) -> list[tuple[bytes, Kit, Senses]]:
-    """Return images of random programs whose moves go by ways, each second one with tasks."""
+    """Return images of random programs with moves by distance, every second one with tasks."""
     codes = []
     for seed in range(first, first + count):
         rng = random.Random(seed)
@@ -379,7 +379,7 @@ def python_refusal(data: bytes) -> int:
 
 
 def short_headers() -> Iterator[bytes]:
-    """Yield images whose headers are too short by each number of bytes, with all else in order."""
+    """Yield images whose headers are too short by each number of bytes, and otherwise valid."""
     whole = pack("SI", 0, b"")
     for length in range(HEADER_BYTES):
         yield with_checksum(whole[:5] + bytes([length]) + whole[6:])

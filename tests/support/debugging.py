@@ -1,4 +1,4 @@
-"""A computer that halts, steps and inspects what runs on a robot of `host_firmware`."""
+"""A computer that halts, steps and inspects a program on a robot of `host_firmware`."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Debugged:
         return events
 
     def halt(self, limit_ms: int = 5000) -> Halt | None:
-        """Wait for the next halt; None if the run ends before, or the time is over."""
+        """Wait for the next halt; None if the run ends first, or the time is over."""
         event = self.until(
             lambda event: event.name in ("HALTED", "DONE", "FAULT", "STOPPED"), limit_ms
         )
@@ -91,7 +91,7 @@ class Debugged:
 
 
 def debug(text: str, *places: int, robot: HostFirmware | None = None) -> Debugged:
-    """Return a robot whose program has these places, and has been started."""
+    """Return a robot with a started program that has these breakpoints."""
     session = Debugged(text, robot)
     assert session.places(*places) == OK
     session.start()

@@ -15,9 +15,9 @@ def kit_with_sensors(sensors: int) -> Kit:
 
 
 def unverified_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
-    """Yield code that no verifier accepts, and where it is caught; None: it is not.
+    """Yield code that no verifier accepts, and where it is caught, or None if it is not.
 
-    What a machine still looks at while it runs, at each edge.
+    Return code for each check that a machine makes at run time, at each edge.
     """
     yes, show, end = simple("PUSH_TRUE"), simple("SHOW"), simple("RETURN")
     count = simple("LOOP8") + b"\x01"

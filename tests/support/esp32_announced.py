@@ -1,6 +1,6 @@
 """An ESP32's real multicast DNS announcement: on 127.0.0.1, by zeroconf.
 
-The firmware's calls of `MDNS` decide what is announced, and when: this repeats them.
+The firmware's calls of `MDNS` decide the announcements and their times: this repeats them.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from tiniscript import robots
 
 
 class Esp32PtyRobot(PtyRobot):
-    """The robot of a profile. What NVS holds stays when it is switched off."""
+    """The robot of a profile. The contents of NVS survive power-off."""
 
     def __init__(self, name: str, seed: int = 0x12345678) -> None:
         """`seed` makes its id."""
@@ -29,7 +29,7 @@ class Esp32PtyRobot(PtyRobot):
         self.ask(stand)
 
     def restart(self) -> None:
-        """Do what the watchdog has asked for."""
+        """Carry out the reset that the watchdog has requested."""
         with self._lock:
             self._take_power()
             self._robot = self._make_robot(TASK_WATCHDOG)

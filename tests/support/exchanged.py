@@ -47,8 +47,8 @@ class Elsewhere(Exception):
 def answers(tries: Sequence[Try], folder: Path) -> list[str]:
     """Return for each whether its test FAILS, PASSES or SKIPS, or the reason why that is unknown.
 
-    `folder` is a copy of the repository. There the tests of Python, which are quick, must pass
-    without a mistake.
+    `folder` is a copy of the repository. In this run, the tests of Python, which are quick, must
+    pass without a mistake.
     """
     environment = {"PYTHONPATH": str(folder / "compiler"), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
     completed = subprocess.run(

@@ -1,7 +1,7 @@
 """BlueZ as a program sees it: `org.bluez` on a private D-Bus, with peripherals that tests make.
 
-bleak is used as it ships, and finds this bus by DBUS_SYSTEM_BUS_ADDRESS. What peripherals do is in
-`ble_robot`. As in BlueZ, a connection outlives the program that has made it.
+bleak is used as it ships, and finds this bus by DBUS_SYSTEM_BUS_ADDRESS. `ble_robot` implements the
+peripherals. As in BlueZ, a connection outlives the program that made it.
 """
 
 from __future__ import annotations
@@ -287,7 +287,7 @@ class FakeBluez:
         self.loop.call_later(ADVERTISED_S, self.advertise)
 
     def part(self, peripheral: Peripheral) -> None:
-        """End a peripheral's connection, as if it were out of reach."""
+        """End a peripheral's connection, as if it had moved out of range."""
         self.do(self.devices[peripheral.address].part)
 
     def power(self, is_on: bool) -> None:

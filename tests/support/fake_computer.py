@@ -1,4 +1,4 @@
-"""A computer of files in a folder, whose programs answer what a test says."""
+"""A computer of files in a folder, whose programs give the answers of the test."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class FakeComputer(System):
         file.write_text(text, encoding="utf-8")
 
     def usb(self, name: str, vendor: str, product: str, driver: str = "", tty: str = "") -> None:
-        """Plug a USB device in; `driver` is what has its only interface."""
+        """Plug a USB device in; `driver` uses its only interface."""
         folder = f"/sys/bus/usb/devices/{name}"
         self.write(f"{folder}/idVendor", vendor + "\n")
         self.write(f"{folder}/idProduct", product + "\n")

@@ -1,4 +1,4 @@
-"""Boards whose firmware is written, and how that ends."""
+"""Boards whose firmware is written, and the outcomes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.support.copies import link_copy
 from tests.support.waiting import HANGS_S
 from tools.uno import Uno
 
-# How a program that others run may end badly: by itself, or ended from outside.
+# The ways in which a child program may end badly: by itself, or ended from outside.
 ENDS = (
     "sys.exit(3)",
     "sys.exit(255)",

@@ -111,7 +111,7 @@ RECORDINGS: Mapping[str, Recording] = {
 class Board(Nobody):
     """A board that starts when its port is opened, and takes `boot_ms` for that.
 
-    `starts` is what it sends then; `again_ms`: and again so often.
+    `starts` is its output then, repeated every `again_ms`.
     """
 
     starts = b""
@@ -194,7 +194,7 @@ class SnekBoard(Board):
 
 
 class PythonBoard(Board):
-    """A MicroPython whose prompt is there: Ctrl-A leads to the raw one, Ctrl-B back."""
+    """A MicroPython at its prompt: Ctrl-A leads to the raw prompt, Ctrl-B back."""
 
     starts, boot_ms = ROM + MICROPYTHON, 400
     _is_raw = False
@@ -219,7 +219,7 @@ class PythonBoard(Board):
 
 
 class SilentPython(PythonBoard):
-    """A Python board whose program runs: it answers nothing."""
+    """A Python board with a running program: it does not answer."""
 
     def take(self, byte: int) -> bytes:
         return b""

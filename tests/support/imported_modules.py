@@ -1,4 +1,4 @@
-"""Which modules a statement imports in a process of its own."""
+"""Finds the modules that a statement imports in its own process."""
 
 from __future__ import annotations
 

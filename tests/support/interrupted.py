@@ -8,7 +8,7 @@ from tiniscript.base.bell import Bell
 
 
 def interrupted_bell(until_pressed: Callable[[], object]) -> type[Bell]:
-    """Return a kind of bell whose first wait lasts until that, and raises KeyboardInterrupt."""
+    """Return a kind of bell whose first wait lasts until then, and raises KeyboardInterrupt."""
 
     class InterruptedBell(Bell):
         has_waited = False

@@ -1,4 +1,4 @@
-"""The IR as text: what tests of the checker and the optimiser compare."""
+"""The IR as text: compared by tests of the checker and the optimiser."""
 
 from __future__ import annotations
 

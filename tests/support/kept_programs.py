@@ -48,7 +48,7 @@ LATER_VERSION = later_version_image(b"\x44\x32\x50")
 
 
 def eeprom_with(*slots: tuple[int, int, bytes]) -> bytes:
-    """Return an EEPROM with images: the place of each slot, its generation, and what it holds."""
+    """Return an EEPROM with images: the place of each slot, its generation, and its content."""
     memory = bytearray(EMPTY)
     for place, generation, image in slots:
         mark = generation ^ 0xA5

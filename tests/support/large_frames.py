@@ -26,7 +26,7 @@ class AnsweringRobot:
     """A robot as a computer sees it: describes itself in HELLO, and accepts DATA as `takes` says.
 
     `takes` gets each DATA that is answered: the number of it, its offset and its bytes. It returns
-    the status and what is wanted next, or None if the frame or its answer is lost.
+    the status and the next expected offset, or None if the frame or its answer is lost.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class AnsweringRobot:
         self.now_ms = 0
 
     def run(self, request: PendingRequest[Any], most_ms: int = 25_000, late_ms: int = 30) -> int:
-        """Answer what came `late_ms` before; return the status of the request."""
+        """Answer the frame that came `late_ms` before; return the status of the request."""
         due: list[tuple[int, Frame]] = []
         while request.outcome is None and self.now_ms < most_ms:
             for packet in self.session.poll(self.now_ms).split(b"\0"):
@@ -82,7 +82,7 @@ class AnsweringRobot:
 
 
 class InOrderReceiver:
-    """Takes what begins at `next`, but for DATA that are lost before it or whose answers are."""
+    """Accepts data that begins at `next`, unless the DATA or its answer is lost."""
 
     def __init__(
         self, lost_numbers: tuple[int, ...] = (), unanswered_numbers: tuple[int, ...] = ()

@@ -1,20 +1,19 @@
 """Reads and plays the cases of the link: `link` and `packets` fences of Markdown files.
 
-A `link` fence is a conversation. Rows without a time say what is wanted: `host ...` of the
-session, `robot ...` what happens to the robot, `wait N` milliseconds, `lose >` and `lose <` the
-next bytes from either side, `late` that the robot looks at nothing before all has arrived. Where a
-row is `host sends` (a frame), `host bytes` or `host types` (text), there is no session, and only
-the robot is played.
-Rows with a time say what comes of it: `>` the bytes from the computer, `<` those from the robot
-(with `x` where they are lost) and what they mean, `did` what the robot's link asks of the robot,
-`tells` and `outcome` what the session says. Each side is played against the written bytes of the
-other. What is said often has a name: a `rows NAME` fence has the rows without their time, and in
-the cases of its file a time and the name stand for them.
+A `link` fence is a conversation. Rows without a time are commands: `host ...` of the session,
+`robot ...` what happens to the robot, `wait N` milliseconds, `lose >` and `lose <` the next bytes
+from either side, `late` that the robot looks at nothing before all has arrived. With rows `host
+sends` (a frame), `host bytes` or `host types` (text), there is no session, and only the robot is
+played.
+Rows with a time are the results: `>` the bytes from the computer, `<` those from the robot (with
+`x` where they are lost) and what they mean, `did` what the robot's link asks of the robot, `tells`
+and `outcome` what the session says. Each side is played against the written bytes of the other.
+Frequent rows have a name: a `rows NAME` fence has the rows without their time, and in the cases of
+its file a time and the name refer to them.
 
 A `packets` fence is for a receiver alone: `> bytes`, `wait N`, `held N` (bytes before a packet is
-taken), and `=` what it finds. A `computer packets` fence is for the one in Python, a
-`robot packets` fence for the one in C++. It may have many cases, each below a row that says what it
-is about.
+taken), and `=` what it finds. A `computer packets` fence is for the one in Python, a `robot
+packets` fence for the one in C++. It may have many cases, each below a row with its subject.
 """
 
 from __future__ import annotations

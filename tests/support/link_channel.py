@@ -220,7 +220,7 @@ def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) 
     for row, answer in lines:
         assert times[row] == 1 if answer == 0 else times[row] <= 1, f"seed {seed}: {row}"
 
-    # After a stop nothing starts, whatever is still under way.
+    # After a stop, no program starts, whatever is still under way.
     request = world.session.live(program(draw)[: world.line])
     world.run(None, draw.randrange(0, 200))
     count_before = len(world.did)

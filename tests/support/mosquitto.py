@@ -23,7 +23,7 @@ STEP_S = 0.0005  # one millisecond of the chip; the broker runs in real time
 
 
 class Mosquitto:
-    """A broker. With `password` it lets in nobody but `user`."""
+    """A broker. With `password`, it admits only `user`."""
 
     def __init__(self, folder: Path, user: str = "", password: str = "", more: str = "") -> None:
         need("" if PROGRAM else "needs the broker mosquitto")

@@ -28,7 +28,7 @@ CHEEP = Word("CHEEP", Role("cheep", is_instruction=True), (SECONDS, HERTZ))
 
 
 def with_texts(folder: Path) -> Path:
-    """Return a copy of the languages that say what the word does."""
+    """Return a copy of the languages that describe the word."""
     shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("*.texts"))
     for language, text in SAID.items():
         with (folder / language / "studio.toml").open("a", encoding="utf-8") as file:

@@ -1,4 +1,4 @@
-"""A script for the page: it notes each tone, which nobody hears, and each animation."""
+"""A script for the page: it records each tone, without sound, and each animation."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Which tests begin first where several processes share them, so that none ends long after others.
+"""Orders tests for several processes, so that none ends long after the others.
 
-pytest-xdist gives each process an equal part of the list, one after the other, and who has nothing
-left takes the last tests of others. So each part begins with files that take long, and ends with
-quick tests. Pages are in half of the parts: each process that has one starts a browser.
+pytest-xdist gives each process an equal part of the list, one after the other, and an idle process
+takes the last tests of others. So each process begins with slow files and ends with quick tests.
+Pages are in half of the parts: each process that has one starts a browser.
 """
 
 from __future__ import annotations

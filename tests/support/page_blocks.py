@@ -24,7 +24,7 @@ def start(page: Page, text: str, level: str = "few") -> None:
 
 
 def text_of(page: Page) -> str:
-    """Return the program's text, which is beside or below the blocks."""
+    """Return the program's text, which is next to or below the blocks."""
     wait_for_blocks(page)
     kept_text: str = page.evaluate("JSON.parse(sessionStorage['tiniscript.work']).text")
     return kept_text
@@ -63,8 +63,8 @@ def path_of(block: Locator) -> Locator:
 def drag(
     page: Page, group: str, words: str, target: Locator | None, off: tuple[int, int] = (0, 0)
 ) -> None:
-    """Drag a block out of a group of the toolbox, below another one and so many pixels off, or, in
-    place of a target, to where it hangs on nothing."""
+    """Drag a block out of a group of the toolbox, below another one at this offset in pixels, or,
+    without a target, to a free place."""
     page.locator(".blocklyToolboxCategory", has_text=group).click()
     source = page.locator(FLYOUT).filter(has_text=words).first
     source.wait_for()

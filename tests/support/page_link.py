@@ -92,7 +92,7 @@ def page(first: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
 def upload_until_it_runs(page: Page) -> None:
     """Send it, again where a busy computer kept the page silent until its robot was stopped.
 
-    A short run may be over at once: the page says that in the stead of what it has sent.
+    A short run may be over at once: the page then reports that instead of the upload.
     """
     word = page.locator("#link_said")
     for _ in range(UPLOADS):

@@ -23,7 +23,7 @@ def unfold(page: Page) -> None:
 
 
 def share(page: Page, how: str = "link") -> str:
-    """Open the window if it is not, and return what it shares."""
+    """Open the window if necessary, and return the shared link."""
     if not page.locator("#programs").is_visible():
         page.click("#my_programs")
     unfold(page)

@@ -38,5 +38,5 @@ def wait_for_running(page: Page, part: str = "") -> None:
 
 
 def wait_for_nothing_running(page: Page) -> None:
-    """Wait until nothing in the text is marked."""
+    """Wait until no part of the text is marked."""
     page.wait_for_function(f"() => !({RUNNING_SCRIPT})().length")

@@ -9,6 +9,6 @@ if TYPE_CHECKING:
 
 
 def run_names(page: Page) -> list[str]:
-    """Open the window of the runs; return what each is called."""
+    """Open the window of the runs; return their names."""
     page.click("#runs_open")
     return page.locator("#runs_list button:first-child").all_inner_texts()

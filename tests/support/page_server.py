@@ -1,4 +1,4 @@
-"""A server, as that of the studio's page, in a thread of the test, and who asks it."""
+"""A server like that of the studio's page, in a thread of the test, and its client."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def ask(
     own: str, path: str = "/", method: str = "GET", body: bytes | None = None,
     headers: Mapping[str, str | None] | None = None,
 ) -> tuple[HTTPResponse, bytes]:  # fmt: skip
-    """Ask the server at `own`, a host and its port. A header that is None is left out."""
+    """Ask the server at `own`, a host and its port. A header with the value None is left out."""
     given_headers = {name: value for name, value in (headers or {}).items() if value is not None}
     connection = HTTPConnection(own, timeout=HANGS_S)
     try:

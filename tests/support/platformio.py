@@ -1,4 +1,4 @@
-"""PlatformIO for tests: what it needs here, and the sketch that it builds."""
+"""PlatformIO for tests: its requirements here, and the sketch that it builds."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ SKETCH = ROOT / "vm_arduino"
 
 @lru_cache(maxsize=1)
 def prepare() -> tuple[dict[str, str], str]:
-    """Return the variables that `pio` needs, none where it is online, and why it cannot run."""
+    """Return the variables that `pio` needs (none if it is online), and the reason why it cannot
+    run."""
     if importlib.util.find_spec("platformio") is None:
         return {}, "PlatformIO is not installed"
     completed = subprocess.run(OFFLINE, cwd=ROOT, capture_output=True, text=True, check=False)
@@ -40,7 +41,7 @@ def copy_sketch(folder: Path) -> Path:
 
 
 def pio(project: Path, *words: str) -> CommandResult:
-    """Run `pio`: what it said, as its output."""
+    """Run `pio`; return its output."""
     completed = subprocess.run(
         [sys.executable, "-m", "platformio", *words],
         cwd=project,

@@ -107,7 +107,7 @@ def few(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
 
 @contextmanager
 def drive_robot() -> Iterator[tuple[subprocess.Popen[bytes], str, subprocess.Popen[bytes], bytes]]:
-    """A virtual robot, its port, and the command that drives it with what that has said."""
+    """A virtual robot, its port, and the command that drives it, with its output."""
     with few("robot") as robot:
         assert robot.stdout
         port = robot.stdout.readline().decode().strip()

@@ -11,7 +11,7 @@ _WORD = "lóñg"
 
 
 def pseudo(content: Any) -> Any:
-    """Return a text, or all texts of a file of the page, in the language that nobody speaks."""
+    """Return a text, or all texts of a file of the page, in the pseudo language."""
     if isinstance(content, dict):
         return {key: pseudo(value) if key else value for key, value in content.items()}
     if isinstance(content, list):

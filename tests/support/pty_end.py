@@ -1,6 +1,6 @@
 """A simulated device on a pseudo-terminal: `tsc` opens `port`.
 
-Time is the wall's, or, if this process opens the port, that of the simulation behind it.
+It uses wall-clock time or, if this process opens the port, the time of the simulation behind it.
 
 A pseudo-terminal has no speed, but it keeps the one that was set: bytes at another speed than that
 of the other end arrive garbled, as on a wire.

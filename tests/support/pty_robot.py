@@ -1,8 +1,8 @@
 """A robot on a pseudo-terminal: the whole firmware in C++, in real time.
 
-What a computer opens as a port is `port`; in between is the terminal driver of this system, as
-with a cable. Time goes by on the robot as on the wall, or slower where this computer is busy. Only
-where this process itself opens the port, in `on`, time is the robot's: nobody waits.
+A computer opens `port`; in between is the terminal driver of this system, as with a cable. Time
+goes by on the robot as on the wall, or slower where this computer is busy. Only if this process
+itself opens the port, in `on`, is time the robot's: no one waits.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ class PtyRobot(PtyPort):
         self.switch_on()
 
     def begin_anew(self) -> None:
-        """Switch it off and on; what its memory has kept since it was made is forgotten."""
+        """Switch it off and on; its memory returns to its initial content."""
         with self._lock:
             self._take_power()
             self.off_after, self._memory = None, self._new
@@ -142,7 +142,7 @@ class PtyRobot(PtyPort):
         return int(off[-1].split()[0]) - began_ms
 
     def _make_robot(self, reset: int = POWER_ON, seed: int = 0x12345678) -> HostFirmware:
-        """Return a robot that starts with what its memory has kept."""
+        """Return a robot that starts with its stored memory."""
         return HostFirmware(self.kit, self._memory, reset, seed)
 
     def _take_power(self) -> None:
@@ -194,7 +194,8 @@ class PtyRobot(PtyPort):
 def on(pty_robot: PtyRobot, *arguments: str | Path, data: bytes = b"") -> CommandResult:
     """Run `tsc` on the robot's port, in this process and in the robot's time.
 
-    Beside a command that stays it is the time of the wall: the robot must not miss what that sends.
+    With a command that keeps running, it is wall-clock time: the robot must not miss what the
+    command sends.
     """
     with nullcontext() if Command.is_any_there() else simulate(pty_robot):
         return inside(*arguments, "--port", pty_robot.port, data=data)

@@ -53,7 +53,7 @@ NOTHING = Losses(0, 0)
 
 class Wire:
     """A connection that sometimes loses either side's frames and delivers others late: a frame may
-    be under way while somebody else stops the robot.
+    be under way while another client stops the robot.
     """
 
     def __init__(self, rng: random.Random) -> None:

@@ -1,7 +1,7 @@
-"""Random code, numbers and images: what the machines are compared with.
+"""Random code, numbers and images for comparing the machines.
 
-From bytes at random to blocks that nest as deep as a machine remembers. Half of it is nearly right:
-code that is accepted is run, and code that breaks one rule shows where that rule is.
+They range from random bytes to blocks that nest as deep as a machine remembers. Half of it is
+nearly right: code that is accepted is run, and code that breaks one rule shows where that rule is.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def operand_bytes(rng: random.Random, op: Op) -> bytes:
 
 
 def likely_code(rng: random.Random) -> bytes:
-    """Return instructions in a row whose stack fits: the structure is left to chance."""
+    """Return a sequence of instructions with a valid stack and a random structure."""
     code = b""
     depth = 0
     few = rng.sample(UNO_OPS, rng.randint(3, 12))

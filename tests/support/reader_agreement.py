@@ -92,7 +92,8 @@ def lacks_values(data: bytes, kit: Kit) -> bool:
 
 
 def check_code(data: bytes, kit: Kit, answer: Answer, room: int) -> None:
-    """The code of a right text is the plain one, or what `text/memory.py` counts is too much."""
+    """The code of a correct text is the plain one, unless `text/memory.py` counts too much
+    memory."""
     compilation = compile_text(decode(data), kit)
     assert compilation.program is not None
     plain = plain_code(compilation.program)
@@ -130,7 +131,7 @@ def apply_backspaces(data: bytes) -> bytes:
 
 
 def check_program(data: bytes, kit: Kit, senses: Senses) -> None:
-    """A right program does what the compiler's does."""
+    """Check that a correct program behaves like the compiler's."""
     answer = check_bytes(data, kit)
     if answer is None:
         return

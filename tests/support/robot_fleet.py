@@ -1,7 +1,7 @@
 """A fleet of robots: each the whole firmware, all of them attended to by one thread.
 
-Like `tests.support.pty_robot`, at a price that lets 30 of them be on one computer: a robot goes
-on when bytes come for it, and else every few milliseconds, in one longer step.
+Like `tests.support.pty_robot`, but cheap enough for 30 of them on one computer: a robot runs when
+bytes arrive for it, and otherwise every few milliseconds, in one longer step.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ STEP_MS = 10  # interval between two steps of an idle robot
 
 
 class Pupil(PtyPort):
-    """A robot and its port. What is wrong with it is chosen before something is sent."""
+    """A robot and its port. Its faults are chosen before anything is sent."""
 
     def __init__(self, kit: Kit, number: int) -> None:
         super().__init__()

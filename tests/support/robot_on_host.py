@@ -18,7 +18,7 @@ AWAY = "SI|F(60, 80)"
 
 
 def switched_on(memory: bytes = EMPTY, **options: float) -> HostFirmware:
-    """Return a robot that has looked at what it keeps."""
+    """Return a robot that has read its stored data."""
     robot = HostFirmware(KIT, memory, **options)  # type: ignore[arg-type]
     robot.wait(200)
     assert robot.did == []
@@ -77,7 +77,7 @@ def actions_of(robot: HostFirmware) -> list[str]:
 
 
 def push_button(robot: HostFirmware, milliseconds: int = 400) -> list[str]:
-    """Push the button; return what the robot does then."""
+    """Push the button; return the robot's reaction."""
     robot.did.clear()
     robot.push()
     robot.wait(milliseconds)

@@ -1,4 +1,4 @@
-"""A whole robot on a simulated Uno, and what its motors do."""
+"""A whole robot on a simulated Uno, and the activity of its motors."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ OBSTACLE_LINES = (
 
 
 def switched_on(sketch: Path, memory: Path, board: str = "uno") -> Uno:
-    # Nobody opens its port here, and opening it by mistake does not reset it.
+    # No test opens its port, and opening it by mistake does not reset it.
     uno = Uno(sketch, names=NAMES, board=board, eeprom=memory, baud=BAUD, resets_on_open=False)
     uno.run_ms(300)
     assert states(uno) == OFF

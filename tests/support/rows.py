@@ -32,7 +32,7 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
     """Like `pytest.mark.parametrize`, in one test: all rows run, and it names each that fails.
 
     Take it where a row is quick and uses no fixture that keeps something: a test of its own costs
-    six milliseconds. There must be a row.
+    six milliseconds. The row must exist.
     """
     wanted_texts = [name.strip() for name in names.split(",")]
     sets = [

@@ -5,12 +5,12 @@ draws: every other value is in each run, each chip as often as the others, and e
 `sampled("chip", keep=2)` keeps two. `sampled(of="bootloaders", keep=2)` keeps two of all tests that
 are marked so, with their rows. `pytestmark = pytest.mark.sampled(files="sides", keep=3)` keeps
 three whole files of all that have it: a browser opens no page for the others. Tests with the same
-`draw` keep the same rows: of what is built for them less is built. `some_of` draws of what one test
-goes through by itself.
+`draw` keep the same rows, so that fewer builds are needed for them. `some_of` samples the items
+that one test goes through itself.
 
 A test marked `long` takes long, and another one notices most of what it does: it is in the second
 tier, which runs at the end of an issue and before a release. `--tenth` runs a tenth of that tier,
-which the commit draws, too. `--whole` runs all, and what `-k` or a name asks for is run.
+which the commit draws, too. `--whole` runs all; tests selected by `-k` or by name always run.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
 
 
 def _long_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytest.Item]:
-    """Return the long tests that this run leaves out, of files that nobody names."""
+    """Return the long tests that this run leaves out, of files that the user did not name."""
     named_paths = _list_named_files(config)
     long_tests = [
         item for item in items if item.get_closest_marker(LONG) and item.path not in named_paths
@@ -78,7 +78,7 @@ def _long_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytes
 
 
 def _files_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytest.Item]:
-    """Return the tests of whole files that are not drawn, of files that nobody names."""
+    """Return the tests of whole files that are not drawn, of files that the user did not name."""
     files: dict[tuple[str, int], dict[Path, list[pytest.Item]]] = defaultdict(dict)
     for item in items:
         for mark in item.iter_markers(MARK):

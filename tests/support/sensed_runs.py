@@ -1,4 +1,4 @@
-"""Runs of a whole robot on this computer while what its sensors see changes.
+"""Runs of a whole robot on this computer with changing sensor input.
 
 Its line takes as long for a byte as one of 9600 baud, or a little more or less.
 """

@@ -23,7 +23,7 @@ DESCRIPTION: dict[str, int | bytes] = {
 def answer(
     sent_bytes: bytes, values: dict[str, int | bytes], status: int = 0, epoch: int = 10
 ) -> bytes:
-    """Return a robot's answer to what a session has sent."""
+    """Return a robot's answer to a session's request."""
     frame = decode_frame(sent_bytes.strip(b"\0"))
     assert frame
     payload = bytes((status, 0, 0))

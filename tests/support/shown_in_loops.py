@@ -1,7 +1,7 @@
 """Random programs that show values in loops and read sensors; how far runs of one are apart.
 
-What they do does not depend on what they read: a reading that changes a millisecond earlier or
-later changes nothing else.
+Their behaviour does not depend on the readings: a reading that changes a millisecond earlier or
+later has no other effect.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """A script for the page: a Web Serial port that takes no bytes and sends none.
 
-What is written there never ends, until it is aborted.
+Writing there never ends until it is aborted.
 """
 
 from __future__ import annotations

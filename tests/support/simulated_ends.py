@@ -1,7 +1,7 @@
 """Devices at the other end of a port in simulated time, for the doctor.
 
-The firmware here answers HELLO, STATUS and PING alone, with whatever a test wants it to say; the
-real one is behind `tests/support/pty_robot.py`.
+The firmware here answers only HELLO, STATUS and PING, as the test wants; the real firmware is in
+`tests/support/pty_robot.py`.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class Sketch(Nobody):
 
 
 class Babble(Nobody):
-    """Bytes that are nothing at any speed."""
+    """Bytes that are meaningless at any speed."""
 
     def answer(self, data: bytes) -> bytes:
         return bytes((0x81, 0xFF, 0x9D, 0x80, 0xC3)) if self.now_ms % 20 == 0 else b""
@@ -76,7 +76,7 @@ class Babble(Nobody):
 class Board(Nobody):
     """A board with a bootloader: it answers for `open_ms` after a restart, or always.
 
-    What is behind it says nothing. A bootloader has its own speed.
+    The device on it is silent. A bootloader has its own speed.
     """
 
     def __init__(
@@ -102,9 +102,9 @@ class Board(Nobody):
 class Firmware(Nobody):
     """The robot's half of the link, as far as the doctor asks; `values` are fields of its replies.
 
-    `restarts_ms`: it restarts so often, with the cause `resets`. Of requests it answers none whose
-    number is a multiple of `deaf`. `dies_after` requests it is silent. Its `trim` it tells who is
-    in its `epoch`.
+    `restarts_ms`: it restarts so often, with the cause `resets`. It does not answer requests whose
+    number is a multiple of `deaf`. `dies_after` requests it is silent. It reports its `trim` to a
+    session in its `epoch`.
     """
 
     def __init__(self, baud: int = 9600, **values: int | bytes) -> None:

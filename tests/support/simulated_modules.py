@@ -12,9 +12,9 @@ SLOW_MS = 1000  # silence after which a module without line ends executes its co
 
 
 class SimulatedModule:
-    """A module that waits for commands, on a wire; `name`, `pin` and `data_baud` are what it keeps.
+    """A module that waits for commands, on a wire; `name`, `pin` and `data_baud` are its settings.
 
-    `answers` are patterns of commands, and what is said to the first one that fits. Groups of a
+    `answers` are patterns of commands, and the reply to the first one that matches. Groups of a
     pattern are what the command sets: `name`, `pin`, or `speed`, in `bauds` a key; `reset` makes
     the speed count. `breaks_after` commands it is switched off, as by a plug that is pulled.
     """
@@ -77,7 +77,7 @@ class SimulatedModule:
     def _keeps(
         self, name: str | None = None, pin: str = "", speed: str = "", reset: str = ""
     ) -> bool:
-        """Take what a command sets; False: there is no such speed."""
+        """Apply the settings of a command; return False if there is no such speed."""
         if speed and self.bauds and speed not in self.bauds:
             return False
         self.name = self.name if name is None else name
@@ -130,7 +130,7 @@ class Hc05New(Hc05):
 
 
 class Hc06(SimulatedModule):
-    """linvor 1.8: no line ends, a second of silence, and it never tells what it keeps."""
+    """linvor 1.8: no line ends, a second of silence, and it never reports its settings."""
 
     name = "linvor"
     ends_lines = False

@@ -38,7 +38,7 @@ class PtyPort:
         self.port = os.ttyname(self._theirs)
         self.simulated: SimulatedPort | None = None
         self.heard = b""  # all data received by the port
-        self.damages = 0  # one of so many bytes is damaged; 0 means none
+        self.damages = 0  # one of this many bytes is damaged; 0 means none
         self._passed = 0  # bytes, through the noise
         self._lock = threading.Lock()
 
@@ -109,7 +109,7 @@ class SimulatedPort:
 
 @contextmanager
 def simulate(*ends: PtyPort) -> Iterator[None]:
-    """Within it, what this process opens keeps the time of its end."""
+    """Within it, ports opened by this process use the time of their other end."""
     actual = serial_transport._open
     by_port = {end.port: end for end in ends}
 

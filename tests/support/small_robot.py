@@ -21,7 +21,7 @@ FIRST_READINGS, READINGS = (1_000, 2_000, 3_000), (9_000, 600_000, 5_000)
 
 
 def draw_program(rng: random.Random) -> str:
-    """Return a program that begins with the mark, and draws nothing by itself."""
+    """Return a program that begins with the mark, and draws nothing itself."""
     text = re.sub(r"RANDOM\(\d, \d\)", str(rng.randint(0, 3)), task_program(rng)[0])
     moves = rng.choice(("", "F(60, 80);", "X = 0;W(0.05);SHOW(1 / X);", "M(30, -30);",
                         "BEEP(3, 262);"))  # fmt: skip

@@ -1,4 +1,4 @@
-"""A distance sensor on a simulated board: its pins, its pings, and what it hears."""
+"""A distance sensor on a simulated board: its pins, its pings, and its echoes."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The page of TiniScript Studio in the system's Chromium, which playwright drives.
 
-A test waits for what the page says of itself (`data-state`), never for a time.
+A test waits for the state that the page reports (`data-state`), never for a time.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ SHARED = Path("/dev/shm")
 if not SHARED.is_dir() or shutil.disk_usage(SHARED).free < 1 << 30:
     WHOLE += ("--disable-dev-shm-usage",)
 # Code is compiled once and not again for speed: a page of a test does little. The tabs of a context
-# share a renderer and what it has compiled.
+# share a renderer and its compiled code.
 OPTIONS = (*WHOLE, "--js-flags=--liftoff-only --no-maglev --no-opt", "--process-per-site")
 UPLOADS = 10  # number of consecutive stops that cannot be the computer's fault
 
@@ -140,7 +140,7 @@ def driver(of_studio: bool = True) -> Iterator[Playwright]:
 
 @contextmanager
 def browser(playwright: Playwright, *more: str, is_whole: bool = False) -> Iterator[Browser]:
-    """A browser; one that is to be whole is what people have. `more` are options of it."""
+    """A browser; the complete one is the one that people have. `more` are options of it."""
     path, options = (chromium(), WHOLE) if is_whole else (headless(), OPTIONS)
     browser = playwright.chromium.launch(executable_path=path, args=[*options, *more])
     try:
@@ -158,11 +158,11 @@ _LEFT: WeakKeyDictionary[Browser, list[BrowserContext]] = WeakKeyDictionary()
 
 
 class Pages:
-    """Pages of one server; each must have said no error, and asked nobody else, at the end.
+    """Pages of one server; at the end, none may have reported an error or contacted another server.
 
-    Most visitors get a context that an earlier one has left, in which no tab is open and nothing is
-    kept. What a test changes of a whole context (scripts that begin each page, permissions) stays:
-    it asks for one that is alone.
+    Most visitors get a context that an earlier one has left, without open tabs and stored data. A
+    test's changes to a whole context (scripts that begin each page, permissions) stay, so such a
+    test requests its own context.
     """
 
     def __init__(
@@ -194,9 +194,9 @@ class Pages:
         return other
 
     def blank(self, *, is_alone: bool = False, **options: Any) -> Page:
-        """Return a tab of a new visitor, in which nothing is open yet.
+        """Return a tab of a new visitor, without an open page.
 
-        With `is_alone`, or options of Playwright's, in a context that no other visitor gets.
+        With `is_alone`, or options for Playwright, it is in a context of its own.
         """
         context = self._own(options) if is_alone or options else self._lend_context()
         context.set_default_timeout(1000 * self.patience_s)
@@ -254,7 +254,7 @@ class Pages:
         )
 
     def close(self) -> None:
-        """Close the pages; what visitors have left in their browsers is forgotten."""
+        """Close the pages; the data of visitors is deleted."""
         for context in self._contexts:
             context.close()
         for context in self._to_leave:
@@ -285,7 +285,7 @@ def enter(page: Page, address: str) -> None:
         page.click("#start_write")
 
 
-# Actions of a person who starts again: home ends a lesson, a drawing and a run.
+# Actions of a person who starts again: the home button ends a lesson, a drawing and a run.
 _ANEW = """() => {
   const at = (id) => document.getElementById(id);
   for (const each of document.querySelectorAll('dialog[open]')) each.close();
@@ -303,8 +303,8 @@ _ANEW = """() => {
 def begin_anew(page: Page) -> None:
     """Reset a used page to the state after `Pages.open`, with an empty program.
 
-    In English, for a tinibot among obstacles; no lesson, no drawing and no run goes on. What the
-    page has kept stays: runs, programs, drawn worlds, which lesson is open, and at which step.
+    In English, for a tinibot among obstacles; no lesson, no drawing and no run goes on. The page
+    keeps its stored data: runs, programs, drawn worlds, the open lesson and its step.
     """
     page.bring_to_front()  # another page may have the focus
     page.set_viewport_size({"width": 1366, "height": 768})
@@ -314,7 +314,7 @@ def begin_anew(page: Page) -> None:
     wait_until_checked(page)
 
 
-# Once a new size of the screen has been heard of, and drawn.
+# After a new size of the screen has been noticed and drawn.
 SETTLED = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
 
@@ -430,7 +430,7 @@ def axe(page: Page, *rules: str, within: str = "html") -> list[tuple[str, str]]:
     """Return axe's findings in an element, for these rules or all: the rule, the first place.
 
     The page hangs meanwhile, for seconds where the computer is busy: a robot that it drives is
-    stopped, and one to which it is connected is left. So this comes last, if there is one.
+    stopped, and one to which it is connected is left. So this comes last, if it exists.
     """
     if not page.evaluate("'axe' in window"):
         page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
@@ -450,7 +450,7 @@ def image(page: Page) -> bytes:
     return bytes.fromhex(str(page.evaluate("document.documentElement.dataset.image")))
 
 
-# The page's Python, asked as the page asks it: many requests at once. What a request has besides is
+# The page's Python, asked as the page asks it: many requests at once. A request's other content is
 # the bytes of `text`, or of `image` in hexadecimal digits.
 # One worker answers all that a page is asked: Python takes a while to start. After an error it is
 # another one.

@@ -1,4 +1,4 @@
-"""A Chromium whose Web Serial reaches a pseudo-terminal: its own serial code, and no chooser.
+"""A Chromium whose Web Serial reaches a pseudo-terminal: with its serial code, but no chooser.
 
 In a mount namespace of its own the pseudo-terminal lies over /dev/ttyS0, which the kernel lists,
 and a policy grants the port to the page. Nothing outside the namespace changes. It takes root.

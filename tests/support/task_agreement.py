@@ -23,7 +23,7 @@ def compare_task_program(
 ) -> str:
     """Compare the traces of one random program on some machines; return how it ended.
 
-    With the `needs` of a way it has some.
+    With the `needs` of a way, it has some.
     """
     rng = random.Random(seed)
     both: list[Compilation] = []

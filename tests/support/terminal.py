@@ -1,4 +1,4 @@
-"""A command on a terminal of its own, whose Ctrl-C it gets; `pyte` plays the terminal."""
+"""A command on its own terminal, with Ctrl-C; `pyte` plays the terminal."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Terminal:
         os.write(self._ours, keys.encode())
 
     def interrupt(self) -> None:
-        """Do what Ctrl-C does on the terminal of a shell."""
+        """Act like Ctrl-C on the terminal of a shell."""
         self.process.send_signal(signal.SIGINT)
 
     def end(self) -> int:
@@ -95,7 +95,7 @@ class Terminal:
         return self.process.wait(HANGS_S)
 
     def take(self) -> bool:
-        """Draw a small part of what was written: nothing is missed that is seen briefly."""
+        """Draw a small part of the output, so that brief displays are not missed."""
         if not self._unseen and not self._is_over:
             self._unseen = self._read.get(timeout=HANGS_S)
             self._is_over = not self._unseen

@@ -28,7 +28,7 @@ LONG = "SI|" + "F(0.1,80);B(0.1,60);" * 12
 
 
 class Fuzz:
-    """A robot at which anything is thrown, and what must be so of it."""
+    """A robot with arbitrary input, and its invariants."""
 
     def __init__(self, seed: int) -> None:
         self.rng = random.Random(seed)
@@ -39,7 +39,7 @@ class Fuzz:
             self.robot, self.session = switched_on(), computer()
 
     def step(self, data: bytes = b"", flags: int = 0) -> bytes:
-        """Step one millisecond; nothing may move while the robot is latched."""
+        """Step one millisecond; no motor may turn while the robot is latched."""
         robot = self.robot
         robot.did.clear()
         was_latched = robot.is_latched
@@ -50,7 +50,7 @@ class Fuzz:
     def check(
         self, was_latched: bool, is_latched: bool, actions: list[str], has_data: bool
     ) -> None:
-        """Assert what must be so of a millisecond."""
+        """Assert the invariants of a millisecond."""
         for line in actions:
             assert "MARK" not in line and "MEASURED" not in line, line
         moves = [line for line in actions if " MOTORS " in line]
@@ -79,7 +79,7 @@ class Fuzz:
     def type(self, data: bytes) -> bytes:
         return self.steps(len(data), data) if data else b""
 
-    # -- what is thrown -------------------------------------------------------------------------
+    # -- the input --------------------------------------------------------------------------------
 
     def bytes_(self) -> None:
         data = self.rng.randbytes(self.rng.randrange(1, 80))
@@ -134,7 +134,7 @@ class Fuzz:
                 self.zeros, self.silence, self.silence, self.button)  # fmt: skip
         self.rng.choice(acts)()
 
-    # -- what is so afterwards ------------------------------------------------------------------
+    # -- the invariants afterwards ----------------------------------------------------------------
 
     def check_line(self) -> None:
         """After anything and a second of silence the next whole line is answered.
@@ -166,7 +166,7 @@ class Fuzz:
         return any(line.endswith("MOTORS 0 0") for line in lines)
 
     def check_stop(self) -> None:
-        """After a stop nothing moves until a line with a SETUP word after a silent second."""
+        """After a stop, no motor turns until a line with a SETUP word after a silent second."""
         for _ in range(self.rng.randrange(1, 6)):
             data = "".join(self.rng.choices((*LINES, *TOKENS), k=6)).encode()
             self.type(data.replace(b"\0", b""))

@@ -30,7 +30,7 @@ def check_line(text: str, kit: Kit) -> None:
     assert compiled_line.is_right and compiled_line.image == compilation.image, line
     assert compilation.program is not None and compiled_line.program is not None
     assert plain_code(compiled_line.program).code == plain_code(compilation.program).code, line
-    # A line has no notes, nor a block with nothing but a note inside.
+    # A line has no comments, nor a block that contains only a comment.
     text_codes, line_codes = (
         sorted(
             diagnostic.code.number

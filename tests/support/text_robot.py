@@ -1,4 +1,4 @@
-"""A robot that is typed to, and what it keeps."""
+"""A robot that gets typed text, and its stored data."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def type_text(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) ->
 
 
 def holding(text: str = "SB|B(0.2, 60)", saves: bool = True) -> tuple[HostFirmware, Session]:
-    """Return a robot that holds a program, and whose client has gone."""
+    """Return a robot that holds a program, and whose client has left."""
     robot, session = switched_on(), computer()
     send(robot, session, text, saves=saves)
     if saves:

@@ -29,7 +29,7 @@ def in_all(key: str) -> list[str]:
 def gap_names(code: str) -> set[str]:
     """Return the names of the gaps in a code's message and thing to try, which all need a value.
 
-    Of several texts only the last one has to be filled: it is taken if no other is.
+    Of several texts, only the last one must be fillable: it is used if no other can be.
     """
     both = "".join(list(rendering._templates(f"{code}/{part}", lang))[-1]
                    for part in ("message", "try") for lang in LANGUAGES)  # fmt: skip

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 def tear_requests(
     page: Page, what: str, tear: Callable[[Route], None], times: int = 1
 ) -> list[str]:
-    """Tear so many requests in which `what` is; return the list of those."""
+    """Tear this many requests that contain `what`; return the list of those."""
     torn: list[str] = []
 
     def handle(route: Route) -> None:

@@ -1,7 +1,7 @@
 """A simulated Uno that is a tinibot2: its motors turn wheels, whose discs change its pins.
 
 Wheels, motors and discs are those of the virtual robot (`virtual/wheels.py`), the firmware is the
-one that goes onto the board. Who looks at the wheels' way finds it in `pose`.
+one that goes onto the board. `pose` has the path of the wheels.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ class Driven(Wired):
         return (-level if is_backward else level) * 100 / FULL
 
     def drive(self, text: str, limit_ms: int = 20_000) -> str:
-        """Run a program to its end and a little longer; return what has ended it."""
+        """Run a program to its end and a little longer; return the cause of its end."""
         image = image_of(text, ROBOT.kit)
         assert self.until(self.session.hello()) == OK
         assert self.until(self.session.upload(image)) == OK

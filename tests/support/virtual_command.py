@@ -1,4 +1,4 @@
-"""A virtual robot as the command starts it, and who visits it."""
+"""A virtual robot as the command starts it, and its visitors."""
 
 from __future__ import annotations
 

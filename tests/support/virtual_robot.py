@@ -1,4 +1,4 @@
-"""A virtual robot and a computer that talks to it, in the robot's own time: nobody waits."""
+"""A virtual robot and a computer that talks to it, in the robot's own time, without real waits."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tiniscript.virtual.worlds import read
 
 
 def floor(parts: str = "", start: str = "x_cm = 100\ny_cm = 100", size: int = 200) -> World:
-    """Return a square floor with a border, and with what `parts` add to it."""
+    """Return a square floor with a border, and the additions of `parts`."""
     head = f"[floor]\nwidth_cm = {size}\nheight_cm = {size}\n[start]\n{start}\n"
     return read(head + parts, "floor")
 

@@ -1,4 +1,4 @@
-"""The cases of the machine by what they have."""
+"""The cases of the machine, sorted by their contents."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ def compile_program(text: str) -> Compilation:
 
 
 def messages(text: str) -> list[tuple[str, str]]:
-    """Return the code of each diagnostic, and what it points at."""
+    """Return the code of each diagnostic, and the text that it points at."""
     return [
         (diagnostic.code.number, text[slice(*diagnostic.span)])
         for diagnostic in compile_program(text).diagnostics

@@ -1,4 +1,4 @@
-"""The formatter: layouts by hand, and what holds for every program.
+"""The formatter: expected layouts, and laws for every program.
 
 Programs come from the generator of `oracle`; `laid_out_anew` gives their tokens a second, wilder
 layout with comments, empty lines and empty instructions wherever the language allows them.
@@ -138,13 +138,13 @@ LAYOUTS: dict[str, tuple[str, str]] = {
 
 @pytest.mark.parametrize(("text", "layout"), LAYOUTS.values(), ids=LAYOUTS.keys())
 def test_layout(text: str, layout: str) -> None:
-    """Check that the layout is the one beside the text, and formatting it again changes nothing."""
+    """Check that the layout is the expected one, and that formatting it again changes nothing."""
     assert not has_mistakes(text)
     assert after(text) == layout
     check(text)
 
 
-# --- What holds for every program ---------------------------------------------------------------
+# --- Laws for every program ----------------------------------------------------------------------
 
 
 def compiler_kit(oracle_kit: OracleKit) -> kit.Kit:
@@ -160,7 +160,7 @@ def compiler_kit(oracle_kit: OracleKit) -> kit.Kit:
 
 
 def code_of(text: str) -> list[tuple[str, str]]:
-    """The tokens, with one spelling for what has several and one `;` between instructions."""
+    """The tokens, with one spelling for each sign and one `;` between instructions."""
     code: list[tuple[str, str]] = []
     brackets = 0
     for token in scan(text).tokens:
@@ -184,7 +184,7 @@ def comments_of(text: str) -> str:
 
 
 def check(text: str) -> str:
-    """Return the layout of a text whose shape is right, with all that does not need a kit."""
+    """Return the layout of a text with a correct shape, without the parts that need a kit."""
     layout = after(text)
     assert after(layout) == layout
     assert not has_mistakes(layout)

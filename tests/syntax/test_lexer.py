@@ -83,7 +83,7 @@ def test_an_empty_text_has_only_its_end() -> None:
     assert scan("").tokens == [(END, "", 0, 0)]
 
 
-# -- what the language does not have --------------------------------------------------------------
+# -- signs outside the language --------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
 """Words that are no words of the language are names: of variables, DEFs, sensors, actuators.
 
-What beginners type by mistake is looked for only where it is one: a DEF may be called END, a
+Beginners' typing mistakes are sought only where they are mistakes: a DEF may be called END, a
 variable Y, a sensor RIGHT.
 """
 

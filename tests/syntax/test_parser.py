@@ -1,7 +1,7 @@
 """The parser: the AST of each construct with its spans, and recovery after a mistake.
 
 An AST is drawn as an outline: a row for each node, `name arguments «its text»`, and deeper rows for
-what is inside. An expression is drawn in brackets, its parts in the order of the AST.
+its content. An expression is drawn in brackets, its parts in the order of the AST.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ from tiniscript.syntax.parser import _RULES, Parser, parse
 
 
 def value(argument: ast.Argument | None) -> str:
-    """Return `[DISTANCE 10 LT]`, with a `!` after a plain number, or `?` for what was not read."""
+    """Return `[DISTANCE 10 LT]`, with a `!` after a plain number, or `?` for an unreadable
+    value."""
     if argument is None:
         return "?"
     parts = (
@@ -76,7 +77,7 @@ def outline(text: str) -> str:
 
 
 def list_diagnostics(text: str) -> list[str]:
-    """Return each diagnostic as its code and what it points at."""
+    """Return each diagnostic as its code and the text that it points at."""
     return [
         f"{diagnostic.code.number} {text[diagnostic.span.start : diagnostic.span.end]}"
         for diagnostic in parse(Source(text)).diagnostics
@@ -150,7 +151,7 @@ def test_spans_of_a_command_an_assignment_and_a_definition() -> None:
 # -- expressions ----------------------------------------------------------------------------------
 
 EXPRESSIONS = {
-    # From loosest to tightest: OR, AND, NOT, comparisons, + -, * / %, minus.
+    # From lowest to highest precedence: OR, AND, NOT, comparisons, + -, * / %, minus.
     "A OR Q AND C": "[A OR_LEFT Q AND_LEFT C AND OR]",
     "A AND Q OR C": "[A AND_LEFT Q AND OR_LEFT C OR]",
     "NOT A AND Q": "[A NOT AND_LEFT Q AND]",

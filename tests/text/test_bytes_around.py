@@ -1,5 +1,5 @@
-"""Whatever real apps and modules send before and after a right line: it runs, or an answer says
-why not. Nothing passes in silence.
+"""Whatever real apps and modules send before and after a correct line, it runs, or an answer gives
+the reason. No input is ignored silently.
 
 `python -m tests.text.test_bytes_around 20000` tries more.
 """
@@ -20,7 +20,8 @@ from tests.support.robot_on_host import KIT
 LINE = "SI|BEEP(0.1,97);W(9)"
 ENDS = (b"\n", b"\r\n", b"\r")
 BEEPS = "BEEP 97 100"
-# Between two zeros is a frame where not every byte is one of a line; a damaged one is not answered.
+# The bytes between two zeros are a frame unless each is one of a line; a damaged frame is not
+# answered.
 DAMAGED_FRAME = re.compile(rb"\0[^\0]*[^ -~\0][^\0]*\0")
 
 

@@ -1,4 +1,4 @@
-"""The levels of robots that read text: what each lacks, and what fits."""
+"""The levels of robots that read text: their limits, and programs that fit."""
 
 from __future__ import annotations
 
@@ -32,7 +32,8 @@ def lacking(text: str, level: Level = UNO) -> list[Diagnostic]:
 
 
 def problems_of(text: str, level: Level = UNO) -> list[tuple[str, str, dict[str, str]]]:
-    """Return the code of each diagnostic, what it points at, and its values without the level."""
+    """Return the code of each diagnostic, the text that it points at, and its values without the
+    level."""
     problems = []
     for diagnostic in lacking(text, level):
         values = dict(diagnostic.values)
@@ -51,7 +52,7 @@ def test_a_level_has_the_memory_of_its_board() -> None:
 
 
 def test_the_room_of_an_uno_is_that_of_its_firmware() -> None:
-    """`layout.h`: what an image in the EEPROM has beside its header."""
+    """In `layout.h`, this is the size of an image in the EEPROM without its header."""
     layout = (ROOT / "vm_arduino" / "src" / "store" / "layout.h").read_text(encoding="utf-8")
     assert "kStoredCodeBytes = kImageBytes - kHeaderBytes" in layout
     port = (ROOT / "vm_arduino" / "src" / "firmware" / "port.cpp").read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Plain code: what a robot that reads text emits, and that it does what optimised code does."""
+"""Plain code, as a robot that reads text emits it: it behaves like optimised code."""
 
 from __future__ import annotations
 
@@ -167,7 +167,7 @@ def test_the_page_names_every_instruction_of_plain_code_and_no_other() -> None:
 
 
 def check_same(compilation: Compilation, kit: Kit, senses: Senses) -> None:
-    """The plain code of a program passes the verifier and does what its other code does."""
+    """The plain code of a program passes the verifier and behaves like its other code."""
     assert compilation.program is not None
     code = plain_code(compilation.program)
     verify(code.code, len(kit.readings), len(kit.actuators))

@@ -1,4 +1,4 @@
-"""The reader's own rules: lines, checksums, what it says of a wrong one and where, its limits."""
+"""The reader's own rules: lines, checksums, its messages about wrong lines, its limits."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def test_other_characters(odd: str) -> None:
     assert one(f"S{odd}").problem
 
 
-# -- what it says, and where --------------------------------------------------------------------
+# -- its messages and their places ---------------------------------------------------------------
 
 WRONG = {
     "F(2, 80)é": ("CHARACTER", 9), "W(5.)": ("NUMBER", 3), "X = 2147483.648": ("TOO_BIG", 5),
@@ -371,7 +371,7 @@ def test_names_are_told_apart_to_their_last_letter() -> None:
 
 
 def test_what_lies_in_the_buffer() -> None:
-    """Code and what waits meet: one byte less is too little."""
+    """Code and waiting data meet: one byte less is too little."""
     text = b"SPEED = 5; IF(SPEED > 1); F(1, SPEED); ENDIF"
     # ten bytes of code, the word that is read, the block that it ends, and the name SPEED
     least = 10 + len("ENDIF") + BLOCK_BYTES + len(" SPEED")

@@ -163,7 +163,7 @@ FOUND: Counter[str] = Counter()  # problems found by a campaign in incomplete pr
 def check_seed(seed: int) -> None:
     """Compare a program, ten with slips, and ten lines of any tokens.
 
-    What a program does is compared for one of TRACED: runs take longest.
+    The behaviour is compared for one of TRACED programs: runs take longest.
     """
     kit, data, senses, slips = (tasks_of if seed % 4 == 0 else texts_of)(seed, 10)
     if seed % TRACED:

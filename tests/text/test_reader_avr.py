@@ -1,6 +1,6 @@
 """The reader of text on a simulated ATmega328P agrees with the one on this computer.
 
-There an int has 16 bits, and tables lie in another memory.
+On this chip, an int has 16 bits, and tables are in another memory.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tools.bench import avr_bench
 REASON = avr_bench.why_missing()
 ROOM = 389
 KIT = KITS[1][1]
-# Where one instruction that pushes a number ends, and a longer one begins.
+# The end of one instruction that pushes a number, and the beginning of a longer one.
 NUMBERS = (
     *range(23), *range(30, 121, 10), 99, 127, 128, 129, 250, 255, 256, 3276, 3277, 32767, 32768,
     32769, 65535, 65536, 65537, 100000, 2147483, 2147483.647, 2147483.648, 2147484, 429496729.6,

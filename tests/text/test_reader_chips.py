@@ -1,6 +1,6 @@
 """The reader of text on the emulated chips of ESP boards agrees with the one on this computer.
 
-There a char may be unsigned, and a word must lie at an address that four divides.
+On these chips, a char may be unsigned, and a word must be at an address divisible by four.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What no text says: a page makes operations of its own."""
+"""Checks of operations that a page makes itself and no text contains."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Pupils that write by chance: with blocks, and with the keyboard, a few keys at a time.
 
-Each instruction that they write has a number that nobody has written before: so it is seen whether
-values of two were mixed, or something is there twice.
+Each instruction that they write has a new number, which shows whether values of two were mixed or a
+node is there twice.
 """
 
 from __future__ import annotations
@@ -49,14 +49,14 @@ class Pupil:
         self._cut: Text = []
 
     def acts(self) -> None:
-        """Continue typing, or do something else."""
+        """Continue typing, or take another action."""
         if self.stages or self._chance.random() < 0.55:
             self.types()
         else:
             self.does_by_blocks()
 
     def drops(self) -> None:
-        """What was cut out is not pasted, what was begun is not finished."""
+        """Cut text is not pasted, and unfinished text is not finished."""
         self.page.give_up()
         self.stages, self._cut = [], []
 
@@ -234,7 +234,7 @@ class Pupil:
         return [first, last]
 
     def _plan_kept(self) -> list[Stage]:
-        """What was refused is wanted all the same."""
+        """Keep refused changes in the plan."""
         rows = [draft.rows[0] for draft in self.page.drafts if draft.stays]
         return [lambda text, caret: ([row + " " * (row in rows) for row in text], caret, False)]
 

@@ -1,4 +1,4 @@
-"""From a text to operations: what a person would say is the same instruction keeps its id."""
+"""From a text to operations: an instruction that a person would consider the same keeps its id."""
 
 from __future__ import annotations
 

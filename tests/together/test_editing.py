@@ -1,9 +1,9 @@
-"""What an editor makes of the answers of the page's Python, which come late.
+"""An editor's handling of late answers from the page's Python.
 
-Two editors are typed into, character by character, while answers are on their way. What was typed
-meanwhile in another line stays; in the same line the answer is void, and the next one goes on from
-the one before. A page may be loaded again at any time: what hangs on nothing stays in its text. In
-the end both have the same program.
+Two editors are typed into, character by character, while answers are on their way. Text typed
+meanwhile in another line stays; in the same line the answer is void, and the next one continues
+from the one before. A page may be reloaded at any time: loose blocks stay in its text. In the end
+both have the same program.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ TURNS = 150
 
 
 class Editor:
-    """The text with a caret, and what `together.js` does with it."""
+    """The text with a caret, and the actions of `together.js` on it."""
 
     def __init__(self, name: str, program: SharedProgram) -> None:
         self.program = program
@@ -38,7 +38,7 @@ class Editor:
         self.begin(None)
 
     def begin(self, kept: Json | None) -> None:
-        """Join the group, with what the page has kept of before it was loaded again."""
+        """Join the group, with the page's stored data from before a reload."""
         self.at, self.is_hot = 0, False
         self.keys: list[str] = []  # that are to be pressed
         self.news: list[Json] = []
@@ -93,8 +93,8 @@ class Editor:
         self.news.append(json.loads(json.dumps(news)))
 
     def types(self, chance: Random) -> bool:
-        """Press a key, of an instruction below a line, of one that hangs on nothing, or any; return
-        whether a line is finished.
+        """Press a key: of an instruction below a line, of a loose one, or any; return whether a
+        line is finished.
         """
         if not self.keys and chance.random() < 0.7:
             end = self.text.find("\n", chance.randint(0, len(self.text)))
@@ -144,7 +144,7 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
             answer = editor.step()
         row = editor.text.split("\n")[editor.line]
         editor.take(answer)
-        if editor.is_hot:  # nobody touches the line being typed
+        if editor.is_hot:  # no one else edits the line being typed
             assert editor.text.split("\n")[editor.line] == row
         if chance.random() < 0.1:
             loose = editor.loose

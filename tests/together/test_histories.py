@@ -1,10 +1,9 @@
-"""However pages edit one program, in whatever network: all end the same, and it is what they wrote.
+"""However pages edit one program, in any network, all end with the same text: the one typed.
 
 Pages write with blocks and with the keyboard, undo, cut, paste and give up; messages take up to
 five seconds, are lost, come twice; pages are away for up to a minute and are loaded again; the
-class's computer goes on from its journal. Again and again the program parses, is what its blocks
-say and what is compiled, has no value that nobody typed, nothing twice, and lacks nothing but what
-somebody deleted.
+class's computer goes on from its journal. At every check, the program parses, agrees with its
+blocks and its compiled form, has only typed values, no duplicates, and lacks only deleted parts.
 
 `python -m tests.together.test_histories 10000` has 10,000 deeds; `--lessons` has pupils that work
 near each other, at ordinary speed, and prints how many changes are refused.
@@ -71,7 +70,7 @@ def history(seed: int, deeds: int, pages: int) -> World:
 
 
 def lesson(seed: int, pages: int, lesson_s: float = LESSON_S) -> World:
-    """Play pupils of a class, who make a change each three seconds, within a few lines."""
+    """Play pupils of a class who each make a change every three seconds, within a few lines."""
     world = World(pages, seed, lambda chance: chance.uniform(0.03, 0.12), 0.0, 0.05, spread=0.0)
     chance = world.chance
 

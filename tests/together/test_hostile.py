@@ -1,4 +1,4 @@
-"""Whatever a page sends: it is refused, or the program is one, and the journal and pages agree."""
+"""Whatever a page sends, it is refused or the program stays valid, and journal and pages agree."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a class's computer has decided is on its disk before anybody hears of it."""
+"""A decision of a class's computer is on its disk before anyone hears of it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def same(one: SharedProgram, other: SharedProgram) -> bool:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, seed: int) -> None:
-    """All that was told is there; of a row that a crash has cut off nobody had heard."""
+    """All announced changes are there; a row that a crash has cut off was never announced."""
     path, chance = tmp_path / "journal", Random(seed)
     journal, program = begin_journal(path)
     sizes = [path.stat().st_size]
@@ -81,7 +81,7 @@ def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
 def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, says_so: str
 ) -> None:
-    """A system says so when it is written to, by what it has taken, or when it is to be lasting."""
+    """A system reports it at a write, by the number of written bytes, or at the sync."""
     path = tmp_path / "journal"
     journal, program = begin_journal(path)
     write = os.write

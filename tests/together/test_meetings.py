@@ -258,7 +258,7 @@ def test_a_page_that_is_loaded_again_goes_on(two: Two) -> None:
     two.sends(two.luz)
     two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
     assert two.ana.lines[two.ana.caret] == "  W(9)"
-    two.ana.leave()  # nobody has continued that line
+    two.ana.leave()  # no one has continued that line
     assert "F(2, 80)" in two.meet()
     assert "W(1)" in two.meet()
     assert "L(3, 60)" in " ".join(two.ana.lines)
@@ -311,8 +311,8 @@ def program_of(page: Page) -> list[str]:
 
 
 def story(seed: int, makes_copies: bool) -> list[Any]:
-    """Return what is seen of Ana's page, where it goes on as a copy each time, or as it is. What is
-    done to the one before is nobody's."""
+    """Return the view of Ana's page, continued as a copy each time, or as it is. Changes to the old
+    one belong to nobody."""
     chance, other_chance, two = Random(seed), Random(seed), Two(FLAT)
     seen = list[Any]()
     for _ in range(40):
@@ -345,7 +345,8 @@ def test_a_copy_goes_on_as_the_page_itself_and_hears_nothing_of_it(seed: int) ->
 
 @pytest.mark.parametrize("seed", range(20))
 def test_what_is_typed_before_and_after_any_reload_is_the_program(seed: int) -> None:
-    """Whatever of it was sent, heard or lost then: nothing is refused, lost or there twice."""
+    """Whichever messages were sent, received or lost then, no text is refused, lost or
+    duplicated."""
     chance, two = Random(seed), Two(FLAT)
     for _ in range(60):
         typed = program_of(two.ana)
@@ -373,7 +374,7 @@ def data(page: Page) -> Any:
 
 
 def test_a_page_whose_tree_is_another_one_asks_for_the_whole(two: Two) -> None:
-    two.ana.base.node_by_id[two.find("F(1, 80)")].text = "F(9, 80)"  # whatever has done that
+    two.ana.base.node_by_id[two.find("F(1, 80)")].text = "F(9, 80)"  # whatever the cause
     two.hears(two.ana)
     assert two.ana.is_astray
     two.ana.receive(two.program.news("a", -1, two.ana.epoch))

@@ -1,6 +1,6 @@
 """A clock, a class's computer, pages with pupils, and a network that delays, loses and breaks off.
 
-What must be true of the program is looked at as often as wanted.
+The program's invariants can be checked at any time.
 """
 
 from __future__ import annotations
@@ -167,7 +167,7 @@ class World:
             self.at(self._asks_s, self.ask, name, self.turn[name])
 
     def reload(self, name: str) -> None:
-        """The page is loaded again; it has what its browser has kept."""
+        """The page is reloaded; it has the data stored in its browser."""
         pupil = self.pupils[name]
         pupil.page.flush()
         kept = self._send_and_parse(pupil.page.store_data())
@@ -189,7 +189,7 @@ class World:
         self.counts["crashes"] += 1
         self.program.epoch = f"e{self.counts['crashes']}"
 
-    # -- what must be true ------------------------------------------------------------------------
+    # -- laws -------------------------------------------------------------------------------------
 
     def settle(self) -> None:
         """Everybody comes to an end, and hears all."""
@@ -217,7 +217,7 @@ class World:
         round_tripped = format_blocks(read_blocks(text, KIT)).text
         one, other = compile_text(_whole(text), KIT), compile_text(_whole(round_tripped), KIT)
         assert one.image and one.image == other.image, (text, round_tripped, one.diagnostics)
-        # Nobody's values were mixed; nothing is there twice.
+        # No two pupils' values were mixed; no node is there twice.
         for node in tree.node_by_id.values():
             assert node.text in self.typed or node.id in (ROOT, START), node.text
             assert not node.note or node.note in self.typed, node.note
@@ -248,7 +248,7 @@ class World:
             assert "\n".join(page.lines) == text_of(tree).rstrip("\n")
 
     def check_nothing_is_lost(self) -> None:
-        """What was ever there is there, or a delete or an unwrap has taken it."""
+        """Every node is still there unless a delete or an unwrap removed it."""
         alive = set(self.first)
         for taken in self.all_taken:
             for operation in taken.operations:

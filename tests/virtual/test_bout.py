@@ -1,4 +1,4 @@
-"""A robot and its rivals in a ring: they push each other, and none is ever inside another."""
+"""A robot and its rivals in a ring: they push each other, and they never overlap."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def bout(text: str, robot: str = "sumo") -> Bout:
 
 
 def draw_crowded_world(draw: random.Random) -> World:
-    """Rivals, walls and a robot, none in another."""
+    """Rivals, walls and a robot, without overlaps."""
     text = RING.replace("border = false", f"border = {draw.choice(['true', 'false'])}")
     for x, y in draw.sample([(100, 60), (100, 100), (140, 120), (90, 150)], draw.randint(1, 3)):
         text += (
@@ -62,7 +62,7 @@ def draw_crowded_world(draw: random.Random) -> World:
 
 
 def powers(draw: random.Random) -> list[tuple[int, float, float]]:
-    """Times in ms and what the motors get from then on."""
+    """Times in ms, and the powers of the motors from then on."""
     times = sorted(draw.sample(range(8000), 12))
     return [(ms, draw.randint(-100, 100), draw.choice([100, 60, 0, -80])) for ms in times]
 
@@ -141,7 +141,7 @@ def test_no_body_is_ever_inside_another(seed: int) -> None:
 @pytest.mark.parametrize("power", [20, 60, 100])
 @pytest.mark.parametrize("heading", [0, 30, 90, 180])
 def test_a_rival_that_is_pushed_goes_where_it_is_pushed(heading: int, power: int) -> None:
-    """Whichever way it stands: with its wheels most of all, aside the least."""
+    """This holds for any orientation: it moves most along its wheels, least sideways."""
     driving = bout(RING + ASLEEP.replace("180", str(heading)))
     [pose_before] = driving.rivals
     driving.set_motors(0, power, power)
@@ -211,7 +211,7 @@ def test_a_rival_stays_in_a_ring_where_nobody_pushes_it() -> None:
             assert math.dist(rival[:2], (100, 100)) < 80
 
 
-# -- what is sensed --------------------------------------------------------------------------------
+# -- sensing ---------------------------------------------------------------------------------------
 
 
 def test_a_distance_sensor_sees_where_a_rival_is() -> None:
@@ -258,7 +258,7 @@ def test_what_is_black_and_what_is_white() -> None:
 
 @pytest.mark.parametrize("power", [40, 60, 100])
 def test_the_edge_is_seen_before_the_robot_is_out(power: int) -> None:
-    """Wherever it drives to, and in time to stop: at full speed, too."""
+    """This holds in every direction, in time to stop, even at full speed."""
     draw = random.Random(power)
     world = worlds.load("sumo")._replace(rivals=())
     [ring] = world.rings

@@ -1,4 +1,4 @@
-"""Moves by centimetres and degrees: how far and how straight robots go, and what ends such a move.
+"""Moves by centimetres and degrees: how far and how straight robots go, and how such a move ends.
 
 The firmware is the robot's own. Most have a disc on each wheel; wheels, motors and discs are those
 of `virtual/wheels.py`. Those without discs go as long as `tsc run` says.
@@ -122,7 +122,7 @@ def test_a_kit_without_speed_measures_too_and_power_0_is_a_fault() -> None:
     f"{WAY}; SHOW(1)\nTASK\nW(0.5); S\nEND_TASK",
 ])  # fmt: skip
 def test_what_ends_a_move_early_ends_it_at_once(text: str) -> None:
-    """Without a correction: what it rolls on stays."""
+    """There is no correction: the distance that it rolls on remains."""
     robot, talk = started_robot(text)
     talk.wait(540)
     assert "MOTORS 0 0" in " ".join(trace(robot.take_events()))
@@ -215,7 +215,7 @@ def test_a_way_that_is_interrupted_is_as_long_and_as_straight(
 def test_what_an_interruption_drives_is_not_a_part_of_the_way(
     body: str, more_cm: float, off_cm: float
 ) -> None:
-    """Not exactly: how far a wheel that is driven meanwhile would have rolled is a guess."""
+    """The result is not exact: how far a wheel driven meanwhile would have rolled is a guess."""
     for seed in (1, 2, 3):
         robot, talk = started_robot(interrupt_moves("F(100 CM, 60)", 3, body), seed)
         talk.wait(13_000)
@@ -340,7 +340,8 @@ def test_a_disc_whose_channels_are_exchanged_ends_the_move(
 
 @pytest.mark.parametrize(("profile", "sees"), [(TWO, False), (TWO_CHANNELS, True)])
 def test_a_hand_that_turns_a_wheel_back(profile: Robot, sees: bool) -> None:
-    """With two channels the wheel repeats that distance. With one it seems to have gone ahead."""
+    """With two channels the wheel repeats that distance. With one channel, it seems to have gone
+    ahead."""
     robot, talk = started_robot(WAY, profile=profile)
     one = wheel(robot, 0)
     begun_cm = one.turned_cm
@@ -397,7 +398,7 @@ def test_a_robot_without_discs_tells_no_noise() -> None:
 
 
 def hold(one: Wheel, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Somebody holds a wheel: it neither turns nor shows an edge."""
+    """A person holds a wheel: it neither turns nor shows an edge."""
     one.speed = 0.0
     monkeypatch.setattr(one, "step", lambda has_two: 0.0)
 

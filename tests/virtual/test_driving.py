@@ -1,4 +1,4 @@
-"""A body among obstacles, and what its sensors say there: worked out by hand."""
+"""A body among obstacles, and the readings of its sensors there, calculated by hand."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def test_the_end_of_a_wall_that_catches_a_side_of_it_does_not_hold_it(aside: flo
 @pytest.mark.parametrize("robot", [TINIBOT, LINER, GRABBER], ids=lambda robot: robot.name)
 @pytest.mark.parametrize("powers", [(100, 100), (100, 90), (-100, -80), (100, -100), (90, 0)])
 def test_nothing_is_driven_through(robot: Robot, powers: tuple[int, int]) -> None:
-    """Not in a corner, not past the end of a wall, however long it pushes."""
+    """This holds in a corner and at the end of a wall, however long it pushes."""
     world = floor("[[walls]]\npoints = [[20, 140], [120, 140], [120, 160]]\n")
     for heading in range(0, 360, 40):
         drive = driving(world, Pose(60, 100, heading), robot)

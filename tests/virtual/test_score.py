@@ -1,4 +1,4 @@
-"""Flags, points and stars of a world: what counts, and that each shipped task has three stars."""
+"""Flags, points and stars of a world: the rules, and that each shipped task has three stars."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """After any history, a virtual robot acts like one that was just switched on in its place.
 
 A random program ends, or is ended in a random way at any moment; then comes another one. A second
-robot begins in a world whose start is the place where the first one stands by then: both do the
-same at the same times, see the same, and arrive at the same place.
+robot begins in a world whose start is the current place of the first one: both do the same at the
+same times, see the same, and arrive at the same place.
 
 `python -m tests.virtual.test_second_run 2000` tries more.
 """

@@ -1,4 +1,4 @@
-"""A virtual robot in time: whatever its clients do, the robot goes on."""
+"""A virtual robot in time: whatever its clients do, the robot continues."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_clients_come_and_go(simulator: Simulator) -> None:
             until(simulator, lambda: simulator.transports.is_connected)
         until(simulator, lambda: not simulator.transports.is_connected)
     assert simulator.transports.visit_count == 30
-    # Only reachable from this computer.
+    # It is reachable only from this computer.
     assert simulator.transports._server.getsockname()[0] == "127.0.0.1"
 
 

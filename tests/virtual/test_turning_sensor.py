@@ -27,7 +27,7 @@ def with_neck(low: int = 0, high: int = 180) -> Robot:
 
 @pytest.mark.parametrize(("low", "high"), [(0, 180), (-90, 90), (20, 160)])
 def test_it_reads_what_a_sensor_reads_that_looks_there(low: int, high: int) -> None:
-    """Anywhere in a world, and whatever its range is called: the middle is where it looks ahead."""
+    """This holds anywhere in a world, for any names of its range: in the middle, it looks ahead."""
     necked_robot, world = with_neck(low, high), worlds.load("obstacles")
     draw = random.Random(3)
     readings = set()
@@ -48,7 +48,7 @@ def test_it_reads_what_a_sensor_reads_that_looks_there(low: int, high: int) -> N
 
 
 def test_it_stays_as_it_is_when_its_servo_is_released() -> None:
-    """A stop lets go of the servo, which nothing then turns back."""
+    """A stop releases the servo, which then does not turn back."""
     robot = VirtualRobot(with_neck(), worlds.load("maze"), Settings(1))
     talk = Talk(robot)
     ahead = robot.sensing.peek(0, robot.pose)

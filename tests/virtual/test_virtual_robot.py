@@ -48,15 +48,15 @@ PROGRAMS = {
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_it_does_what_tsc_run_says(name: str) -> None:
-    """With the same readings, each line of the trace and each time agree.
+    """The readings, each line of the trace and each time agree.
 
-    On a line that takes no time: else what it shows waits until the receipt is gone.
+    The line takes no time; otherwise its values would wait until the receipt is sent.
     """
     robot = robot_in(worlds.load("obstacles"), baud=0)
     talk = Talk(robot)
     assert talk.upload(PROGRAMS[name]).status == 0
     talk.wait(20_000)
-    assert robot.offset is None  # nothing runs
+    assert robot.offset is None  # no program runs
     events = robot.take_events()
     lines = trace(events)
     readings: dict[int, list[int]] = {}
@@ -278,7 +278,7 @@ def test_a_bad_line_is_the_same_with_the_same_seed_and_loses_nothing_in_order() 
 
 
 def test_a_running_robot_goes_on_by_itself() -> None:
-    """Python is not called while nothing happens."""
+    """Python is not called between events."""
     robot = robot_in(worlds.load("obstacles"))
     Talk(robot).upload("SI|F(50, 1)", is_detached=True)
     request_count = 0

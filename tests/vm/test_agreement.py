@@ -30,7 +30,7 @@ BATCHES = 160  # batches of the tests, of which a commit runs one; a campaign ru
 
 
 def check_machine(program: RandomProgram, name: str, machine: Machine) -> None:
-    """A machine does what the oracle says."""
+    """Check that a machine agrees with the oracle."""
     for how, image in (("", program.short.image), (", plain", program.plain.image)):
         trace = machine(image, program.kit, program.senses)
         assert same(program.want, trace), f"{name}, seed {program.seed}{how}:\n{program.text}"
@@ -53,7 +53,7 @@ def check_program(seed: int) -> None:
 
 
 def check_broken(seed: int) -> None:
-    """A broken text is refused by both, or by neither, and always said in words."""
+    """Both refuse a broken text, or neither does, and there is always a message."""
     rng = random.Random(seed)
     oracle_kit, kit = KITS[seed % len(KITS)]
     text = programs.break_text(rng, programs.program(rng, oracle_kit))

@@ -36,7 +36,8 @@ def expect(case: Case, part: str, actual: str, request: pytest.FixtureRequest) -
 
 @each_row("case", having("tiniscript"))
 def test_program_compiles_or_its_mistake_is_stated(case: Case) -> None:
-    """A program without a `mistake` fence has none; nothing in a document is wrong by accident."""
+    """A program without a `mistake` fence has none, so no program in a document is wrong by
+    accident."""
     compilation = compile_case(case)
     assert compilation.is_right == ("mistake" not in case.parts), [
         p.code for p in compilation.diagnostics

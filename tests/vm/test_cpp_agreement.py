@@ -138,7 +138,7 @@ def check_three(first: int) -> int:
     ["PUSH_TRUE", "PUSH_VAR", "ADD_VAR", "READ", "MOVE8_F", "MOTORS8", "STOP", "FOREVER", "DEF"],
 )
 def test_codes_of_three_bytes_that_begin_alike(name: str) -> None:
-    """A sample of `--three`: what begins with an instruction of one, two or three bytes."""
+    """A sample of `--three`: codes that begin with an instruction of one, two or three bytes."""
     assert check_three(BY_NAME[name].code) > 0
 
 
@@ -155,7 +155,7 @@ def test_random_codes(seed: int) -> None:
 
 
 def test_whatever_the_code_the_machine_keeps_to_its_memory() -> None:
-    """Code that no verifier has seen: it ends, waits or faults; sanitizers see what else."""
+    """Unverified code ends, waits or faults; sanitizers notice everything else."""
     endings: Counter[str] = Counter()
     for code in random_codes(1, 20_000):
         run = host().run_unverified(code, WIDE, Senses(max_ms=MAX_MS, max_steps=MAX_STEPS))
@@ -296,7 +296,8 @@ def test_images_of_programs(seed: int) -> None:
 
 
 def test_needs_count_and_not_the_minor_version() -> None:
-    """Code that has what the image does not need is refused, in a header of each minor version."""
+    """Code with features that the image does not declare is refused, in a header of each minor
+    version."""
     for text, bit in (("TASK;END_TASK;SHOW(1)", TASKS), ("F(2 CM, 100);SHOW(1)", GO)):
         whole = compile_text(text, KIT).image
         assert (whole[2:4], whole[14]) == (b"\2\1", bit)

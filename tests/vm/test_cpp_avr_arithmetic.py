@@ -1,7 +1,7 @@
 """A hundred thousand operations on a simulated ATmega328P, against `fixed_point.py`.
 
 The chip makes the numbers itself, in the way that `pairs` does, and says a checksum for each block
-of results. Where one differs, the chip is asked for that block again, result by result.
+of results. If one differs, the chip is asked for that block again, result by result.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Operation(NamedTuple):
     b: int
 
     def result(self) -> tuple[int, int]:
-        """Return the number of the fault, or 0, and what Python calculates."""
+        """Return the number of the fault, or 0, and Python's result."""
         if self.name != "RANDOM":
             return python_result(self.name, self.a, self.b)
         state = fixed_point.next_random(self.b % 2**32 | 1)
@@ -80,7 +80,7 @@ def checksum(block: Sequence[Operation]) -> int:
 
 
 def compare(seed: int, blocks: int = BLOCKS) -> None:
-    """Assert that the chip calculates what Python does; name the operation if it does not."""
+    """Assert that the chip calculates like Python, or name the operation."""
     every = operations(seed, blocks)
     results = [int(line) for line in chip(seed, blocks)]
     assert len(results) == blocks

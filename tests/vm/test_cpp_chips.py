@@ -170,7 +170,8 @@ def test_code_that_changed_after_it_was_verified(chip: str) -> None:
 
 @some_chips(avr.UNO)
 def test_loops_count_beyond_65535(chip: str) -> None:
-    """With a nested loop, and with a long body: a counter has 24 bits, in registers and memory."""
+    """The test uses a nested loop and a long body: a counter has 24 bits, in registers and in
+    memory."""
     kit = KITS[0][1]
     far = f"IF(X < 0); {'Y = Y + 1; ' * 130} ENDIF; Y = X;"
     for body in ("LOOP(1); Y = X; END_LOOP;", far):
@@ -264,9 +265,7 @@ def test_hard_programs_with_tasks(chip: str, name: str) -> None:
 
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
 def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
-    """Nothing else ends a tick there. The calls have all low bytes of an address, in a long
-    loop.
-    """
+    """Only this ends a tick there. The calls have all low bytes of an address, in a long loop."""
     calls = "D;" * 130
     text = f"A = 0;DEF D;A = A + 1;END_DEF;TASK;LOOP(2);{calls}END_LOOP;SHOW(A);END_TASK"
     image = compile_text(text, cpp_checks.KIT).image

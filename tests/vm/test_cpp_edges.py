@@ -120,7 +120,7 @@ def test_everything_has_a_place_of_its_own() -> None:
     compare_verdicts(host(), [code], MOST_DEVICES, 0)
     ending = compare_runs(host(), code, kit, senses)
     assert ending == "DONE", ending
-    # joins beside a procedure
+    # joins in addition to a procedure
     code = calls_in_calls(1)
     for k in reversed(range(JOINS)):
         code += simple("PUSH_TRUE") + jump("AND_THEN", True, 4 * k + 1)

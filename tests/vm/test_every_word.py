@@ -1,9 +1,9 @@
-"""Every word of the language and of a kit, at every limit: for all it is a program, or for none.
+"""Every word of the language and of a kit, at every limit: all accept it as a program, or none.
 
-Each stands in the deepest block of each kind and one deeper, in tasks, in a DEF and after an
-UNTIL, and its arguments at and beyond their edges. The oracle says what is right and what a robot
-does; the compiler, the machines, the formatter, the blocks, the robot's reader of text and the
-sketch have to agree. The words come from the table: what one of these lacks fails by itself.
+Each stands in the deepest block of each kind and one deeper, in tasks, in a DEF and after an UNTIL,
+and its arguments at and beyond their edges. The oracle decides what is correct and how a robot
+behaves; the compiler, the machines, the formatter, the blocks, the robot's reader of text and the
+sketch must agree. The words come from the table, so a missing one fails automatically.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ def frames() -> Iterator[str]:
     yield from ("W(FOREVER) UNTIL(TRUE);{}", "F(2, 80) UNTIL(TIME > 0.1)\n{}")
 
 
-# -- what stands there ----------------------------------------------------------------------------
+# -- possible content ------------------------------------------------------------------------------
 
 
 def uses_of(word: Word) -> list[str]:

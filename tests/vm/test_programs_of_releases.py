@@ -3,8 +3,8 @@ Breaking.
 
 `programs_of_0_2_0.txt` has the programs of the documents, examples, cases, lessons and pupils of
 that version, with the trace that its `tsc run` printed: a row `= robot`, the program, and rows of
-the trace after `>`. Of a long one the first rows, how many there are, and the checksum of all. A
-later file has the programs that no earlier one has.
+the trace after `>`. For a long trace, this has the first rows, the number of rows, and the checksum
+of all. A later file has the programs that no earlier one has.
 
 `python -m tests.vm.test_programs_of_releases` writes the file of this version, which a release does
 once: afterwards it only grows old.

@@ -1,4 +1,4 @@
-"""Readings that take time, and who has the motors then: on every machine.
+"""Readings that take time, and the owner of the motors meanwhile: on every machine.
 
 A move's UNTIL is not looked at while a higher task has the motors; when its task has them back, it
 is looked at anew.
@@ -96,7 +96,7 @@ def test_a_look_that_waits_for_an_echo_is_over_when_the_motors_are_taken(machine
 
 @each_machine
 def test_nor_is_a_first_look_gone_on_with_while_a_higher_task_has_the_motors(machine: Run) -> None:
-    """Its task had nobody above when it came to the move; the M before it is over then."""
+    """No higher task existed when its task reached the move; the M before it is then over."""
     image = compile_text(
         """W(0.05)
 TASK;W(0.02);B(0.1, 50);END_TASK
@@ -120,7 +120,7 @@ TASK;M(20, 30);F(FOREVER, 40) UNTIL(LIGHT_L > 5 AND DISTANCE < 10);SHOW(1);END_T
 
 @each_machine
 def test_a_wait_is_looked_at_whoever_has_the_motors(machine: Run) -> None:
-    """The same holds for the condition of a WHEN, or anything else that reads."""
+    """The same applies to the condition of a WHEN, and to everything else that reads."""
     image = compile_text(
         """TASK;W(0.02);B(0.2, 50);END_TASK
 TASK;W(FOREVER) UNTIL(DISTANCE < 10);SHOW(1);END_TASK
@@ -143,7 +143,7 @@ F(0.01, 20);X = DISTANCE;SHOW(2);W(1)""",
 
 
 def check_program(seed: int, machines: Sequence[Run]) -> None:
-    """Machines do what the oracle does, with tasks and readings that come late."""
+    """Check that machines agree with the oracle, with tasks and late readings."""
     rng = random.Random(seed)
     text, readings = rng.choice((task_program, rival_program))(rng)
     pace = a_pace(rng)

@@ -104,7 +104,7 @@ def test_the_module_imports_the_robot_alone() -> None:
 
 
 def both(tsc: Tsc, *arguments: str) -> tuple[int, str, str]:
-    """Assert that both machines print the same and end alike; return what they do."""
+    """Assert that both machines print the same and end in the same way; return their trace."""
     ours = tsc("run", *arguments)
     theirs = tsc("run", "--machine", "cpp", *arguments)
     assert (theirs.code, theirs.out, theirs.err) == (ours.code, ours.out, ours.err)
@@ -124,7 +124,7 @@ def test_a_fault_has_its_line(tsc: Tsc) -> None:
     [("W(2147483.647);W(0.001)", 2**31), ("W(2147483.647);W(2147483.647);W(3)", 2**32 + 2998)],
 )
 def test_time_is_over_for_good(waits: str, at_ms: int, tsc: Tsc) -> None:
-    """Once it is too large for a number, it stays so: a clock of 32 bits wraps around."""
+    """A time that is too large for a number stays too large: a clock of 32 bits wraps around."""
     _, out, _ = both(tsc, "-e", f"SI|{waits};SHOW(TIME)", "--max-time", "9999999")
     assert out == f"{at_ms} FAULT OVERFLOW\n"
 
@@ -185,7 +185,7 @@ def test_functions_are_called_alike_where_wasmtime_is_known_inside_or_not(
         calls["negative"](1)
 
 
-# -- what it refuses ----------------------------------------------------------------------------
+# -- refusals --------------------------------------------------------------------------------------
 
 
 def test_refused_images() -> None:
@@ -273,7 +273,7 @@ def test_a_slow_robot_and_any_beginning(begin_ms: int, budget: int) -> None:
             status = machine.tick(now_ms, budget)
             calls.append((status, now_ms, machine.wake_ms, machine.steps, machine.at))
             if status == WAITING:
-                machine.tick(machine.wake_ms - 1, budget)  # too early: that changes nothing
+                machine.tick(machine.wake_ms - 1, budget)  # too early: that has no effect
                 now_ms = machine.wake_ms
         runs.append((calls, robot.calls, machine.fault))
     assert runs[0] == runs[1]
@@ -321,7 +321,7 @@ class Narrow(Slow):
 
 
 def test_both_machines_say_which_show_a_value_is_of() -> None:
-    """For random tasks, whose values wait while others continue."""
+    """The tasks are random; their values wait while others continue."""
     from tiniscript.vm.wasm import WasmImage
 
     kit, waited = KITS[0][1], 0

@@ -130,7 +130,7 @@ def test_every_pin_is_in_the_table_and_in_the_drawing_and_every_wire_has_a_row(
 
 @each_robot
 def test_each_rail_has_one_tag_at_the_board(robot: Robot) -> None:
-    """The tag is beside the first of its pins; other tags are at parts, some of which have
+    """The tag is next to the first of its pins; other tags are at parts, some of which have
     several.
     """
     plan = plan_of(robot, "en")
@@ -189,8 +189,8 @@ def test_a_battery_has_the_resistors_that_its_range_asks_for() -> None:
 def test_no_pin_gets_more_than_it_takes(name: str) -> None:
     """The voltage from a 5 V part to the pin, through its resistors.
 
-    Seen from the pin there is `series_resistor`, then `ground_resistor`, then `far_resistor`:
-    nothing flows through `series_resistor`, so the pin has the volts of the middle.
+    From the pin there is `series_resistor`, then `ground_resistor`, then `far_resistor`: no current
+    flows through `series_resistor`, so the pin has the voltage of the middle.
     """
     plan = plan_of(robots.load(name), "en")
     is_3v3 = robots.load(name).board.chip.startswith("esp32")
@@ -417,7 +417,7 @@ def test_a_gripper_is_drawn_around_its_button_and_another_servo_has_an_arm() -> 
         assert len(jaws) == 2
         x, y = places_of(plan, grabber.body.places["BUTTON"])
         for side, points in zip((-1, 1), jaws, strict=True):
-            assert all((point[0] - x) * side > 9 for point in points)  # beside the button's circle
+            assert all((point[0] - x) * side > 9 for point in points)  # next to the button's circle
             assert points[-1][1] < y < points[0][1]  # between a point behind it and one in front
     bare = grabber._replace(body=grabber.body._replace(places={}))
     svg = finished_of(plan_of(bare, "en"))

@@ -1,8 +1,8 @@
 """Prints the figures that `docs/en/figures.md` shows: `python -m tools.bench`, or only those named.
 
 Runs each benchmark as the page names it, as a process of its own, one after the other, and tells
-which of them failed; each fills in the tables of its section (`page`). Takes minutes; times of this
-computer mean something only if nothing else runs.
+which of them failed; each fills in the tables of its section (`page`). It takes minutes; the times
+of this computer mean something only if no other program runs.
 """
 
 from __future__ import annotations

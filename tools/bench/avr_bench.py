@@ -1,6 +1,6 @@
 """Builds a program of `vm_arduino/extras/bench` or `extras/avr`, and runs it on a simulated chip.
 
-Knows avr-g++, simavr, and the flags that users build with; nothing of what the programs do.
+It knows avr-g++, simavr, and the flags that users build with, but nothing about the programs.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """Measures how many bytes of code the programs of the documents and of `examples/` take.
 
-The corpus is each program in a fence `tiniscript` of README.md, bytecode_spec.md, docs/ and the
-lessons that compiles, each text once, and the files of `examples/`; for the robot that its fence
-`senses` names, else for the first shipped one that it compiles for. A statement is one of the IR:
-an arm of an IF is part of the IF, END_... is none, and a DEF, a TASK and a WHEN are one each.
+The corpus consists of each program in a fence `tiniscript` of README.md, bytecode_spec.md, docs/
+and the lessons that compiles, each text once, and of the files of `examples/`. Each is compiled for
+the robot in its fence `senses`, or for the first shipped robot for which it compiles. A statement
+is one of the IR: an arm of an IF is part of the IF, END_... is not one, and a DEF, a TASK and a
+WHEN are one each.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ class Measurement(NamedTuple):
 
 def corpus() -> Iterator[Compilation]:
     """Yield the compiled programs of the documents and examples."""
-    robot_of_text: dict[str, str] = {}  # the robot, or nothing, of each text
+    robot_of_text: dict[str, str] = {}  # the robot of each text, or an empty text
     for path in (*documents(), *sorted(LESSONS.glob("*/*.md"))):
         if CASES not in path.parents:
             for case in read(path):

@@ -1,4 +1,4 @@
-"""Prints sizes of programs, and the time of `tsc compile` beside Python's own.
+"""Prints sizes of programs, and the time of `tsc compile` next to Python's own start-up time.
 
 Sizes are exact. Times on a busy machine are noisy, so they are medians of pairs taken in turn:
 compare ratios, not milliseconds.

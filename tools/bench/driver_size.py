@@ -1,8 +1,8 @@
-"""Prints the flash that each motor driver takes on an Uno, beside that of `tinibot` with it.
+"""Prints the flash that each motor driver takes on an Uno, next to the size of `tinibot` with it.
 
 Builds tinibot with PlatformIO as `firmware_size` does, in a copy of the project, once for each
-driver, with its distance sensor if no shield has pins. What does not fit is what `tsc firmware`
-then builds without tasks.
+driver, with its distance sensor if no shield has pins. If a firmware does not fit, `tsc firmware`
+builds it without tasks.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ SHIELD_SENSOR_PINS = {"trigger": 16, "echo": 17}  # A2, A3
 
 
 def motor_wiring(name: str, robot: Robot) -> Wiring:
-    """Return the motors of a driver, on the first pins that fit and that nothing else has."""
+    """Return the motors of a driver, on the first pins that fit and are free."""
     chip, driver = CHIPS[robot.board.chip], DRIVERS["motors", name]
     settings = {setting.key: setting.default for setting in driver.settings}
     used_pins = {*chip.link_pins, 11, 13, robot.board.start_button}

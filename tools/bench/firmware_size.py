@@ -1,8 +1,8 @@
 """Prints how much flash and RAM the whole sketch takes, for each robot on an Uno and on a Nano.
 
 Builds these environments of `vm_arduino/platformio.ini` with PlatformIO, offline stand-ins
-included; a Mega has six times as much room. RAM is what is always taken; the stack comes on top.
-What the stack leaves free is measured on a simulated board, where that can be built.
+included; a Mega has six times as much room. RAM is the amount that is always used; the stack comes
+on top. The free RAM below the stack is measured on a simulated board, if one can be built.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Sketch(NamedTuple):
 def environments() -> list[str]:
     """Return the names of the environments that build the sketch for an AVR, `mega_grabber`.
 
-    Those of a Nano with a new bootloader build what the others of a Nano do.
+    Those of a Nano with a new bootloader build the same as the others of a Nano.
     """
     config = config_of(PROJECT)
     return [name for name in config.envs() if not name.startswith((NEW_NANO, *SMALLER_ENVIRONMENTS))

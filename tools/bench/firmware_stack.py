@@ -1,8 +1,8 @@
 """The stack usage of the whole sketch at its deepest, on a simulated board.
 
-The RAM is painted before power-on; then everything that goes deep happens, and what nobody has
-written in the end has never been stack. The deepest place of the program and the deepest interrupt
-are measured apart too: that the one comes in the other is rare, and must not matter.
+The RAM is painted before power-on; then all deep calls happen; bytes that keep the paint were never
+stack. The deepest place of the program and the deepest interrupt are measured apart too: that the
+one comes in the other is rare, and must not matter.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def measure(firmware: Path, robot: Robot, board: str, has_breakpoints: bool = Fa
     """Run a firmware through everything that goes deep. Raises RuntimeError if it does not.
 
     `board` is that of the firmware: it may be another one than that of the robot's profile. With
-    breakpoints it reads no text.
+    breakpoints, it reads no text.
     """
     baud = robot.board.baud
     with Uno(
@@ -87,7 +87,7 @@ def surround(uno: Uno, robot: Robot) -> None:
 
 
 def pin(robot: Robot, number: int) -> str:
-    """Return the name of a pin of the profile, whose numbers are those of its own board."""
+    """Return the name of a pin of the profile, numbered as on its own board."""
     first_analog = 54 if robot.board.chip == "mega" else 14
     return f"D{number}" if number < first_analog else f"A{number - first_analog}"
 
@@ -158,7 +158,7 @@ def step_deep(wired_uno: Wired) -> None:
 
 
 def type_deep(uno: Uno, kit: Kit) -> None:
-    """Type lines that take most of the reader and of its answers; nobody else is there.
+    """Type lines that take most of the reader and of its answers; no other client is connected.
 
     Raises RuntimeError if one is not done.
     """

@@ -104,7 +104,8 @@ class Pupil:
 
 
 def serve_class(pipe: Connection) -> None:
-    """Serve one, whose address and code go through the pipe, until something comes back."""
+    """Serve a class, whose address and code go through the pipe, until the pipe receives
+    something."""
     with class_of_many() as class_:
         pipe.send((class_.server.address, class_.room.code))
         begin_s = time.process_time()

@@ -1,8 +1,9 @@
 """Prints how quick a remote control is, from the hand to the motor pins, on a simulated Uno.
 
-Builds the firmware of the robot `tinibot` for each baud, offline stand-ins included. A session says
-what a hand holds: at any moment of its own heartbeat and of the robot's main loop the hand changes
-it, or the line is lost. Cycles are exact; radio modules and USB chips are not in them.
+Builds the firmware of the robot `tinibot` for each baud, offline stand-ins included. A session
+sends the keys that a hand holds: at any moment of its own heartbeat and of the robot's main loop
+the hand changes it, or the line is lost. Cycles are exact; radio modules and USB chips are not in
+them.
 """
 
 from __future__ import annotations

@@ -106,7 +106,7 @@ def measure(firmware: Path, baud: int) -> Figures:
 def measure_start(wired_uno: Wired, wait_ms: int, *, is_live: bool = False) -> tuple[float, float]:
     """Return ms from a frame's first start bit and us from its end to the pins.
 
-    The frame is PROGRAM, or LIVE, which nothing runs before.
+    The frame is PROGRAM, or LIVE with no run before it.
     """
     board, session = wired_uno.uno, wired_uno.session
     image = image_of(SHORT_PROGRAM, KIT)
@@ -132,8 +132,8 @@ def on_each_baud(
 ) -> int:
     """Build the firmware for each baud, and measure it; return the exit code.
 
-    `print_and_check` prints what was found, by baud, and returns whether it is within its limits;
-    it may build more in the folder that it gets.
+    `print_and_check` prints the results, by baud, and returns whether it is within its limits; it
+    may build more in the folder that it gets.
     """
     if why := uno.missing():
         print(why, file=sys.stderr)

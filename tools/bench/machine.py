@@ -1,8 +1,8 @@
 """Prints how fast the C++ machine is: `python -m tools.bench.machine`.
 
 Cycles come from a simulated ATmega328P and are exact: the same sources give the same ones. Every
-run is checked: a machine that shows a wrong value ends the command with an error. What lacks its
-tools has a `-`, and a sentence says which.
+run is checked: a machine that shows a wrong value ends the command with an error. A measurement
+without its tools shows a `-`, and a sentence names the missing tool.
 """
 
 from __future__ import annotations

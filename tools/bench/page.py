@@ -1,7 +1,7 @@
 """The tables of `docs/en/figures.md`: a benchmark fills in those of its section, and no others.
 
-The page is the form: its heads and its rows are what a benchmark prints, with what it has found. A
-row that the page does not show is refused; one that was measured once is left out.
+The page is the template: a benchmark prints its headings and rows, with the results. A row that the
+page does not show is refused; one that was measured once is left out.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Prints how much flash and RAM each part of the firmware takes, on each chip of a robot.
 
-Links a small program once with and once without a use of the part, and takes the difference: what
-other parts use too is in both, and the robot below is counted by neither. Knows the AVR's compiler
-and its flags; `chips.py` knows those of the other chips.
+Links a small program once with and once without a use of the part, and takes the difference: shared
+parts are in both, and the robot below does not count. Knows the AVR's compiler and its flags;
+`chips.py` knows those of the other chips.
 """
 
 from __future__ import annotations

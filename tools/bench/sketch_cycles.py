@@ -2,8 +2,8 @@
 
 The firmware is the one that users put on their boards: the whole of `loop()` comes between the
 machine's instructions, and the interrupts do. A work's loop runs between two changes of a motor
-pin; what these take without the loop is measured too, and taken off. The program goes on without
-tsc, so no frame comes in between. Constants come from a light sensor.
+pin; the time of these without the loop is measured, too, and subtracted. The program goes on
+without tsc, so no frame comes in between. Constants come from a light sensor.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ WORK_MS, SHOW_MS = 10_000, 500
 def text_of(work: Work, has_loop: bool = True) -> str:
     """Return a work as it is measured here: a motor turns for as long as its loop does.
 
-    The sensor always says the first of its readings; what is missing to the others is added.
+    The sensor always returns its first reading; the differences of the others are added.
     """
     readings = iter(work.readings)
 

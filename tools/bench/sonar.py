@@ -1,9 +1,9 @@
-"""Prints what a second ping brings, and what it costs: `python -m tools.bench.sonar`.
+"""Prints the benefit and the cost of a second ping: `python -m tools.bench.sonar`.
 
 The firmware of tinibot on a simulated Uno, with an obstacle that comes at 50 cm/s and one wrong
 sample in fifty, at places that the seed draws; and the same firmware where it trusts each sample,
-as on a Nano. A reading is wrong that is off by more than 20 % and 3 cm. How late it
-knows is counted from the moment at which the obstacle is nearer than 15 cm.
+as on a Nano. A reading is wrong that is off by more than 20 % and 3 cm. The delay is counted from
+the moment at which the obstacle is nearer than 15 cm.
 """
 
 from __future__ import annotations

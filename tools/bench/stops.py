@@ -1,13 +1,13 @@
 """The slowest stop of a busy robot on a simulated chip: from its last byte to the motor pins.
 
-What else the chip does at that moment decides how long a stop takes: an interrupt that is at work,
-or a part of the program that keeps interrupts off. So the last byte is sent at many places: all
-over the period of the clock, more often around the slowest one, and there with an edge of an echo
-just before, or with one of each disc. Meanwhile the robot runs a program that measures, plays,
-sends values and reads text.
+The chip's state at that moment decides how long a stop takes: an interrupt may be running, or a
+part of the program that keeps interrupts off. So the last byte is sent at many points: throughout
+the period of the clock, more densely around the slowest one, and there with an edge of an echo just
+before, or with one of each disc. Meanwhile the robot runs a program that measures, plays, sends
+values and reads text.
 
-No sweep meets all of that at once. So the simulator also tells for how long each place keeps
-interrupts off, and what may come before a stop is added up.
+No sweep meets all of that at once. So the simulator also measures how long each place keeps
+interrupts off, and the delays that may precede a stop are added up.
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ class BusyRobot:
         return self._discs != []
 
     def stop(self, place: Place) -> int:
-        """Return the cycles of a stop whose last byte comes at a place."""
+        """Return the cycles of a stop whose last byte arrives at a given place."""
         chip, session = self.chip, self._wired.session
         require_ok(self._wired, session.clear())
         require_ok(self._wired, session.start())
@@ -175,7 +175,7 @@ def _is_before(place: Masked, received_cycle: int) -> bool:
 
 
 def busy_program(kit: Kit) -> str:
-    """Return a program that measures, moves what can move, plays and sends without end."""
+    """Return a program that endlessly measures, moves, plays and sends."""
     lines = ["X = 0", "LOOP(FOREVER)", "M(80, 80)", *all_devices(kit), "BEEP(0.005, 5000)"]
     return "SI|" + "; ".join([*lines, "SHOW(X * 1.5 / 7)", "X = (X + 1) % 100", "END_LOOP"])
 

@@ -1,9 +1,9 @@
 """The speed of the studio's page: `python -m tools.bench.studio`.
 
 One table, of the system's Chromium on this computer. Each time is the least of several, since other
-work makes a browser slower and never faster. What is fetched comes from this computer. npm fetches
-Lighthouse at the first time: desktop preset, median of five, of the page gzipped, as static hosts
-send it.
+work makes a browser slower and never faster. All files come from this computer. npm fetches
+Lighthouse the first time: desktop preset, median of five, of the page gzipped, as static hosts send
+it.
 """
 
 from __future__ import annotations
@@ -283,7 +283,7 @@ def _processor_s(page: Page) -> float:
 
 @contextmanager
 def _visit(browser: Browser, address: str) -> Iterator[Page]:
-    """A page of a new visitor whose program has been compiled."""
+    """Open a page as a new visitor, and wait for the compiled program."""
     context = browser.new_context(viewport={"width": 1366, "height": 768}, service_workers="block")
     page = context.new_page()
     page.set_default_timeout(120_000)

@@ -1,12 +1,13 @@
 """The duration of a turn, and a WHEN's lateness while others count: `python -m tools.bench.tasks`.
 
-A simulated Uno with the firmware that ships has up to four tasks beside the main one: a WHEN that
+A simulated Uno with the firmware that ships runs up to four tasks besides the main one: a WHEN that
 looks at a light sensor every 20 ms, and others that count and never wait by themselves. The light
-goes on at moments that fit no 20 ms, and each time the WHEN turns the motors on. Its looks lie on a
-grid of 20 ms; what is printed is how far they lie apart on it. The clock of an AVR goes on every
-1.024 ms, so a millisecond is what a single task has, too.
+goes on at moments that fit no 20 ms, and each time the WHEN turns the motors on. Its checks are on
+a grid of 20 ms; the output is the distance between them. The clock of an AVR advances every 1.024
+ms, so even a single task has a millisecond.
 
-And what tasks take of flash and RAM, by part: the functions of the firmware with and without them.
+It also prints the flash and RAM that tasks take, by part: the functions of the firmware with and
+without them.
 """
 
 from __future__ import annotations

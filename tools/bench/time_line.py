@@ -1,8 +1,8 @@
 """The time to show a place on the studio's time line: `python -m tools.bench.time_line`.
 
 A run of ten minutes, at twenty times the speed, in the system's Chromium; then random places on its
-line. A place is shown once the page's main thread has nothing left to do for its next picture: what
-it works until then, times four, is what a processor four times as slow takes. What asking takes is
+line. A place is shown once the page's main thread has finished the work for its next picture: the
+time until then, times four, is that of a processor four times as slow. The cost of measuring is
 left out, and other work on this computer changes nothing.
 """
 

@@ -3,8 +3,8 @@
     python -m tools.bench.upload [runs]
 
 The paper's obstacle program, from the start of the process to the first motor command in the robot:
-where the command opens the port itself, and where `tsc monitor --hold` holds it; beside a process
-that does nothing, in turn. The robot is the whole firmware on this computer, behind a
+with the port opened by the command itself, and with the port held by `tsc monitor --hold`; compared
+in turn with a process that does nothing. The robot is the whole firmware on this computer, on a
 pseudo-terminal.
 
 Then thirty robots: until the last of them moves, and until the last has stopped.
@@ -40,7 +40,7 @@ ROWS = (
 
 
 def environment(folder: str) -> dict[str, str]:
-    """Return the variables of a command that keeps what it caches in a folder."""
+    """Return the variables of a command that uses a folder as its cache."""
     return {"PYTHONPATH": str(ROOT / "compiler"), "XDG_CACHE_HOME": folder, "LC_ALL": "C.UTF-8"}
 
 

@@ -1,7 +1,7 @@
 """The virtual robot's speed compared with a real one: `python -m tools.bench.virtual`.
 
-Each program drives for a minute of the robot's time in this process, with nobody at its port, in
-seconds of the processor.
+Each program drives for a minute of the robot's time in this process, without a client, in seconds
+of processor time.
 """
 
 from __future__ import annotations

@@ -1,13 +1,14 @@
 """The errors of `F(100 CM, 60)` and `R(360 DEG, 60)`: `python -m tools.bench.ways`.
 
-By discs, by time after calibration, and by time without: on virtual robots, 100 seeds each, with
-the firmware itself. Motors differ by 15 %, take 45 to 75 ms to come up to speed, and roll on as
-long; discs of 20 holes have each edge up to a tenth from its place; a wheel slips as much as the
-column says on average. No real floor was seen. Ends with 1 if the limits do not hold at 0.5 %.
+It compares discs, time after calibration, and time without calibration, on virtual robots with the
+firmware itself, 100 seeds each. Motors differ by 15 %, take 45 to 75 ms to come up to speed, and
+roll on as long; discs of 20 holes have each edge up to a tenth from its place; a wheel slips as
+much as the column says on average. No real floor was seen. Ends with 1 if the limits do not hold at
+0.5 %.
 
 `--uno` takes discs alone, and the firmware of an Uno on its simulated chip: the same wheels change
-its pins. That takes 12 s for a seed. `--size` prints what ways take of the flash of an Uno without
-discs.
+its pins. It takes 12 s for a seed. `--size` prints the flash that moves by distance take on an Uno
+without discs.
 """
 
 from __future__ import annotations
@@ -78,7 +79,7 @@ class Robot(Talk):
         return ahead_cm, aside_cm, pose.heading - start_pose.heading
 
     def calibrate(self, seed: int) -> None:
-        """Do what `tsc set trim` does: make it straight, and measure at two powers."""
+        """Calibrate as `tsc set trim` does: make it straight, and measure at two powers."""
         weaker = round(100 * (1 - SLOW_PERCENT / FAST_PERCENT))
         trim = Trim(balance=weaker if seed % 2 else -weaker)
         self.wait_for(self.session.trim(trim.data()))

@@ -1,6 +1,6 @@
-"""The works that the machines are measured with, and what must come out of them.
+"""The workloads that the machines are measured with, and their expected results.
 
-Knows the programs, and what the machine in Python says of them. Does not measure. Constants come
+It knows the programs, and the results of the machine in Python. Does not measure. Constants come
 from a sensor, so that no compiler can fold them.
 """
 
@@ -54,7 +54,7 @@ WORKS = (
         1000,
         "SHOW(D); SHOW(E);",
     ),
-    # S, M, B and L are words of the language: the sum is Y here, and what it meets P, Q and N
+    # S, M, B and L are words of the language: the sum is named Y here, and the others P, Q and N
     Work(
         "C",
         "P = DISTANCE; Q = DISTANCE; N = DISTANCE; A = 0; Y = 0;",

@@ -1,8 +1,8 @@
 """Builds C++ for the chips of ESP boards with Debian's compilers, and says how large it is.
 
 Knows each chip's compiler, linker and emulator, and that no C library is needed:
-`vm_arduino/extras/qemu` has what the compilers call. `tests/machines/qemu.py` runs what is
-built.
+`vm_arduino/extras/qemu` has the functions that the compilers call. `tests/machines/qemu.py` runs
+the results.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Chip(NamedTuple):
     start_file: str  # file with the start code, in `vm_arduino/extras/qemu`
 
 
-# What the LX6 of an ESP32 has: clang knows no name for all of it. QEMU's de233_fpu has no
+# The features of the LX6 of an ESP32: clang has no single name for them. QEMU's de233_fpu has no
 # `mul32high`, so that is left out.
 _LX6 = (
     "bool", "clamps", "coprocessor", "dcache", "debug", "density", "exception", "fp",
@@ -96,7 +96,7 @@ CHIPS = {
 
 
 def why_missing(chip: Chip, can_run: bool = False) -> str:
-    """Return the reason why nothing can be built for a chip, or run on it, or ""."""
+    """Return the reason why building for a chip, or running on it, is impossible, or ""."""
     tools = [chip.compiler, chip.assembler, chip.linker, (chip.measurer,)]
     if can_run:
         tools.append(chip.emulator)
@@ -126,7 +126,8 @@ def build(
 
 
 def measure_size(chip: Chip, probe: str, *modules: str) -> tuple[int, int]:
-    """Return flash and RAM of a C++ program with a `main`, linked with what it uses of the machine.
+    """Return flash and RAM of a C++ program with a `main`, linked with the parts of the machine
+    that it uses.
 
     The program includes from `vm_arduino/src`, and may use these folders there too. Flash is text
     and data, RAM is data and bss.

@@ -1,9 +1,10 @@
-"""Makes the cases of `tsc doctor --conform` in seconds: git keeps none, a release brings them.
+"""Makes the cases of `tsc doctor --conform` in seconds: git keeps none, a release has them.
 
     python -m tools.builds.conformance [FOLDER]
 
 writes `machine.json` and `link.json` into the clone's package, or into the folder of another
-installation, which `tsc doctor --conform` names if it has none. Needs what `tsc` needs.
+installation, which `tsc doctor --conform` names if it has none. It has the same requirements as
+`tsc`.
 """
 
 from __future__ import annotations

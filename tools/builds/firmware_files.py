@@ -1,10 +1,10 @@
-"""Builds the firmware of the shipped robots for a package, so that nobody has to build it again.
+"""Builds the firmware of the shipped robots for a package, so that users need not build it.
 
     python -m tools.builds.firmware_files
 
-puts a file for each robot on each board that it fits, and the notices of what is in them, where
-the package is made from. It builds as `tsc firmware` does, with PlatformIO, offline stand-ins
-included: the same files come out wherever that is, with the same compiler.
+puts a file for each robot on each board that it fits, and the notices of their contents, where the
+package is made from. It builds as `tsc firmware` does, with PlatformIO, offline stand-ins included:
+the same files come out wherever that is, with the same compiler.
 """
 
 from __future__ import annotations
@@ -56,8 +56,8 @@ def shipped_robots() -> list[Robot]:
 
 
 def halting_robots() -> list[Robot]:
-    """Return each shipped robot on each board whose firmware may have breakpoints in the place of
-    the reader of text, which is one in no language."""
+    """Return each shipped robot on each board whose firmware may have breakpoints instead of the
+    reader of text, which then has no language."""
     return [
         robot
         for name in robots.names()
@@ -77,7 +77,7 @@ def build(robot: Robot, target: Path, has_breakpoints: bool = False) -> Path:
 
 
 def build_all(target: Path, licence: Path) -> list[Path]:
-    """Build everything into a folder that has nothing else then."""
+    """Build everything into a folder, which then contains nothing else."""
     if not licence.is_file():
         raise CannotMake(
             f"there is no {licence}: name a copy of the GNU LGPL 2.1 with --licence; "

@@ -2,9 +2,9 @@
 
     python -m tools.builds.function_order     writes the order into `boards/avr/order.ld`
 
-On an AVR a call that leads at most 4 KB far takes two bytes less. An order that is old does no
-harm but to the size: a function that is not in it lies after the others. So run this again when
-the sketch of an Uno comes near to its limit.
+On an AVR a call that leads at most 4 KB far takes two bytes less. An order that is old does no harm
+but to the size: a function that is not in it lies after the others. So run this again when the
+sketch of an Uno approaches its limit.
 """
 
 from __future__ import annotations

@@ -2,9 +2,9 @@
 
     python -m tools.builds.library FOLDER
 
-takes the machine, the link and what they need from `vm_arduino/src`, and what is for sketches from
-`vm_arduino/extras/library`, and compiles the images of the examples. Where its sources are says
-`pyproject.toml`, or --url. `pio pkg pack FOLDER` looks at it, and makes of it what is uploaded.
+takes the machine, the link and their dependencies from `vm_arduino/src`, and the code for sketches
+from `vm_arduino/extras/library`, and compiles the images of the examples. `pyproject.toml` or --url
+names the location of its sources. `pio pkg pack FOLDER` checks it, and makes the upload from it.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def is_ours(folder: Path) -> bool:
 
 
 def make(folder: Path, url: str) -> None:
-    """Write the library into a folder; what was there before is gone."""
+    """Write the library into a folder; earlier content is removed."""
     if folder.exists():
         shutil.rmtree(folder)
     source = folder / "src"

@@ -1,12 +1,12 @@
-"""Lets `pio` work where PlatformIO's registry cannot be reached, with what PyPI and Debian hold.
+"""Lets `pio` work without PlatformIO's registry, with packages of PyPI and Debian.
 
     python -m tools.builds.platformio_offline pio test -e native     runs a command in vm_arduino
     eval "$(python -m tools.builds.platformio_offline)"              for all commands of this shell
 
-Nobody who is online needs it: where the registry answers, or PlatformIO has platforms of its own,
-it changes nothing. Elsewhere it makes stand-ins for two platforms in a folder of its own (below
-.venv), from `tools/builds/platformio_stand_ins`, SCons from PyPI, and Debian's packages. Every
-build says that it uses them. A version that does not match is refused.
+With a network, it is not needed: if the registry answers, or PlatformIO has its own platforms, it
+changes nothing. Otherwise it makes stand-ins for two platforms in its own folder (below .venv),
+from `tools/builds/platformio_stand_ins`, SCons from PyPI, and Debian's packages. Every build says
+that it uses them. A version that does not match is refused.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ def registry_answers() -> bool:
     return bool(answers)
 
 
-# -- what Debian has ----------------------------------------------------------------------------
+# -- Debian's packages -----------------------------------------------------------------------------
 
 
 def check_packages() -> None:
@@ -176,7 +176,7 @@ def check_packages() -> None:
         raise CannotMake(f"{names} missing. Try:  {install} {names}")
 
 
-# -- what does not match ------------------------------------------------------------------------
+# -- mismatches ------------------------------------------------------------------------------------
 
 
 def version_of(stand_in: Path) -> str:
@@ -247,7 +247,7 @@ def add_doctest(folder: Path, project: Path) -> None:
 VERSION_PARTS = ("MAJOR", "MINOR", "PATCH")
 
 
-# -- what is made -------------------------------------------------------------------------------
+# -- results ---------------------------------------------------------------------------------------
 
 
 def stand_ins() -> Path:
@@ -298,7 +298,7 @@ def stand_ins() -> Path:
 
 
 def add_boards(folder: Path) -> None:
-    """Write what PlatformIO knows of each board."""
+    """Write PlatformIO's description of each board."""
     folder.mkdir()
     for value, (name, chip, variant, macro, flash, ram) in BOARDS.items():
         build = {"mcu": chip, "f_cpu": "16000000L", "core": "arduino", "variant": variant,
@@ -329,7 +329,7 @@ def query(program: Path, option: str) -> str:
 def describe(
     folder: Path, manifest: str, kind: str, name: str, version: str, owner: str = "platformio"
 ) -> None:
-    """Write by what PlatformIO knows an installed package: its manifest and `.piopm`."""
+    """Write the files that mark an installed package for PlatformIO: its manifest and `.piopm`."""
     if manifest:
         description = {"name": name, "version": version, "description": "An offline stand-in."}
         (folder / manifest).write_text(json.dumps(description), encoding="utf-8")
@@ -339,7 +339,7 @@ def describe(
 
 
 def make(folder: Path, fill: Callable[[Path], None]) -> None:
-    """Make a folder in one step, so that nobody sees half of it."""
+    """Create a folder atomically."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=folder.parent) as scratch:
         new_folder = Path(scratch) / folder.name

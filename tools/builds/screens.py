@@ -1,6 +1,6 @@
 """Pictures of each screen of the studio, to look at: `python -m tools.builds.screens FOLDER`.
 
-Four sizes, each language, light and dark. They show what is wrong; nobody keeps them.
+Four sizes, each language, light and dark. They show problems; they are not kept.
 """
 
 from __future__ import annotations

@@ -3,8 +3,9 @@
     python -m tools.builds.screenshot
 
 opens the built page (`python -m tools.builds.studio`), runs a program to its end on the virtual
-robot, and keeps what is seen then. A picture carries the words that could be read in it, so that
-`--check` sees without a browser whether the page still says them. It does not see what is new.
+robot, and saves a picture of the result. A picture carries the words that could be read in it, so
+that `--check` sees without a browser whether the page still says them. It does not show new
+content.
 """
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ PUPIL_NAMES = ["Ana", "Beto", "Carla", "Dani", "Elena", "Fabio", "Gabi", "Hugo",
                "Ulises", "Vera", "Wara", "Ximena", "Yago", "Zoe", "Bruno", "Celia", "Emma",
                "Diego"]  # fmt: skip
 PUPIL_PROGRAMS = ("F(1, 80);\n", "F(1, 80);\nR(0.5, 60);\n", PROGRAM.removeprefix("SI|"))
-PUPIL_ADDRESS, RAISED_HAND = "192.0.2.7", 7  # their address, and whose hand is up
+PUPIL_ADDRESS, RAISED_HAND = "192.0.2.7", 7  # their address, and the raised hand
 BREAKPOINT_LINE = 5  # the line of the breakpoint
 VIEWPORT = {"width": 1280, "height": 760}
 GAP = 12  # pixels between the pictures of a sheet
@@ -340,7 +341,7 @@ def _take_more(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     take_shot()
 
 
-# Scenes of several pictures, or beside the program.
+# Scenes of several pictures, or next to the program.
 SHEETS = {
     ".more": _take_more,
     ".wall": _wall,

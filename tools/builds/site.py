@@ -3,9 +3,9 @@
     python -m tools.builds.site site
 
 writes a folder for any static host: a half for each language with a search, `en/` and `es/`,
-`studio/` where its page is built (`python -m tools.builds.studio`), and `files/` with what the
-documents lead to besides. Needs `pip install -e ".[site]"`. A link that leads nowhere ends it, so
-does every warning of Sphinx.
+`studio/` where its page is built (`python -m tools.builds.studio`), and `files/` with the other
+files that the documents link to. Needs `pip install -e ".[site]"`. A link that leads nowhere ends
+it, so does every warning of Sphinx.
 """
 
 from __future__ import annotations
@@ -135,7 +135,7 @@ def stage(half: Path, documents: list[Document], shelf_: Shelf, language: str) -
 
 
 def render(half: Path, folder: Path, documents: list[Document], has_studio: bool) -> None:
-    """Make the pages of one half with Sphinx. Raises CannotMake with what it complains about."""
+    """Make the pages of one half with Sphinx. It raises CannotMake with the complaints."""
     language = folder.name
     language_names = {
         other_language: language_info(other_language).name

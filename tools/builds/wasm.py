@@ -4,7 +4,7 @@
 `robot_esp32.wasm` have the sizes of one with a Mega and with an ESP32, `robot_discs.wasm` has no
 reader of text. Needs the compiler `ziglang`
 from PyPI, in the version that the extra `test` pins: with it, the same sources give the same bytes
-wherever they are. `--check` writes nothing, and says if a file is stale.
+wherever they are. `--check` writes nothing, and reports stale files.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ COMMAND = "python -m tools.builds.wasm"
 # A traced program is followed instruction by instruction.
 COUNTING_FLAG = "-Dtiniscript_counts_instructions"
 
-# No library is linked, so what the machine calls is in its own sources or in wasm itself.
+# No library is linked, so all functions that the machine calls are in its own sources or in wasm
+# itself.
 FLAGS = (
     "-target", "wasm32-freestanding", "-mcpu=generic+bulk_memory+sign_ext", "-std=c++11", "-Oz",
     "-fno-exceptions", "-fno-rtti", "-fno-sanitize=all", "-fno-stack-protector", "-g0", "-nostdlib",
@@ -108,7 +109,7 @@ def why_not_here() -> str:
 def build(sources: Path, module: Module) -> bytes:
     """Return a module made from `sources`, a folder like `vm_arduino`.
 
-    The compiler sees paths inside that folder alone, and keeps nothing from other builds.
+    The compiler sees only paths inside that folder, and reuses nothing from other builds.
     """
     files = [sources / name for name in module.files]
     included_files = set(re.findall(r'#include "\.\./\.\./(\S+\.cpp)"', "".join(map(_text, files))))

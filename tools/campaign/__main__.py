@@ -1,9 +1,9 @@
-"""Tests what the project guarantees, many times: all goals, or those that are named.
+"""Tests the project's guarantees many times: all goals, or the named ones.
 
 `python -m tools.campaign` goes on where the last one ended, until every goal is reached; Ctrl-C
-ends it at once, and all but the piece that was under way is kept. `--list` says what is reached,
-and when; `--minutes 30` ends it after a while. What committed code has reached is written into the
-table of `docs/en/guarantees.md`. Calls the campaigns of the tests; has none of its own.
+ends it at once, and all but the piece that was under way is kept. `--list` prints which goals were
+reached, and when; `--minutes 30` ends it after a while. Results for committed code are written into
+the table of `docs/en/guarantees.md`. It calls the campaigns of the tests and has none of its own.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def run(goals: Sequence[Goal], end_s: float) -> int:
 
 
 def is_reached(goal: Goal, result: Result | None, commit: str) -> bool:
-    """Return whether this code leaves nothing to do for the goal."""
+    """Return whether the goal is already reached for this code."""
     if result is None or not results.is_same_code(goal, result.commit, commit):
         return False
     return not result.wrong and result.done >= goal.target

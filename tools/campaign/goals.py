@@ -27,7 +27,7 @@ class Goal(NamedTuple):
 
     @property
     def code(self) -> tuple[str, ...]:
-        """The code that a figure is about: what it tries, and the campaign itself."""
+        """The code that a figure is about: the tested code, and the campaign itself."""
         return (*self.paths, self.command.split()[0].replace(".", "/") + "*")
 
 

@@ -59,7 +59,7 @@ def current_commit() -> str:
 def is_same_code(goal: Goal, commit: str, other_commit: str = "") -> bool:
     """Return whether two commits, or one and the current files, have the same code of a goal.
 
-    A commit with a `+` is like no other, nor is one that nobody knows here.
+    A commit with a `+` equals no other, and neither does an unknown one.
     """
     commits = [name for name in (commit, other_commit) if name]
     is_known = "+" not in commit + other_commit
@@ -71,7 +71,7 @@ def is_same_code(goal: Goal, commit: str, other_commit: str = "") -> bool:
 def is_old(goal: Goal, result: Result) -> bool:
     """Return whether the code of a goal has changed since its figure.
 
-    Without the project's commits nobody can tell: then it is as the document says.
+    Without the project's commits this is unknown, and the document's word counts.
     """
     if git("rev-parse", "--is-shallow-repository").stdout.strip() != "false":
         return f"| {_figure(goal, result)}{OLD_MARK} |" in _row(goal, DOCUMENT.read_text("utf-8"))

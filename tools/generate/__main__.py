@@ -1,6 +1,6 @@
-"""Writes the generated files: run `python -m tools.generate` after changing what they come from.
+"""Writes the generated files: run `python -m tools.generate` after changing their sources.
 
-Knows which files are generated and from what. `--check` writes nothing, and names what is stale.
+It knows the generated files and their sources. `--check` writes nothing, and names the stale files.
 """
 
 from __future__ import annotations

@@ -49,10 +49,10 @@ def header(command: str) -> str:
 
 
 def handler(code: int) -> str:
-    """Return the label of what a byte does, or `op_none`.
+    """Return the label of a byte's handler, or `op_none`.
 
-    Instructions that differ only in what the bits of their codes say have one: those of a
-    comparator, of a way to drive, of a number in the code.
+    Instructions that differ only in the bits of their codes share one: those of a comparison, of a
+    direction, of a number in the code.
     """
     if code == opcodes.ESCAPE:
         return "op_way"

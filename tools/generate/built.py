@@ -1,8 +1,8 @@
-"""Documents that nobody keeps: they are made for the site and for a USB stick.
+"""Documents that are not committed: they are made for the site and for a USB stick.
 
 Knows which documents a person reads in the repository: of each robot the English page of its
 wiring, and the drawings that some document shows. The command's pages, and wiring in other
-languages, are what `tsc help` and `tsc firmware --wiring` say.
+languages, are the output of `tsc help` and `tsc firmware --wiring`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The pages of `docs/` that list the commands of `tsc` and their options.
 
-Knows Markdown. What is said of each, the tables in `cli/texts/` know.
+Knows Markdown. The tables in `cli/texts/` describe each of them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Makes `cases.cpp` of `vm_arduino/test`: what tests in C++ expect of the machine.
+"""Makes `cases.cpp` of `vm_arduino/test`: the expectations of tests in C++ about the machine.
 
 Knows how the case files become a table of C++: the traces and the refusals of `tests/cases`.
 """

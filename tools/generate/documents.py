@@ -24,7 +24,8 @@ PACKAGE = ROOT / "compiler" / "tiniscript"
 
 
 def architecture_document() -> str:
-    """Return `docs/develop/architecture.md` with its picture, and what each folder says."""
+    """Return `docs/develop/architecture.md` with its picture, and the description of each
+    folder."""
     rows = []
     for path in sorted(PACKAGE.glob("*/**/__init__.py")):
         text = ast.get_docstring(ast.parse(path.read_bytes())) or ""
@@ -92,7 +93,7 @@ def bring_up_document(document: str, language: str) -> str:
 
 
 def language_document(document: str, language: str) -> str:
-    """Return a reference of the language, whose list of words is whole.
+    """Return a reference of the language, with a complete list of words.
 
     It has those with fixed values, and the instructions that no row by hand has.
     """
@@ -150,7 +151,8 @@ def list_of_documents(command: str) -> str:
 
 
 def _link_to(source: str) -> str:
-    """Return the title of a document, with a link to it, and its first sentence, or nothing."""
+    """Return the title of a document, with a link to it, and its first sentence, or an empty
+    text."""
     if not source:
         return ""
     title, sentence = _title_and_readers((ROOT / source).read_text(encoding="utf-8"))

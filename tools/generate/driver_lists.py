@@ -21,7 +21,7 @@ NAME_WIDTH, ROW_WIDTH = 12, 96
 
 
 def with_drivers(profile: Path) -> str:
-    """Return the text of a profile with what each driver says of its keys."""
+    """Return the text of a profile with each driver's description of its keys."""
     text = profile.read_text(encoding="utf-8")
     for used_by, line_end in LINE_ENDS.items():
         rows = "".join(

@@ -1,7 +1,7 @@
-"""The picture at README's front: a program, what `tsc` says of a mistake, and the robot's way.
+"""The picture at README's front: a program, `tsc`'s message about a mistake, and the robot's path.
 
-Knows the layout. What it shows is what happens: the sentences are printed by `tsc`, the way is that
-of the virtual robot, whose firmware runs the program.
+Knows the layout. Everything in it is real: `tsc` prints the sentences, and the path is that of the
+virtual robot, whose firmware runs the program.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ def _colour(part: str) -> str:
 
 
 def _terminal(language: str) -> list[str]:
-    """Return two commands, and what they print."""
+    """Return two commands, and their output."""
     rows = [
         *_console_lines("check", text("documents", "front/wrong", language), language),
         "",
@@ -121,7 +121,7 @@ def _terminal(language: str) -> list[str]:
 
 
 def _console_lines(verb: str, program: str, language: str) -> list[str]:
-    """Return a command as it is typed, and what it prints."""
+    """Return a command as it is typed, and its output."""
     output = StringIO()
     with redirect_stdout(output), redirect_stderr(output):
         tsc([verb, "-e", program, "--lang", language])

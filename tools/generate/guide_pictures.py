@@ -1,6 +1,6 @@
 """The pictures of the guides that show what robots do: programs that drive, a talk on a phone.
 
-What a picture shows is taken from where it is said: a program from its guide or its lesson, a
+The content of a picture comes from its source: a program from its guide or its lesson, a
 conversation from its guide. A picture without words is one for all languages.
 """
 

@@ -130,7 +130,8 @@ def _length_row(request: Message | None) -> str:
 
 
 def _length_range(fields: tuple[Field, ...]) -> str:
-    """Return the least and the most of a payload; what fills a frame depends on the robot."""
+    """Return the least and the most of a payload; a payload that fills a frame depends on the
+    robot."""
     least_bytes, most_bytes = messages.sizes(fields)
     is_filling = any(field.fills_frame for field in fields)
     return f"{least_bytes}, {'kPayloadBytes' if is_filling else most_bytes}"

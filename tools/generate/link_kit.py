@@ -1,4 +1,4 @@
-"""Makes `conformance/link.json`: what a robot must do on a port, and conversations to play.
+"""Makes `conformance/link.json`: the requirements of a robot on a port, and conversations to play.
 
 Knows the form of the file, which `docs/develop/conformance.md` describes. Programs and refusals are
 those of `machine_kit` that any robot can run without a sensor, a motor or a minute; the
@@ -101,7 +101,7 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
 
 
 def refusals(runs: list[Run]) -> Iterator[dict[str, object]]:
-    """Return code that is refused in the same way whatever devices there are."""
+    """Return code that is refused in the same way with any devices."""
     for run in runs:
         code = run.image[HEADER_BYTES:]
         verdicts = {

@@ -1,10 +1,10 @@
-"""Makes `conformance/machine.json`: what a machine of any language must do with images.
+"""Makes `conformance/machine.json`: the requirements of a machine in any language.
 
 Knows the form of the file, which `docs/develop/conformance.md` describes, and where its cases come
 from: the case files, images that are damaged on purpose, the edges of numbers, and random programs.
-What is expected is what the machine in Python answers; the tests compare it with the others and
-with the oracles. Needs nothing but the package and the sources of the tests: not what they are run
-with.
+The expected results are those of the machine in Python; the tests compare it with the others and
+with the oracles. It needs only the package and the sources of the tests, not the tools that run
+them.
 """
 
 from __future__ import annotations
@@ -280,7 +280,7 @@ def time_runs() -> Iterator[Run]:
 
 
 def late_runs() -> Iterator[Run]:
-    """Return runs whose readings come late, and what each task does meanwhile."""
+    """Return runs whose readings come late, and the actions of each task meanwhile."""
     first_pace, echo_pace = Pace(1, ECHO, 1000, 0, 12), Pace(1, ECHO, 1000, 0, 30)
     rivals = "WHEN(LIGHT_R > 5);B(0.1, 50);END_WHEN;TASK;{};SHOW(TIME);END_TASK"
     looks = rivals.format("F(FOREVER, 40) UNTIL(DISTANCE < 10)")
@@ -415,7 +415,8 @@ def change_byte(image: bytes, offset: int, value: int) -> bytes:
 
 
 def arithmetic_runs() -> Iterator[Run]:
-    """Return operations on the edges of numbers: what faults ends a run, the rest shares one."""
+    """Return operations on the edges of numbers: an operation that faults ends a run, the others
+    share one."""
     for op in map(BY_NAME.__getitem__, CALCULATIONS):
         show_op = "SHOW_YES_NO" if op.code in range(0x20, 0x29) else "SHOW"
         joined_code = b""

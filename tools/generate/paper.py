@@ -1,6 +1,6 @@
 """A page of A4 with rectangles and lines of text, as SVG and as PDF: the same page twice.
 
-Knows both formats, and nothing of what is on the page. Both are text, always the same for the same
+It knows both formats, but not the content of the page. Both are text, always the same for the same
 page. Lengths are points, y goes down from the upper edge.
 """
 
@@ -30,7 +30,7 @@ class Box(NamedTuple):
 
 
 class Line(NamedTuple):
-    """A line of text, whose letters stand on `y`."""
+    """A line of text with the baseline `y`."""
 
     x: float
     y: float

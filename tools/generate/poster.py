@@ -1,8 +1,8 @@
 """The poster of the language: every word of `words.py` on one page, in each language that has its title.
 
-Knows the layout; what is said of each word, the catalogue. An instruction that has no row here comes
-among those of OTHERS, as its block says it; another word without a row is an error: the poster is
-whole or not made.
+It knows the layout; the catalogue has the text of each word. An instruction that has no row here
+comes among those of OTHERS, as its block says it; another word without a row is an error: the
+poster is whole or not made.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ def _other_instructions(language: str) -> Iterator[tuple[str, str]]:
 
 
 def as_block(word: Word, language: str) -> str:
-    """Return the text beside a word's block, or ""."""
+    """Return the text next to a word's block, or ""."""
     return (translated("studio", f"block/{word.text}", language) or "").partition("} ")[2]
 
 

@@ -75,7 +75,8 @@ def texts_header(command: str) -> str:
 def rows(language: str, is_small: bool = False) -> list[str]:
     """Return all that a robot says in a language, in the order of the table.
 
-    `is_small`: what an ATmega328P never says is empty, so that all others keep their numbers.
+    `is_small`: texts that an ATmega328P never uses are empty, so that all others keep their
+    numbers.
     """
     names = [name for _, name, _ in sorted((*FAULTS, *LINK_FAULTS))]
     rows = [("problem", problem) for problem in PROBLEMS] + [

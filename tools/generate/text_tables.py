@@ -219,7 +219,7 @@ def problems_header(command: str) -> str:
 
 
 def numbers_of(name: str, keys: Sequence[str]) -> str:
-    """Return an enum of what a robot says, with its English texts."""
+    """Return an enum of a robot's messages, with their English texts."""
     rows = [
         (key, k, problem_text(name.lower(), key, SOURCE_LANGUAGE)) for k, key in enumerate(keys, 1)
     ]

@@ -1,7 +1,7 @@
 """The pages `wiring/` of each language in `docs/`: how the shipped robots are wired, in a form that
 GitHub shows.
 
-Knows Markdown. What is said and drawn, `tiniscript.robots.wiring` knows.
+Knows Markdown. `tiniscript.robots.wiring` has the texts and drawings.
 """
 
 from __future__ import annotations

@@ -2,11 +2,11 @@
 
     python -m tools.release FOLDER
 
-takes the commit that is checked out into two clean folders, makes firmware, studio, the cases of
-tsc doctor --conform, wheel, source package, library, site and USB stick in both, and says what is
-not the same byte for byte; looks at the packages as a registry does. FOLDER then has the files and
-SHA256SUMS. Nothing is uploaded. It takes twenty minutes. With `--tag` the commit then gets the tag
-of its version, if nothing is wrong. Each commit tests that what is made installs and works.
+clones the current commit into two clean folders, builds firmware, studio, the cases of tsc doctor
+--conform, wheel, source package, library, site and USB stick in both, and reports every difference;
+checks the packages as a registry does. FOLDER then has the files and SHA256SUMS. It uploads
+nothing. It takes twenty minutes. With `--tag`, the commit then gets the tag of its version, if all
+checks pass. Each commit tests that the results install and work.
 
 `--url https://…` rehearses with an address that pyproject.toml does not have yet; `--as-is` goes on
 where something keeps the commit from being released; `--part NAME` makes only some;
@@ -128,7 +128,7 @@ def tag(root: Path, version: str) -> None:
 
 
 def find_missing_tool(parts: Sequence[str]) -> str:
-    """Return a sentence about what this computer lacks to make parts, or nothing."""
+    """Return a sentence about missing tools on this computer, or an empty text."""
     for name, extra in EXTRA_OF_MODULE.items():
         if find_spec(name) is None:
             return f'{name} is not installed. Do that with:  pip install -e ".[{extra}]"'
@@ -141,7 +141,7 @@ def find_missing_tool(parts: Sequence[str]) -> str:
 
 
 def _clones(scratch: Path, url: str, whole_stick: bool) -> list[Clone]:
-    """Take the commit into clean folders, whose times, rights and address are the release's."""
+    """Clone the commit into clean folders with the release's times, permissions and address."""
     clones = []
     for number, clone_folder in enumerate(CLONE_FOLDERS, 1):
         root, parts = scratch / clone_folder, scratch / f"parts{number}"

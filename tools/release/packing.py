@@ -1,6 +1,6 @@
 """Archives whose bytes depend only on their contents.
 
-Knows files and folders. Names are sorted, every time is the release's, owners are nobody.
+Knows files and folders. Names are sorted, every time is the release's, and there are no owners.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The parts of a release, and how each is made in a clone.
 
-Knows the commands of `tools/builds` and setuptools. Each part is built by processes whose sources,
-time and rights are the clone's, so that it depends on nothing of the folder it is made in.
+Knows the commands of `tools/builds` and setuptools. Each part is built by processes with the
+clone's sources, time and permissions, so that it does not depend on its build folder.
 """
 
 from __future__ import annotations
@@ -52,9 +52,9 @@ class Clone(NamedTuple):
         }
 
     def python(self, *arguments: str, good_codes: tuple[int, ...] = (0,)) -> str:
-        """Run Python in the clone; return what it printed. Raises CannotMake.
+        """Run Python in the clone; return its output. Raises CannotMake.
 
-        `good_codes` are the exit codes with which it has made what it should.
+        `good_codes` are the exit codes of success.
         """
         command = [sys.executable, *arguments]
         process = subprocess.run(command, cwd=self.root, env=self.environment(), umask=0o022,

@@ -1,4 +1,4 @@
-"""Which documents the site has, in which language, under which name, and beside which others.
+"""Lists the documents of the site: their languages, their names, and their neighbours.
 
 Knows the repository's documents by their English files. In another language a document of
 `docs/en` is in the folder of that language, under the same name; a file elsewhere has the code of
@@ -71,7 +71,7 @@ def _relative_path(name: str, folder: PurePosixPath) -> str:
 
 
 def _documents_of_files(root: Path, part: str, *files: str, folder: str = "") -> list[Document]:
-    """Return documents whose pages are called as their English files."""
+    """Return documents whose pages have the names of their English files."""
     return [
         Document(
             folder + FILE_ENDING.sub("", PurePosixPath(file).name).lower(),
@@ -107,7 +107,7 @@ def _lesson_documents(root: Path) -> list[Document]:
 def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
     """Return the documents of a clone, in the order in which the site shows them.
 
-    `built` are the names of those that are there beside its files.
+    `built` has the names of those that exist in addition to its files.
     """
     documents_in_clone = [
         *_guide_documents(

@@ -1,5 +1,5 @@
-"""Checks that every link of the finished site leads somewhere, and nothing is loaded from
-elsewhere.
+"""Checks that every link of the finished site leads somewhere, and that no page loads files from
+other sites.
 
 Knows HTML files in a folder. Sphinx looks at the links inside of one half; this looks at all of
 them, as a browser would follow them.
@@ -54,7 +54,7 @@ class _Page(HTMLParser):
 def dead_links(folder: Path) -> list[str]:
     """Return a line for each link that leads nowhere, and for each file from another origin.
 
-    The studio's page is looked at, but not what its scripts do: its tests do that.
+    The studio's page is checked, but not the actions of its scripts: its own tests do that.
     """
     folder = folder.resolve()
     pages = {path: _read(path) for path in sorted(folder.rglob("*.html"))}

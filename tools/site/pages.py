@@ -21,7 +21,7 @@ from tools.site.documents import Document
 
 _FENCED = re.compile(r"(^ *```.*?^ *```$)", re.DOTALL | re.MULTILINE)
 _LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]*)(#[^)\s]*)?\)")
-FILES_FOLDER = "files"  # the folder of the copies, beside the halves of the languages
+FILES_FOLDER = "files"  # the folder of the copies, next to the halves of the languages
 
 
 class SitePage(NamedTuple):
@@ -39,7 +39,8 @@ class SitePage(NamedTuple):
 class Shelf:
     """The places of a clone's documents on the site, and of other linked files.
 
-    `built_texts` are texts beside the files of the clone, by the names that they would have there.
+    `built_texts` are texts in addition to the files of the clone, by the names that they would have
+    there.
     """
 
     root: Path

@@ -1,7 +1,7 @@
-"""Packs what runs in the page: this package, and the part of Python's library that it imports.
+"""Packs the code of the page: this package, and the part of Python's library that it imports.
 
-`pack.mjs` runs this in Pyodide, whose Python makes the bytecode. What a module imports anywhere is
-packed, of Python's own modules what they import when they are imported themselves.
+`pack.mjs` runs this in Pyodide, whose Python makes the bytecode. Every import of a module is
+packed; of Python's own modules, only the imports at import time.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path, PurePosixPath
 from types import CodeType
 
 ROOT_MODULE = "tiniscript.studio.worker"
-# Fetched when they are first needed; what few pages need is as small as it can be.
+# These are fetched when first needed; parts for few pages are as small as possible.
 LESSONS_MODULE = "tiniscript.studio.page_lessons"
 TOGETHER_MODULE = "tiniscript.studio.page_together"
 # Modules that need parts missing in a browser: ports, a terminal, other programs, files of
@@ -49,7 +49,7 @@ PAGE_SECTIONS = (
     0,
     2,
     3,
-)  # sections of a pupil's page that are read beside the simulator: `page_lessons`
+)  # sections of a pupil's page that are shown next to the simulator: `page_lessons`
 ENCODINGS = ("encodings.latin_1", "encodings.ascii", "encodings.utf_8_sig", "encodings.cp437")
 ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 Files = dict[str, bytes]
@@ -93,7 +93,7 @@ class Packer:
         self._seen: set[str] = set()
 
     def add(self, name: str) -> None:
-        """Add a module and what it needs; a list, as nothing here recurses."""
+        """Add a module and what it needs; a list, because this does not recurse."""
         names_left = [name]
         while names_left:
             name = names_left.pop()
@@ -131,8 +131,8 @@ MOST_ENTRY_UNITS = 8  # the most of one entry
 
 
 def _without_places(code: CodeType) -> CodeType:
-    """Return code without the lines of its source, which are a fifth of it and pack badly, and
-    without the names of what its functions are in."""
+    """Return code without the lines of its source, which are a fifth of it and compress badly, and
+    without the qualified names of functions."""
     entries, rest_units = divmod(len(code.co_code) // 2, MOST_ENTRY_UNITS)
     lines = bytes(
         [NO_LINES + MOST_ENTRY_UNITS - 1] * entries + [NO_LINES + rest_units - 1] * (rest_units > 0)
@@ -143,7 +143,7 @@ def _without_places(code: CodeType) -> CodeType:
 
 
 def _without_types(source: bytes) -> ast.Module:
-    """Return a module whose functions do not say their types; fields of a class need theirs."""
+    """Return a module without the types of functions; fields of a class need theirs."""
     tree = ast.parse(source)
     for node in ast.walk(tree):
         if isinstance(node, ast.arg):
@@ -210,8 +210,8 @@ def data_of(package: str, rows: Mapping[str, tuple[str, ...]]) -> Files:
 
 
 def pack(start_modules: list[str], package: str, cobs: str, library_path: str, target: str) -> str:
-    """Write `python.zip`, `tiniscript.zip`, `lessons.zip` and `together.zip`; return what was
-    packed, in words."""
+    """Write `python.zip`, `tiniscript.zip`, `lessons.zip` and `together.zip`; return a description
+    of the result."""
     library = zipfile.ZipFile(library_path)
     packer = Packer([Path(package), Path(cobs)], library)
     for name in (*start_modules, *ENCODINGS, ROOT_MODULE):

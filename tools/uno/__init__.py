@@ -10,8 +10,8 @@ The chip stands still until it is told to run: `run_ms` and its sisters run it a
 and return at an exact cycle, so a test sees the same each time. `go` lets it run in real time, for
 programs that open its pty. Cycle 0 is the first power-on; 16,000 are a millisecond.
 
-The C sources beside this file are built where they are used. What the simulator does not model
-stands in `tools/uno/README.md`.
+The C sources next to this file are built on first use. `tools/uno/README.md` lists what the
+simulator does not model.
 """
 
 from __future__ import annotations
@@ -47,9 +47,8 @@ PATIENCE_S = 120.0  # timeout of a simulator command
 class Uno:
     """A board with a firmware, an `uno` or a `mega`.
 
-    `names` are other words for pins, as `{"button": "D2"}`. Without an `eeprom`
-    file the EEPROM is that of a new chip, and lost afterwards. Where a `bootloader` is given, a
-    reset begins there.
+    `names` are other words for pins, as `{"button": "D2"}`. Without an `eeprom` file, the EEPROM is
+    that of a new chip, and is lost afterwards. With a `bootloader`, a reset begins there.
     """
 
     def __init__(
@@ -144,7 +143,7 @@ class Uno:
 
     @contextmanager
     def try_out(self) -> Iterator[None]:
-        """Try something: after it the chip is where it was, and nothing of it has happened.
+        """Try something on a copy: the chip itself does not change.
 
         The chip has paused before. It has no `eeprom` file, which would keep what was written.
         """
@@ -188,7 +187,7 @@ class Uno:
             if is_wanted(event):
                 return event
 
-    # -- what is around it --------------------------------------------------------------------
+    # -- its surroundings -------------------------------------------------------------------------
 
     def drive(self, pin: str, level: bool | None, at: int | None = None) -> None:
         """Drive a pin from outside, or release it; at a cycle, or at once."""
@@ -215,7 +214,7 @@ class Uno:
     def sonar(
         self, trigger: str, echo: str, distance_cm: float | None, at: int | None = None
     ) -> None:
-        """Put an HC-SR04 at two pins, or move its obstacle; None: nothing."""
+        """Put an HC-SR04 at two pins, or move its obstacle; None: no obstacle."""
         numbers = f"{self.pins.number(trigger)} {self.pins.number(echo)}"
         self._send_lines(_at_cycle(at) + f"sonar {numbers} {round((distance_cm or 0) * 10)}")
 

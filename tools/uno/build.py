@@ -1,6 +1,6 @@
 """Builds the simulated Uno, where it is used and from its sources.
 
-It links libsimavr, which is under GPLv3: the program is never part of what we ship.
+It links libsimavr, which is under GPLv3: the program is never shipped.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def missing() -> str:
 
 @lru_cache(maxsize=1)
 def build() -> Path:
-    """Return the program; what was made before from the same sources is used again.
+    """Return the program; an earlier build from the same sources is reused.
 
     Several may build at the same time: each builds for itself, and the last one stays.
     """

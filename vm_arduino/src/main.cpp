@@ -28,7 +28,7 @@ void setup() {
 namespace {
 
 // The work for each millisecond and each move of the button; skipping it makes other turns quicker.
-// What a LIVE cuts off comes a millisecond later.
+// The end of a run that a LIVE replaces is sent a millisecond later.
 void tick_board() {
   const uint32_t now_ms = board_now_ms();
   board_tick(now_ms);

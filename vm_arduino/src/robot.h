@@ -1,4 +1,4 @@
-// What the machine needs of the robot.
+// The functions that the machine needs of the robot.
 //
 // Plain functions: each build links one definition of them (a board, a test, a simulation). None of
 // them blocks. Numbers are thousandths, TRUE is 1.
@@ -17,8 +17,8 @@ void robot_motors(int8_t left, int8_t right);
 // Turns the motors off: the program has ended or faulted.
 void robot_off();
 
-// How many readings programs have of a kit with so many sensors: where there is room, those of a
-// remote control come after them. A set of readings has 16 bits on an Uno.
+// The number of readings that programs have on a kit with so many sensors: if there is room, those
+// of a remote control follow them. A set of readings has 16 bits on an Uno.
 constexpr uint8_t kRemoteRoom = kHasRemote ? 8 : 0;
 constexpr uint8_t readings_of(uint8_t sensors) {
   return sensors > kRemoteRoom ? sensors : static_cast<uint8_t>(sensors + kRemoteRoom);
@@ -37,12 +37,12 @@ bool robot_show(int32_t value, bool is_yes_no);
 // Sets an actuator; the robot rounds and limits the value to its range.
 void robot_set(uint8_t actuator, int32_t value);
 
-// How fast it goes, or turns, at a power of 1 to 100 %: hundred thousandths of a centimetre or a
+// Its speed, or turning speed, at a power of 1 to 100 %: hundred thousandths of a centimetre or a
 // degree in a second, at most 10^9; 0 or less: it does not move, or does not know. Only a machine
-// with ways asks.
+// with moves by distance calls it.
 int32_t robot_speed(bool is_turn, uint8_t power);
 
-// Of a robot with a disc on each wheel, which measures its ways. Where no build defines them it has
+// For a robot with a disc on each wheel, which measures its moves. If no build defines them, it has
 // none.
 bool robot_measures();
 
@@ -50,12 +50,12 @@ bool robot_measures();
 // where the signs differ. It stops by itself; `robot_motors` and `robot_off` end it.
 void robot_go(int8_t left, int8_t right, int32_t way);
 
-// Goes on with that way, which `robot_motors` has ended: with what is left of it now. As far as the
-// wheels have rolled since, or would have without other powers, they have gone.
+// Goes on with that way, which `robot_motors` has ended: with what is left of it now. The distance
+// counts as far as the wheels have rolled since then, or would have without other powers.
 void robot_go_on(int8_t left, int8_t right);
 
-// Where it is on that way; `*rest` is what is left of it, 0 or more. From kStuck on it is the number
-// of a fault.
+// Its place on that way; `*rest` is the rest of it, 0 or more. From kStuck on, it is the number of
+// a fault.
 enum class Going : uint8_t { kOn, kThere, kStuck = 4, kStuckLeft, kStuckRight };
 Going robot_going(int32_t* rest);
 

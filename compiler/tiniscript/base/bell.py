@@ -15,14 +15,14 @@ from time import monotonic
 
 
 class Bell:
-    """Wakes one waiting thread; a ring that nobody waits for is kept for the next wait."""
+    """Wakes one waiting thread; a ring without a waiting thread is kept for the next wait."""
 
     def __init__(self) -> None:
         self._silence = allocate_lock()
         self._silence.acquire()
 
     def ring(self) -> None:
-        with suppress(RuntimeError):  # the bell has already rung, and nobody has heard it yet
+        with suppress(RuntimeError):  # the bell has already rung, and no thread has heard it yet
             self._silence.release()
 
     def wait(self, timeout_s: float) -> bool:

@@ -1,12 +1,13 @@
 """Reads texts in TOML: the English ones, `en/*.toml`, from which all languages are translated, and
 those of a language, `es/*.toml`, which has the same keys.
 
-A row is a text by its key. A list has several texts with one key, of which a message says the first
-whose gaps all have values; `one`, `few`, `many`, `other` and so on are the forms of a text with a
-plural. In English, `same` is a program, which no language says in another way, and a text under
-several keys is translated once, at the first of them: `own` is one that means something else there.
-There the name of a table is the note that translators read beside each of its texts, but where the
-key begins with it; rows above all tables need none. A mistake in a row costs that row alone.
+A row is a text by its key. A list has several texts with one key, of which a message uses the first
+one whose gaps all have values; `one`, `few`, `many`, `other` and so on are the forms of a text with
+a plural. In English, `same` marks a program, which is the same in every language. A text under
+several keys is translated once, at the first of them; `own` marks one that means something else
+there. In these files, the name of a table is the note that translators read beside each of its
+texts, unless the key begins with it; rows above all tables need no note. A mistake in a row costs
+that row alone.
 """
 
 from __future__ import annotations
@@ -34,12 +35,12 @@ Problem = tuple[int, str]  # a line of a file, and a sentence
 
 @dataclass
 class Entry:
-    """An English text, and what a language has of it.
+    """An English text, and its translation into a language.
 
-    `translation` has its forms, empty without one, and `seen_hash` is the hash of the
-    text that it translates, UNKNOWN if nobody has said that. A stale one is of what the English
-    text was before. `notes` are for translators. `is_same`: no translator is asked for it, since no
-    language says it in another way, or since its words stand under the key `same_text_key`, too.
+    `translation` has its forms, or is empty, and `seen_hash` is the hash of the text that it
+    translates, or UNKNOWN. A stale translation is of an earlier English text. `notes` are for
+    translators. `is_same`: it needs no translator, because it is the same in every language, or
+    because the key `same_text_key` has the same words.
     """
 
     key: str
@@ -214,7 +215,7 @@ def _parse_block(block: str) -> tuple[dict[str, Any], tuple[int, str] | None]:
 
 
 def _toml_problems(text: str) -> list[Problem]:
-    """Return the TOML errors of a file whose rows are valid one by one."""
+    """Return the TOML errors of a file whose rows are each valid."""
     _, parse_error = _parse_block(text)
     return [(parse_error[0] + 1, parse_error[1])] if parse_error else []
 
@@ -225,7 +226,7 @@ def _row_key(line: str) -> str:
 
 
 def load_catalogue(path: Path) -> Catalogue:
-    """Read the English texts of a file. What is wrong in it is a problem."""
+    """Read the English texts of a file. Problems in the file are reported as `problem`s."""
     catalogue = Catalogue()
     text, catalogue.problems = decode_file(path)
     catalogue_rows, _, problems = parse_rows(text)
@@ -282,7 +283,7 @@ def _find_problem(entries: list[Entry]) -> str:
 
 
 def gap_names(text: str) -> set[str]:
-    """Return the names of the gaps, with what follows a colon: how their value is written."""
+    """Return the names of the gaps, with the text after a colon: the format of the value."""
     return {
         name + (":" + format_spec if format_spec else "")
         for _, name, format_spec, _ in Formatter().parse(text)

@@ -1,14 +1,14 @@
 """Files that are whole or not there: the one place where a file gets new content at once.
 
-The new content is written beside the file, under a name that nobody can foresee, into a file that
-was not there before; then it takes the file's place. So nobody who may write to the folder can have
-another file changed, and anyone who reads meanwhile reads the old content or the new.
+The new content is written beside the file, under an unpredictable name, into a newly created file,
+which then replaces the original. So a user who may write to the folder cannot redirect the write to
+another file, and a reader sees either the old content or the new.
 
-A symbolic link stays one: what it leads to is replaced, as by a shell's `>`. One that another user
-has put into a folder where others may write is no way to a file: that is refused. Another hard link
-to the file keeps the old content.
+A symbolic link stays a link: its target is replaced, as by a shell's `>`. One that another user has
+put into a folder where others may write is no way to a file: that is refused. Another hard link to
+the file keeps the old content.
 
-Knows where a command keeps what the next one may need. Does not know what is in a file.
+It knows where a command keeps data for the next one. It does not know what the files contain.
 """
 
 from __future__ import annotations
@@ -36,7 +36,8 @@ ABANDONED_AFTER_S = 3600.0  # a new file that is older has lost its command
 
 
 def cache_folder() -> Path:
-    """Return the user's folder for what a command keeps until the next one: it may be deleted."""
+    """Return the user's folder for data that a command keeps for the next one: it may be
+    deleted."""
     folder = _linux_folder("XDG_CACHE_HOME", ".cache")
     if folder is not None:
         return folder
@@ -46,7 +47,7 @@ def cache_folder() -> Path:
 
 
 def settings_folder() -> Path:
-    """Return the user's folder for what must not be lost."""
+    """Return the user's folder for data that must not be lost."""
     folder = _linux_folder("XDG_CONFIG_HOME", ".config")
     if folder is not None:
         return folder
@@ -56,7 +57,7 @@ def settings_folder() -> Path:
 
 
 def _linux_folder(variable: str, usual_folder: str) -> Path | None:
-    """Return a folder of ours as Linux has it, or None.
+    """Return one of our folders at its place on Linux, or None.
 
     Nearly everywhere on Linux one of two variables says it: importing platformdirs takes as long as
     compiling a program.
@@ -75,9 +76,10 @@ def _linux_folder(variable: str, usual_folder: str) -> Path | None:
 def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool = False) -> None:
     """Replace the content of a file, or leave it unchanged. Raises OSError or ValueError.
 
-    `mode` is what its permissions become; else they stay, and a new file has what the umask
-    leaves. A device or a pipe, which has no old content, is written to. `is_lasting`: also where
-    the power goes, or the stick is pulled, the old content is there or the new; that takes time.
+    `mode` is the permissions that it gets; without it, an existing file keeps its own, and a new
+    file follows the umask. A device or a pipe, which has no old content, is written to.
+    `is_lasting`: also where the power goes, or the stick is pulled, the old content is there or the
+    new; that takes time.
     """
     _check_links(path)
     stat_result = _stat(path)
@@ -115,7 +117,8 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
 def keep(path: Path, data: bytes) -> bool:
     """Put data into a file of ours, in a folder of ours; return whether that was possible.
 
-    They may have a person's programs: nobody else may read them, nor what an older tsc has kept.
+    They may contain a person's programs, so only that person may read them; this includes files of
+    an older tsc.
     """
     try:
         path.parent.mkdir(mode=OWNER_ONLY, parents=True, exist_ok=True)
@@ -179,8 +182,8 @@ def _move_into_place(new_path: Path, target: Path) -> None:
 def lock_file(path: Path, mode: int = 0o600) -> Iterator[None]:
     """No other process that asks for the same changes a file meanwhile. Raises OSError.
 
-    A process that ends unlocks what it has locked. One that stands still does not: then this ends
-    with TimeoutError after some seconds.
+    A process that ends releases its locks. A suspended process does not: then this ends with
+    TimeoutError after some seconds.
     """
     lock_path = path.with_name(path.name + LOCK_ENDING)
     flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
@@ -215,7 +218,8 @@ def try_lock(descriptor: int) -> bool:
 def remove_abandoned(
     folder: Path, names: list[str], kept_endings: tuple[str, ...] = (".json",)
 ) -> None:
-    """Remove what killed commands have left in a folder of ours, but for names with `kept_endings`.
+    """Remove the remains of killed commands in one of our folders, except names with
+    `kept_endings`.
 
     `names` are those of the folder. A file that may still become whole is left alone.
     """
@@ -229,7 +233,8 @@ def remove_abandoned(
 def is_pipe(name: str) -> bool:
     """Return whether a name is that of a named pipe, whose reader may block forever.
 
-    What a shell has opened, `<(tsc show --port P)` and `/dev/stdin`, is in /dev, and has a writer.
+    Pipes that a shell has opened, such as `<(tsc show --port P)` and `/dev/stdin`, are in /dev and
+    have a writer.
     """
     try:
         return not name.startswith("/dev/") and stat.S_ISFIFO(os.stat(name).st_mode)  # noqa: PTH116
@@ -238,7 +243,7 @@ def is_pipe(name: str) -> bool:
 
 
 def read_limited(path: Path, limit_bytes: int) -> bytes:
-    """Return the bytes of a file that anything may lie at: this ends soon, whatever it is.
+    """Return the bytes of a path of any kind: this returns soon, whatever is there.
 
     A pipe would be waited for, and a device or a huge file would fill the memory. Raises OSError
     if there is no regular file, or more than so many bytes.

@@ -1,8 +1,8 @@
 """The numbers of TiniScript: signed 32-bit counts of thousandths.
 
-Knows arithmetic, its rounding and its faults. Knows nothing of programs. The machine and
-the optimiser both calculate with these functions, so that folding cannot change a result.
-Every argument and result is a count of thousandths unless a name says otherwise.
+Knows arithmetic, its rounding and its faults. It knows nothing of programs. The machine and the
+optimiser both calculate with these functions, so that folding cannot change a result. Every
+argument and result is a count of thousandths unless a name says otherwise.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def absolute(a: int) -> int:
 
 
 def whole(a: int) -> int:
-    """Return the nearest whole number (not thousandths), half away from zero. Never faults."""
+    """Return the nearest whole number (not thousandths), half away from zero. It never faults."""
     return (a + 500) // ONE if a >= 0 else -((500 - a) // ONE)
 
 
@@ -93,8 +93,8 @@ def clamp(value: int, low: int, high: int) -> int:
 def read_literal(text: str) -> tuple[int, bool]:
     """Return the thousandths of `5`, `0.5` or `.5`, and whether they are exact.
 
-    The result is not limited to 32 bits: the parser decides whether a minus belongs to it.
-    More than ten digits before the point are far out of range, whatever they are.
+    The result is not limited to 32 bits: the parser decides whether a minus belongs to it. More
+    than ten digits before the point are far out of range, whatever their values.
     """
     digits, _, decimals = text.partition(".")
     digits = digits.lstrip("0")

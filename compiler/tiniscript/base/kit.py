@@ -80,7 +80,7 @@ class Kit(NamedTuple):
     def readings(self) -> tuple[Device, ...]:
         """Return all that a program can read, by their numbers: the sensors, then the remote.
 
-        What is called otherwise there, or a word of the profile, has no name.
+        A sensor with another name there, or named like a word of the profile, has no name.
         """
         if not self.has_remote:
             return self.sensors
@@ -126,9 +126,9 @@ class Kit(NamedTuple):
     def hash_of_used(self, uses: Sequence[tuple[str, int]]) -> int:
         """Return the hash of the devices that code uses, in its order; 0 for none.
 
-        A use is "sensor" or "actuator" and its number. For each one the hash is multiplied by x,
-        as a polynomial over two elements modulo a primitive one, and the device's hash is added.
-        So one device that is another one is noticed however often the code uses it.
+        A use is "sensor" or "actuator" and its number. For each one the hash is multiplied by x, as
+        a polynomial over two elements modulo a primitive one, and the device's hash is added. So a
+        device that differs is counted once, however many times the code uses it.
         """
         hashes = self.hashes if uses else ()
         devices_hash = 0

@@ -1,10 +1,10 @@
 """The languages: a folder each, with the texts that a translator fills.
 
 A catalogue, `es/command.toml`, has its texts by the keys of the English one, `en/command.toml`. A
-language is there as soon as its folder is, and what it lacks is said in English, text by text. What
-is read is made of these files, `es/command.texts`: `setup.py` does that for a package, and in a
-clone it is made where a source is newer. The English texts of the catalogue `names` are in other
-`.toml` files of the package. Knows no text.
+language exists as soon as its folder does, and texts that it lacks appear in English. At run time,
+tsc reads files made from these, such as `es/command.texts`: `setup.py` makes them for a package; in
+a clone they are remade when a source is newer. The English texts of the catalogue `names` are in
+other `.toml` files of the package. Knows no text.
 """
 
 from __future__ import annotations
@@ -75,7 +75,8 @@ def languages() -> tuple[str, ...]:
 
 
 def find_language(locale_name: str) -> str:
-    """Return the language of a locale, `es_PE.UTF-8` or Windows' `Spanish_Peru`, else English."""
+    """Return the language of a localesuch as `es_PE.UTF-8` or Windows' `Spanish_Peru`; the default
+    is English."""
     code = locale_name.lower().replace("-", "_").partition(".")[0].partition("@")[0]
     for candidate in (code, code.partition("_")[0]):
         if candidate in languages():
@@ -186,7 +187,7 @@ def texts(name: str, language: str) -> Texts:
 
 
 def merged_catalogue(name: str, language: str) -> Catalogue:
-    """Return the English texts of a catalogue with what a language has of them."""
+    """Return the English texts of a catalogue with a language's translations of them."""
     from tiniscript.base.catalogue_source import load_catalogue
     from tiniscript.base.translations import (
         TranslationFile,
@@ -250,7 +251,7 @@ def is_clone() -> bool:
 
 
 def source_files(name: str, language: str) -> tuple[Path, Path]:
-    """Return the English source of a catalogue, and what a language has of it."""
+    """Return the English source of a catalogue, and its translation in a language."""
     return FOLDER / SOURCE_LANGUAGE / f"{name}.toml", FOLDER / language / f"{name}.toml"
 
 

@@ -124,7 +124,7 @@ REPLACEMENT_SIGN = "?"  # replaces a character that is not printable
 def printable(text: str, most_characters: int | None = None) -> str:
     """Return a text without control characters, line ends and marks of direction.
 
-    What is longer than `most_characters` characters is cut, which the reader can see.
+    Text longer than `most_characters` characters is cut visibly.
     """
     shown_text = text if most_characters is None else text[:most_characters]
     if not shown_text.isprintable():

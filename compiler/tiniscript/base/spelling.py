@@ -1,7 +1,7 @@
 """Finds the word that a misspelt one was meant to be.
 
-`nearest` counts slips of the finger; `Speller` also knows what sounds alike in each language. Only
-what is wrong needs them.
+`nearest` counts slips of the finger; `Speller` also knows which letters sound alike in each
+language. Only texts with mistakes need them.
 """
 
 from __future__ import annotations

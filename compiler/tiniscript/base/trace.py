@@ -15,9 +15,9 @@ from tiniscript.base.kit import Kit
 class Event(NamedTuple):
     """An action of a robot at `time_ms`: MOTORS, READ, BEEP, SHOW, SET, DONE, FAULT or LIMIT.
 
-    `values` are percent for MOTORS, hertz and milliseconds for BEEP, the number of the device
-    and thousandths for READ and SET, thousandths for SHOW; `text` is what a trace prints; `offset`
-    is where a SHOW is in the code, if the robot tells it.
+    `values` are percent for MOTORS, hertz and milliseconds for BEEP, the number of the device and
+    thousandths for READ and SET, thousandths for SHOW; `text` is what a trace prints; `offset` is
+    where a SHOW is in the code, if the robot reports it.
     """
 
     time_ms: int

@@ -1,11 +1,11 @@
 """The translations of a language: reads its files, and finds errors in them.
 
-`es/language.toml` says what the language calls itself, and its forms of a text that counts. Each
-other `es/NAME.toml` has texts by the keys of `en/NAME.toml`. `es/seen.txt` has of which English
-text each is a translation: rows of a file's name, a key and a hash, which `tools/languages.py`
-writes; of a list one for each of its texts, `-` if that is not known. So a text in front of
-others moves no translation to another text, and a translation of what the English text was before
-is stale: it is not said. Knows no language.
+`es/language.toml` has the language's own name, and its plural forms. Each other `es/NAME.toml` has
+texts by the keys of `en/NAME.toml`. `es/seen.txt` has of which English text each is a translation:
+rows of a file's name, a key and a hash, which `tools/languages.py` writes; of a list one for each
+of its texts, `-` if that is not known. So inserting a text before others does not shift their
+translations. A translation of an earlier version of the English text is stale and is not used.
+Knows no language.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ _TYPE_NAMES = {str: "text", bool: "true or false", list: "list"}
 
 
 def _form_digits(rule: str, forms: tuple[object, ...]) -> tuple[str, str]:
-    """Return the digit of a form for each number, or why there is none."""
+    """Return the digit of a form for each number, or the reason why there is none."""
     from gettext import c2py
 
     if not forms or any(name not in PLURALS or forms.count(name) > 1 for name in forms):
@@ -148,7 +148,7 @@ class TranslationFile:
 
 
 def read_translation_file(path: Path) -> TranslationFile:
-    """Read the texts of a language; of a file that is not there none."""
+    """Read the texts of a language; a missing file has none."""
     translation_file = TranslationFile()
     if not path.is_file():
         return translation_file
@@ -172,7 +172,7 @@ def read_translation_file(path: Path) -> TranslationFile:
 
 
 def _forms(value: object) -> Forms | None:
-    """Return the forms of a text, none if it is empty; None if it is not a text."""
+    """Return the forms of a text, an empty list if it is empty; None if it is not a text."""
     if isinstance(value, str):
         return {"": value} if value else {}
     if isinstance(value, dict) and value and all(isinstance(item, str) for item in value.values()):

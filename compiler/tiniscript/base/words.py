@@ -1,8 +1,8 @@
-"""The table of words: what each word of the language is, and which arguments it takes.
+"""The table of words: the meaning of each word of the language, and its arguments.
 
-Knows names, argument counts, ranges and units. Does not know how they are compiled. Ranges
-are thousandths. The words of a kit (its sensors and actuators) come from `kit`, not from here.
-`lexicon` has what words of people mean, from the folder of each language.
+Knows names, argument counts, ranges and units. Does not know how they are compiled. Ranges are
+thousandths. The words of a kit (its sensors and actuators) come from `kit`, not from here.
+`lexicon` has the meanings of people's words, from the folder of each language.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Role(NamedTuple):
 class Word(NamedTuple):
     """A word with the role `fixed` stands for instructions, `BEEP(0.5, 440)`.
 
-    Where it takes values, their names are in them, each as the whole of a value and once:
+    If the word takes values, their names appear there, each exactly once and as a whole value:
     `LOOP(N);L(0.2, 60);R(0.2, 60);END_LOOP`.
     """
 
@@ -168,7 +168,7 @@ _REPLACEMENT_HINTS = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "every": "LOO
 class LexiconEntry(NamedTuple):
     """A lexicon entry: `kind` is a word of TiniScript, or the kind of its `value`.
 
-    A unit has how many thousandths of it the word stands for, too: `unit s 60000`.
+    A unit also has the number of its thousandths: `unit s 60000`.
     """
 
     kind: str

@@ -18,7 +18,7 @@ _BYTES_WIDTH = 18  # room for six bytes
 
 
 class Row(NamedTuple):
-    """One instruction; `op` is None for bytes that are no instruction."""
+    """One instruction; `op` is None for bytes that are not an instruction."""
 
     offset: int
     data: bytes
@@ -54,7 +54,7 @@ def disassemble(
 ) -> str:  # fmt: skip
     """Return `code` as text, a line for each instruction.
 
-    `remarks` stand after the instruction at their offset; a kit gives devices their names, and
+    `remarks` come after the instruction at their offset; a kit gives devices their names, and
     `variables` are those of variables in the order of their numbers.
     """
     names_of_kind: dict[str, Sequence[str]] = {"variable": variables}
@@ -95,7 +95,7 @@ def _operand_values(row: Row) -> list[tuple[str, int]]:
 def assemble(text: str) -> bytes:
     """Return the bytes of a disassembly.
 
-    Raises ValueError if a line is none, or its offset is not where it stands.
+    Raises ValueError if a line is not an instruction, or its offset is wrong.
     """
     code = bytearray()
     for line in text.splitlines():

@@ -1,8 +1,8 @@
-"""An image: code with the header that tells a robot whether it may run it.
+"""An image: code with the header that shows a robot whether it may run it.
 
 FIELDS is the one declaration of the header.
-Knows nothing of what the code does: `verify` does. What code needs is told to `pack`: an image says
-the smallest minor version that has this and its instructions.
+It knows nothing of what the code does: `verify` does. `pack` is told what the code needs: an image
+names the smallest minor version that has these features and its instructions.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ ALL_NEEDS = TASKS | GO
 LEAST_ISA = ISA_MAJOR, 0  # the version of code whose instructions all machines have
 STARTS = ("SI", "SB", "PING")
 
-# The first fields lie where they lay in version 1, so that whoever finds a stored program of any
-# version knows how long it is and whether it is whole.
+# The first fields are where they were in version 1, so that the length and the integrity of a
+# stored program of any version can be checked.
 # fmt: off
 FIELDS = (
     Field("magic",         "2s", 2, "The letters `TS`."),
@@ -106,8 +106,8 @@ class ImageRefused(Exception):
 def pack(start: str, devices: int, code: bytes, later: bytes = b"", needs: int = 0) -> bytes:
     """Return the image of `code` (0 to 32767 bytes); `devices` is the hash of those it uses.
 
-    `later` (0 to 240 bytes) are fields that this version does not know; `needs` is what
-    its verdict says.
+    `later` (0 to 240 bytes) are fields that this version does not know; `needs` is that of its
+    verdict.
     """
     assert len(code) <= CODE_BYTES
     values = (MAGIC, *isa_of(code, needs), STARTS.index(start), HEADER_BYTES + len(later),
@@ -116,9 +116,10 @@ def pack(start: str, devices: int, code: bytes, later: bytes = b"", needs: int =
 
 
 def isa_of(code: bytes, needs: int) -> tuple[int, int]:
-    """Return the smallest version of the instruction set that has what code has and needs.
+    """Return the smallest version of the instruction set that has all instructions and features of
+    the code.
 
-    Instructions that need more than `needs` do not count: whoever finds them refuses them.
+    Instructions that need more than `needs` do not count: the reader of the image refuses them.
     """
     needed_since = (since for need, since in SINCE_OF_NEED.items() if needs & need)
     had_since = (op.since for op in ops_in(code) if not op.needs & ~needs)
@@ -139,7 +140,8 @@ def checksum(image: bytes) -> int:
 def unpack(data: bytes, capabilities: int = ALL_NEEDS) -> Image:
     """Return the image in `data`, whose code and devices are not verified yet.
 
-    `capabilities` is what the machine has of `needs`. Raises ImageRefused, which names the reason.
+    `capabilities` are the `needs` that the machine can fulfil. Raises ImageRefused, which names the
+    reason.
     """
     if data[: len(MAGIC)] != MAGIC[: len(data)] or not data:
         raise ImageRefused("NOT_AN_IMAGE")

@@ -2,13 +2,13 @@
 
 Everything that must know an instruction reads it from here: `lower`, `disassembly`, `verify` and
 `vm` import it; `python -m tools.generate` writes the tables of `bytecode_spec.md` from it. Codes on
-the wire are promises: a code is never used again for something else.
+the wire are promises: a code is never reused.
 
 A short instruction has its operand in its code: `PUSH_VAR_3` is `PUSH_VAR v3` in one byte. Such
-families are of eight, and the last three bits of the code are the operand. Families of comparators
-are of eight too, and the last three bits are the comparator.
+families have eight members, and the last three bits of the code are the operand. Families of
+comparators are of eight too, and the last three bits are the comparator.
 
-Knows numbers, operands, stack effects and faults. Does not know what anything does.
+Knows numbers, operands, stack effects and faults. It does not know what the instructions do.
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
@@ -74,7 +74,7 @@ class Op(NamedTuple):
 
     @property
     def family(self) -> str:
-        """The name of what it does: MOVE of MOVE_F, IF of IF_FAR, PUSH_VAR of PUSH_VAR_3."""
+        """The name of its action: MOVE of MOVE_F, IF of IF_FAR, PUSH_VAR of PUSH_VAR_3."""
         if 0x10 <= self.code <= 0x28:
             return "CALCULATE"
         base, _, last = self.name.rpartition("_")
@@ -91,7 +91,7 @@ class Op(NamedTuple):
 # Endings after the name of a family, except for numbers.
 _VARIANTS = ("FAR", "F", "B", "L", "R", "EQ", "NE", "LT", "LE", "GT", "GE")
 
-# The instructions between others that ask nothing of the robot, or are done again if they fail.
+# The instructions among others that need nothing from the robot, or are repeated if they fail.
 _OWN_FAMILIES = ("SET_VAR", "SET_VAR8", "ADD_VAR8", "ADD_VAR", "INC_VAR", "DEC_VAR",
                  "SHOW", "SHOW_YES_NO")  # fmt: skip
 
@@ -118,9 +118,10 @@ OPERAND_KINDS = {kind.name: kind for kind in (
     OperandKind("back16",   2, False,         0,  65535, "bytes back from the next instruction"),
 )}
 
-# What an instruction is for the structure of a program; `verify` has a rule for each role. Those
-# from `plain` on stand between expressions and checks. Those of loops come in pairs: one
-# for uncounted loops, one for counted ones. What opens a routine comes before what closes it.
+# The part that an instruction plays in the structure of a program; `verify` has a rule for each
+# role. Those from `plain` on are between expressions and checks. Those of loops come in pairs: one
+# for uncounted loops, one for counted ones. Roles that open a routine come before those that close
+# it.
 CONTROL_ROLES = {
     "end":       "ends the program",
     "value":     "part of an expression",
@@ -354,7 +355,7 @@ def op_at(code: bytes, offset: int) -> Op | None:
 
 
 def ops_in(code: bytes) -> Iterator[Op]:
-    """Yield the instructions of `code`, verified or not; a byte that is none is passed over."""
+    """Yield the instructions of `code`, verified or not; a byte that is not one is skipped."""
     offset = 0
     while offset < len(code):
         op = op_at(code, offset)

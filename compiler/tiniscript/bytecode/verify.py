@@ -1,8 +1,8 @@
-"""The verifier: what a machine must refuse, and the name of each reason.
+"""The verifier: decides which code a machine must refuse, and for which reason.
 
-One pass over the code from its first byte to its last, with bounded memory: what is open is a
-few words, and a jump is right when it leads where the structure around it ends or begins. What
-is accepted cannot leave the stack, the variables, the kit or the code while it runs.
+One pass over the code from its first byte to its last, with bounded memory: open structures take a
+few words, and a jump is right if it leads to the beginning or the end of the structure around it.
+Accepted code cannot leave the stack, the variables, the kit or the code while it runs.
 
 `bytecode_spec.md` has the same steps in words, under "What must be refused"; `verify.cpp` has them
 in C++. Same names, same order, same verdict at the same offset: change all three.
@@ -77,7 +77,7 @@ class Verdict(NamedTuple):
     """The needs of accepted code: stack values, counters and calls open at once in all tasks.
 
     `uses` are its sensors and actuators, "sensor" or "actuator" and the number, in its order.
-    `tasks` are those beside the main one; `needs` is that of its image.
+    `tasks` does not count the main one; `needs` is that of its image.
     """
 
     stack_values: int
@@ -91,7 +91,7 @@ class Verdict(NamedTuple):
 def verify(code: bytes, sensors: int, actuators: int, needs: int = 0xFF) -> Verdict:
     """Return the needs of `code` on a machine with these numbers of sensors and actuators.
 
-    `needs` is what its image says. Raises Refused if a machine must not run it.
+    `needs` is that of its image. Raises Refused if a machine must not run it.
     """
     if len(code) > CODE_BYTES:
         raise Refused("CODE_LENGTH", 0)
@@ -184,10 +184,11 @@ class _Verifier:
     def refuse(self, name: str) -> NoReturn:
         raise Refused(name, self.at)
 
-    # -- what is asked of every instruction ---------------------------------------------------
+    # -- checks of every instruction -----------------------------------------------------------
 
     def arrive(self) -> None:
-        """Drop what ends at this offset, and refuse what should have ended before it."""
+        """Close the structures that end at this offset, and refuse those that should have ended
+        before it."""
         while self.joins and self.joins[-1].target <= self.at:
             if self.joins[-1].target != self.at:
                 self.refuse("MISSED_TARGET")

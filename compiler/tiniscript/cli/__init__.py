@@ -76,7 +76,7 @@ def _is_closed_pipe(error: OSError) -> bool:
     if sys.platform != "win32" or error.errno != errno.EINVAL:
         return False
     if error.filename is not None or getattr(error, "winerror", None) is not None:
-        return False  # a file, or a question to the system: the C library names neither
+        return False  # a file, or a query to the system: the C library names neither
     try:
         return any(stat.S_ISFIFO(os.fstat(descriptor).st_mode) for descriptor in (1, 2))
     except OSError:  # closed

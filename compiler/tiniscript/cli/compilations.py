@@ -15,7 +15,7 @@ from tiniscript.syntax.parser import parse
 def compile_input(
     program_input: inputs.Input, robot: Robot, is_strict: bool, names_robots: bool = True
 ) -> Compilation:
-    """Return the result of compiling an input, whose `--robot` has chosen the robot or not."""
+    """Return the result of compiling an input, with or without a robot chosen by `--robot`."""
     return compile_source(
         program_input.data,
         robot,
@@ -27,7 +27,8 @@ def compile_input(
 
 
 def for_level(compilation: Compilation, robot: Robot, name: str | None) -> Compilation:
-    """Return a compilation with what a robot of this level lacks to read the program as text."""
+    """Return a compilation with the features of the program that a robot of this level cannot read
+    as text."""
     if name is None or compilation.program is None or not compilation.is_right:
         return compilation
     from tiniscript.library.text_fitting import find_misfits

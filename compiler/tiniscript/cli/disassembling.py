@@ -1,4 +1,4 @@
-"""Prints what a compiled program does, instruction by instruction: as lines, or as data."""
+"""Prints a compiled program, instruction by instruction: as lines, or as data."""
 
 from __future__ import annotations
 

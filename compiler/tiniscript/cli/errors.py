@@ -9,7 +9,8 @@ from tiniscript.cli.texts import Sentence, text
 class CommandError(Exception):
     """`key` names a sentence of `texts`; `values` fill its gaps.
 
-    A value `near` that is not empty adds a suggestion; an exception says what the system says.
+    A value `near` that is not empty adds a suggestion; an exception is shown with the system's
+    message.
     """
 
     def __init__(self, exit_code: int, key: str, **values: str | Exception) -> None:

@@ -1,4 +1,4 @@
-"""A fault of a program, for a person: what it means, and its line in the text."""
+"""A fault of a program, for a person: its meaning, and its line in the text."""
 
 from __future__ import annotations
 

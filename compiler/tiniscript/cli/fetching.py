@@ -1,6 +1,6 @@
 """Something is missing, and this computer can fetch it: how much that is, a question, the progress.
 
-Knows pip, and how a program that fetches is watched. Does not know what is missing.
+Knows pip, and how a program that fetches is watched. It does not know what is missing.
 """
 
 from __future__ import annotations
@@ -151,7 +151,7 @@ def run(
 
 
 def _failure(step_text: str, log: str) -> CommandError:
-    """Return the sentence for a program that has failed, and keep what it has said."""
+    """Return the sentence for a program that has failed, and keep its output."""
     log_path = files.cache_folder() / LOG_FILE
     # If the file cannot be written, the message has no path.
     files.keep(log_path, log.encode("utf-8", "replace"))

@@ -72,7 +72,7 @@ def firmware(
 
 
 def require_breakpoints(robot: Robot) -> None:
-    """Raise CommandError if nothing is to be left out for breakpoints, or that is not enough."""
+    """Raise CommandError if no feature can be left out for breakpoints, or that is not enough."""
     if not building.can_have_breakpoints(robot):
         has_room = robot.board.chip not in building.ENVIRONMENT_WITH_BREAKPOINTS
         key = "flash_has_breakpoints" if has_room else "flash_no_breakpoints"
@@ -84,8 +84,8 @@ def _find_ready(
 ) -> ReadyFile | None:
     """Return the file for a robot.
 
-    Without sources the shipped file cannot be out of date; one that answers in another language is
-    better than none.
+    Without sources, the shipped file cannot be out of date; a firmware that answers in another
+    language is better than none.
     """
     if sources is not None:
         digest = sources.digest(robot, has_breakpoints)
@@ -113,8 +113,8 @@ def upload(robot: Robot, port: str | None, options: Namespace, language: str) ->
 def _show_build(
     robot: Robot, options: Namespace, language: str, **more: str
 ) -> Iterator[Callable[[StepProgress], None]]:
-    """Fetch what builds firmware, and show the progress. Raises CommandError for all that can fail
-    then."""
+    """Fetch the tools that build firmware, and show the progress. Raises CommandError for all that
+    can fail then."""
     values = {"robot": robot.name, "board": robot.board.chip, **more}
     _fetch(robot, values, options, language)
     say_aside("flash_builds", language, **values)

@@ -85,7 +85,7 @@ def full_help(language: str, width: int = WIDTH) -> str:
 
 
 def command_groups(language: str) -> list[tuple[str, list[Row]]]:
-    """Return the headings of all verbs with the commands below each, and what these do."""
+    """Return the headings of all verbs with the commands below each, and their descriptions."""
     rows_by_heading: dict[str, list[Row]] = {}
     for verb, group in VERBS.items():
         commands_alone = (
@@ -181,7 +181,7 @@ def _paragraphs(text: str, width: int) -> str:
 
 
 def _wrap(text: str, width: int) -> list[str]:
-    """Return the lines of a text. What stands between backticks is not broken, if it fits."""
+    """Return the lines of a text. Text between backticks is not broken if it fits on a line."""
 
     def keep_spaces(match: re.Match[str]) -> str:
         return match[1].replace(" ", "\0") if len(match[1]) <= width else match[1]

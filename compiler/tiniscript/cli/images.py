@@ -36,9 +36,9 @@ def ready_program(
     program_input: inputs.Input, robot: Robot, language: str, is_strict: bool = False,
     may_choose_robot: bool = False,
 ) -> ReadyProgram | None:  # fmt: skip
-    """Return the program of an input, or None if it has mistakes, which are printed.
+    """Return the program of an input, or None if it has mistakes, which it prints.
 
-    `is_strict`: a program that is too large for the robot, or has what the robot lacks,
+    `is_strict`: a program that is too large for the robot, or uses features that the robot lacks,
     is a mistake. `may_choose_robot`: a program for another robot raises OtherRobot. Raises
     CommandError if an image is refused.
     """

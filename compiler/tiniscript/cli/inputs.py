@@ -23,7 +23,7 @@ MOST_NAME_CHARACTERS = 200  # characters of a file's name
 class Input(NamedTuple):
     """The bytes of a program. `path` is None if they come from no file.
 
-    `has_robot`: `--robot` has chosen the robot, so what the program names does not count.
+    `has_robot`: `--robot` has chosen the robot, so the robot that the program names is ignored.
     """
 
     name: str
@@ -88,7 +88,8 @@ def read_file(name: str, typed_name: str | None = None) -> Input:
 
 
 def check_port(name: str) -> str:
-    """Return the name of a port that a person has typed. Raises CommandError if it is none."""
+    """Return the name of a port that a person has typed. It raises CommandError if it is not
+    one."""
     if not name.strip() or not name.isprintable():
         raise CommandError(2, "no_such_port", found=printable_name(name) or "''")
     return name
@@ -123,7 +124,7 @@ def wired_robot(options: Namespace, language: str) -> Robot:
 def robot_for(program_input: Input, options: Namespace, language: str) -> Robot:
     """Return the robot that `--robot` names, else the one that the program names, else the default.
 
-    What the program names counts from now on as if `--robot` had named it.
+    From then on, a robot that the program names counts as if `--robot` had named it.
     """
     robot_name = named_robot.shipped_name_in(program_input.data)
     if options.robot is None:

@@ -1,6 +1,6 @@
 """`tsc lesson check`: one program, or every program of a folder, in the worlds of a lesson.
 
-Decides what is said of a program and in which form; `lessons.running` lets it drive, and
+Decides which messages a program gets, and in which form; `lessons.running` lets it drive, and
 `lessons.judging` compares.
 """
 
@@ -43,7 +43,7 @@ from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.world import WorldRefused
 
 MOST_PROGRAMS = 200  # most programs in a folder
-LEAST_COLUMNS = 24  # columns that a sentence needs beside its program; otherwise it goes below
+LEAST_COLUMNS = 24  # columns that a sentence needs next to its program; otherwise below it
 TEXT_ENDINGS = (*PROGRAM_ENDINGS, ".txt")
 NOTES_NAME = re.compile(r"(?:read ?me|leeme|notes|notas)(?![^\W\d_])", re.IGNORECASE)  # names
 # A line of a program begins so, also a wrong one: `SI|`, `SI`, `F 2`, `ADELANTE (2)`, `x = 3`.
@@ -52,7 +52,7 @@ PROGRAM_LINE = re.compile(
     re.IGNORECASE,
 )
 PASSED, FAILED, MISTAKES, UNREADABLE = "passed", "failed", "mistakes", "unreadable"
-NO_PROGRAM = "no_program"  # notes beside the programs; they count for nothing
+NO_PROGRAM = "no_program"  # notes next to the programs; they are ignored
 
 
 class Mark(NamedTuple):
@@ -225,7 +225,7 @@ def _name_notes(marks: Sequence[Mark], options: Namespace, language: str) -> Non
 def _is_note(file: ProgramFile) -> bool:
     """Return whether a `.txt` file is named like notes and has no line that looks like a program.
 
-    In doubt it is a program: what a pupil has handed in is marked, however wrong it is.
+    When in doubt, it is a program: a pupil's work is marked, however wrong it is.
     """
     if file.name.lower().endswith(PROGRAM_ENDINGS) or file.problem is not None:
         return False

@@ -97,7 +97,8 @@ class Options(ArgumentParser):
     def _check_choice(self, option: Option, typed_value: str | None) -> None:
         """Refuse a value that is not among the option's choices, or that goes with another one.
 
-        Whatever stands beside it: `--board nano --port P` is no board too many, but a chip.
+        Other options do not matter: in `--board nano --port P`, the mistake is the chip, not an
+        extra board.
         """
         if option.flags == "--board" and typed_value is not None:
             from tiniscript.flash.bootloaders import BOARDS

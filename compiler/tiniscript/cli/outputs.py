@@ -18,8 +18,8 @@ MOST_PRINTED_DIAGNOSTICS = 20  # diagnostics that are printed; a person mends th
 def write(path: Path, data: bytes, error_key: str, mode: int | None = None) -> None:
     """Write a file, all of it or nothing: the old file stays until the new one is whole.
 
-    `mode` is what its permissions become. Raises CommandError with the sentence of `error_key`
-    if that is not possible.
+    `mode` is the permissions that it gets. Raises CommandError with the sentence of `error_key` if
+    that is not possible.
     """
     from tiniscript.base import files
 
@@ -34,7 +34,7 @@ def write(path: Path, data: bytes, error_key: str, mode: int | None = None) -> N
 def write_output(name: str | None, data: bytes) -> bool:
     """Write into the file that `-o` names, or to standard output; return whether into a file.
 
-    Text is UTF-8 there, whatever the locale. Raises CommandError.
+    The text is UTF-8 there, whatever the locale. Raises CommandError.
     """
     if name not in (None, "-"):
         write(Path(name), data, "unwritable")

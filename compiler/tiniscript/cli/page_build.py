@@ -1,6 +1,6 @@
 """The studio's page in a clone: built if it is missing, if the person agrees.
 
-Whoever makes a wheel at a terminal of a clone is asked by it, too.
+It also asks whoever builds a wheel at a terminal of a clone.
 """
 
 from __future__ import annotations

@@ -3,9 +3,9 @@
 No output may be a file that the same command reads, or another of its outputs, or a file that tsc
 has not made: the check comes before anything is read, sent or written. It compares files, not
 names: a link, another hard link, `./`, other capitals and `/dev/stdin` may be the same file. A
-terminal or `/dev/null` may be read and written at once; the port of a robot may not. What tsc has
-made is known by its content: the beginnings of images, lines, headers, pages, maps, pictures,
-reports, rows and recordings.
+terminal or `/dev/null` may be read and written at once; the port of a robot may not. Files that tsc
+has made are recognized by their content: the beginnings of images, lines, headers, pages, maps,
+pictures, reports, rows and recordings.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The programs that a command names: files, and all programs in folders.
 
-Follows no link to a folder, and opens nothing that is not a file: a folder may hold anything.
+It follows no link to a folder, and opens only regular files: a folder may contain anything.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Repairs of a program's file: which text it gets, and how the change is shown.
 
-Knows bytes, lines and colors. What is repaired, and what is not, `diagnostics.fixing` knows.
+Knows bytes, lines and colors. `diagnostics.fixing` decides which mistakes are repaired.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def repair(program_input: Input, robot: Robot) -> RepairedProgram:
 
 
 def print_difference(old_data: bytes, new_data: bytes, name: str) -> None:
-    """Print what differs in two texts, as `diff -u` does; on a terminal in colors."""
+    """Print the differences between two texts, as `diff -u` does; on a terminal in colors."""
     has_color = has_colors(sys.stdout)
     for line in _difference(old_data.decode(), new_data.decode(), printable(name)):
         color_code = (

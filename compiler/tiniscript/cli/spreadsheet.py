@@ -1,7 +1,7 @@
 """Rows for a spreadsheet: CSV that Excel and LibreOffice open with its accents.
 
-Its heads are in the reader's language, and so is what its cells end with, as Excel takes them: in
-Spanish a semicolon. A cell may come from a pupil: none begins a formula, and none has control
+Its headings are in the reader's language, and its separator is the one that Excel expects there: in
+Spanish a semicolon. A cell may come from a pupil: no cell begins a formula or contains control
 characters.
 """
 

@@ -1,8 +1,8 @@
-"""What an output can show: which characters, how wide, and whether colors and a moving cursor.
+"""The abilities of an output: its characters, its width, colors and a moving cursor.
 
-A window of Windows shows each character, but what goes from there into a file or a pipe is in
-cp1252, cp850 or another of its code pages, without Ω, arrows and dots. A sign that has a plain
-counterpart becomes it; any other character becomes its number, as `\\u03c0`.
+A console window of Windows shows every character, but output to a file or a pipe is in cp1252,
+cp850 or another code page, without Ω, arrows and dots. A sign that has a plain counterpart becomes
+it; any other character becomes its number, as `\\u03c0`.
 
 Terminals of Unix read sequences. A console of Windows 10 or newer does when it is asked to:
 PowerShell and the Windows Terminal ask for the commands they start, cmd only for itself, and then a
@@ -83,10 +83,10 @@ def has_colors(stream: TextIO) -> bool:
 
 
 def drop_unread_output() -> None:
-    """Redirect outputs without a reader to nowhere, so that an interrupted command neither writes
-    to them nor waits.
+    """Redirect outputs without a reader to the null device, so that an interrupted command neither
+    writes to them nor waits.
 
-    A pipe whose reader is only slow takes what is written within UNREAD_S.
+    A pipe whose reader is merely slow accepts the output within UNREAD_S.
     """
     if sys.platform == "win32":
         return
@@ -103,8 +103,8 @@ def drop_unread_output() -> None:
 
 
 def raise_if_reader_gone() -> None:
-    """Raise BrokenPipeError where the reader of the output has gone: who writes nothing does not
-    notice. Windows does not tell."""
+    """Raise BrokenPipeError if the reader of the output has gone: a process that writes nothing
+    does not notice. Windows does not report this."""
     if sys.platform == "win32":
         return
     try:
@@ -114,7 +114,7 @@ def raise_if_reader_gone() -> None:
         return
     if not (stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode)):
         return
-    import select  # asked only if nothing may be written for long
+    import select  # asked only if there may be no output for long
 
     poller = select.poll()
     poller.register(descriptor, 0)
@@ -123,7 +123,7 @@ def raise_if_reader_gone() -> None:
 
 
 def _write_all(stream: TextIO, pipe: int) -> bool:
-    """Write what waits for a pipe; return whether all was taken in time."""
+    """Write the pending output to a pipe; return whether all of it was accepted in time."""
     if sys.platform == "win32":
         return False
     import select  # the module may have been interrupted while loading
@@ -141,14 +141,14 @@ def _write_all(stream: TextIO, pipe: int) -> bool:
             else:
                 # less than this may be taken at once: then the next row would wait
                 return bool(select.select([], [pipe], [], max(0, end_s - monotonic()))[1])
-    except OSError:  # the reader has gone: that has an exit code of its own
+    except OSError:  # the reader has closed the pipe: that has its own exit code
         return True
     finally:
         os.set_blocking(pipe, True)
 
 
 class WrappingStream:
-    """A terminal that breaks each `Sentence` at its width. Frames and tables are none."""
+    """A terminal that breaks each `Sentence` at its width. Frames and tables do not count."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
@@ -170,7 +170,7 @@ _COMMAND = re.compile(r"(?<=[^ ] {2})[^ \n]+(?: [^ \n]+)*")
 
 
 def wrap(sentence: str, columns: int) -> str:
-    """Return a sentence in rows; what stands after two blanks is a command."""
+    """Return a sentence in rows; text after two blanks is a command."""
     from textwrap import fill
 
     def keep_spaces(match: re.Match[str]) -> str:

@@ -1,7 +1,7 @@
-"""Which command is meant if no verb stands: `tsc uplod`, `tsc prog.ts`, `tsc help "put on"`.
+"""Finds the command meant without a verb: `tsc uplod`, `tsc prog.ts`, `tsc help "put on"`.
 
-Knows what a command was called when it was a verb, too. A question may have words of several
-languages: the tables of verbs and options have all of them.
+It also knows commands by the names of former verbs. A question may have words of several languages:
+the tables of verbs and options have all of them.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from tiniscript.cli.texts.verbs import (
 
 
 def refuse(name: str, words: list[str], language: str) -> NoReturn:
-    """Raise CommandError where a word stands in place of a verb, with `words` after it."""
+    """Raise CommandError if a word is in the place of a verb, with `words` after it."""
     if name in FORMER_COMMANDS:
         raise CommandError(
             2, "was_verb", was=name, now=_present_command(FORMER_COMMANDS[name], words, language)
@@ -79,7 +79,7 @@ def _names_in_languages(verb: str) -> str:
 
 
 def refuse_program(name: str) -> None:
-    """Raise CommandError that names verbs where a program stands in place of one.
+    """Raise CommandError that names verbs if a program is in the place of one.
 
     tsc does not choose a verb: a robot moves only when the user has asked for it.
     """
@@ -110,8 +110,8 @@ STEM_LETTERS = 5  # letters in which forms of a word agree: connect, connected; 
 def verbs_for(question: str) -> list[str]:
     """Return the commands whose texts have the words of a question, best first; most have none.
 
-    A word counts more where fewer commands have it, and more in a command's name (also that of the
-    verb that it was) and summary than in what else is said of it.
+    A word counts more if fewer commands have it, and more in a command's name (including its old
+    verb) and summary than in the rest of its description.
     """
     weights_by_command = {command: _weights(command) for command in COMMANDS}
     scores = dict.fromkeys(COMMANDS, 0.0)
@@ -162,7 +162,7 @@ def _stems(text: str) -> set[str]:
 
 @cache
 def _idle_words() -> frozenset[str]:
-    """Return words that say nothing of what a command does."""
+    """Return words that do not help to identify a command."""
     return frozenset(
         word for language in languages() for word in verb_text("idle", language).split()
     )

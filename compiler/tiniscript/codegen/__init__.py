@@ -1,1 +1,1 @@
-"""Turns IR into what robots run: instructions, each with its source location; text; sketches."""
+"""Turns IR into code for robots: instructions, each with its source location; text; sketches."""

@@ -1,11 +1,11 @@
 """Lowering: IR becomes instructions, and instructions become code bytes.
 
-Knows which instruction says a thing in the fewest bytes, and lays out jumps: each starts
-short, and becomes far where its target is. Does not know what an image is.
+Knows which instruction says a thing in the fewest bytes, and lays out jumps: each starts short, and
+becomes far where its target is. It does not know the format of images.
 
-Plain code is what one pass over the text can emit, as a robot does that reads text
-(`docs/develop/text.md`): no instruction that fuses others, every ELSE of the text, DEFs where they
-stand.
+Plain code is what one pass over the text can emit, as in a robot that reads text
+(`docs/develop/text.md`): it has no fused instructions, keeps every ELSE of the text, and leaves
+DEFs where they are.
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
@@ -133,7 +133,7 @@ class _Lowering:
         power = None if move.power is None else self.percentage(move.power, 0)
         name = "WAIT" if power is None else move.direction
         until = move.until
-        if until is None and time is None:  # a move forever, beside other tasks
+        if until is None and time is None:  # an endless move in a program with other tasks
             until = ir.Until((), (ir.Term("YES_NO", 0),))
         if until is None and time is not None and not move.unit:
             time_ms = self.constant_of(time)

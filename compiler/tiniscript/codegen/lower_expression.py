@@ -1,8 +1,8 @@
 """Lowering: expressions become instructions, and conditions become branches.
 
-Knows the shortest push of a constant, when both sides of an AND may simply be evaluated, and
-which conditions compare to a constant. In plain code (`lower`) nothing of that is chosen but the
-push: each operator is its instruction, and a condition is a value that IF or UNTIL takes.
+Knows the shortest push of a constant, when both sides of an AND may simply be evaluated, and which
+conditions compare to a constant. In plain code (`lower`), only the push is chosen: each operator is
+its instruction, and a condition is a value for IF or UNTIL.
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
@@ -247,7 +247,8 @@ def _comparison_to_constant(expression: Expression) -> _Comparison | None:
 def _matching_index(
     expression: Expression, indexes: range, openers: Sequence[str], closers: Sequence[str]
 ) -> int:
-    """Return the first of `indexes` with one of `closers` that none of `openers` there opens."""
+    """Return the first of `indexes` with one of `closers` that has no opening one of `openers`
+    there."""
     depth = 0
     for k in indexes:
         op = expression[k].op

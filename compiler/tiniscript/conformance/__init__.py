@@ -1,5 +1,5 @@
 """Tests of other people's machines and robots against the specification.
 
-Knows the cases that `docs/develop/conformance.md` describes, how a machine is asked as a process of
-its own and a robot over the link, and what differs. Prints nothing.
+It knows the cases of `docs/develop/conformance.md`, how to ask a machine as a child process and a
+robot over the link, and which answers differ. It prints nothing.
 """

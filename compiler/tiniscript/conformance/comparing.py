@@ -45,7 +45,7 @@ AskMachine = Callable[[str, int], Sequence[str]]
 
 
 def verdicts(cases: Iterable[MachineCase], answer_of: AskMachine) -> Iterator[Verdict]:
-    """Yield the verdict of each case, up to if nobody waits for more.
+    """Yield the verdict of each case.
 
     A machine that refuses the first case that needs something lacks it, and is asked for no other.
     `needs` has a bit for each thing.

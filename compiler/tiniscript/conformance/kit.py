@@ -1,8 +1,8 @@
 """The tests for a machine or a robot on a port: `machine.json` and `link.json` as values.
 
-`python -m tools.builds.conformance` makes the files, which a package of a release has. Knows their
-form, and how a case is told to a machine: `docs/develop/conformance.md` has both. The conversations
-of `link.json` are for tests of others.
+`python -m tools.builds.conformance` makes the files, which a package of a release has. It knows
+their format, and how a case is given to a machine: `docs/develop/conformance.md` has both. The
+conversations of `link.json` are for tests of others.
 """
 
 from __future__ import annotations

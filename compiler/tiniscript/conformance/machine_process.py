@@ -1,7 +1,7 @@
 """A machine as a process of its own: it is asked for runs on its standard input, and answers.
 
-Knows the process, its time and its bounds: one that hangs, crashes, floods or goes on after its
-answer ends as a Problem. Does not know what an answer should be. The form:
+Knows the process, its time and its bounds: one that hangs, crashes, floods or continues after its
+answer ends as a Problem. It does not know what an answer should be. The form:
 `docs/develop/conformance.md`.
 """
 
@@ -31,7 +31,7 @@ EXIT_TIMEOUT_S = 0.5  # time for a process to exit after its output has ended
 
 
 class Problem(Exception):
-    """No answer. `kind` is hang, crash, flood or more; `detail` is the exit code or what it wrote;
+    """No answer. `kind` is hang, crash, flood or more; `detail` is the exit code or its output;
     `rows` are the lines that came before."""
 
     def __init__(self, kind: str, detail: str, rows: tuple[str, ...]) -> None:
@@ -125,10 +125,11 @@ class MachineProcess:
 
     @staticmethod
     def _read(pipe: IO[bytes], chunks: queue.Queue[bytes]) -> None:
-        """Pass on what comes; nothing is the end.
+        """Pass on its output; an empty text is the end.
 
-        A thread closes its pipe itself: closed by another between `fileno` and `read`, the number
-        may be the next process's pipe already, whose answer would be read here.
+        Each thread closes its own pipe: if another thread closed it between `fileno` and `read`,
+        the number could already belong to the pipe of the next process, whose answer would be read
+        here.
         """
         data = b"?"
         with pipe:

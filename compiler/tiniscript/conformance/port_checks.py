@@ -1,7 +1,7 @@
 """The checks of a robot on a port, one after the other: frames, programs, refusals, stops.
 
-No program turns a motor, and nothing is saved; what the robot holds in RAM is another one then.
-Knows what each answer should be. Prints nothing.
+No program turns a motor, and nothing is saved, but the content of the robot's RAM is replaced. It
+knows what each answer should be. It prints nothing.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ class Check(NamedTuple):
 
 
 def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
-    """Yield the verdict of each check. Raises OSError if the port is gone.
+    """Yield the verdict of each check. It raises OSError if the port is lost.
 
-    A robot that answers nothing any more fails a check as `silent_count`; after three in a row the
-    rest is left out.
+    A robot that stops answering fails a check as `silent_count`; after three in a row, the rest is
+    left out.
     """
     silent_count = 0
     for check in checks:
@@ -67,7 +67,7 @@ def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
 
 
 def reset_robot(robot: WireRobot) -> None:
-    """Leave nothing of the check before: no run, no latch, no event."""
+    """Remove the traces of the check before: its run, its latch and its events."""
     state = robot.ask("PING").values.get("state")
     if state == STATES.index("RUNNING"):
         robot.ask("STOP")
@@ -254,7 +254,7 @@ _PLACE_ROWS = ("no place before", "1 of what runs", "no place unasked")
 
 def _check_place(robot: WireRobot) -> tuple[str, ...]:
     if not greet(robot).number("features") & PLACES:
-        return _PLACE_ROWS  # the robot does not announce places, so none is requested
+        return _PLACE_ROWS  # the robot does not report places, so none is requested
     earlier_answer = robot.ask("PING", {"asks": b"?"})
     program = run_live(robot, WAIT_20).number("program")
     place_field = _bytes_field(robot.ask("PING", {"asks": b"?"}), "place")

@@ -1,6 +1,6 @@
 """A robot on a wire, asked frame by frame: also with frames that a session would never send.
 
-Knows frames, retries and the heartbeat. Does not know what an answer should be.
+Knows frames, retries and the heartbeat. It does not know what an answer should be.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Silent(Exception):
 
 
 class Answer(NamedTuple):
-    """`values` are those of the reply where the status is OK, else empty."""
+    """`values` are those of the reply if the status is OK, and empty otherwise."""
 
     status: int
     detail: int
@@ -89,7 +89,7 @@ class WireRobot:
         values: Mapping[str, int | bytes] | None = None,
         try_count: int = MOST_TRIES,
     ) -> Answer:
-        """Return the answer to a request with a new number; send it again if none comes."""
+        """Return the answer to a request with a new number; send it again if none arrives."""
         message = BY_NAME[name]
         payload = encode_payload(message.request, values or {})
         return self.ask_frame(message.number, payload, try_count, message=name)
@@ -144,7 +144,7 @@ class WireRobot:
         return frames
 
     def _replies(self) -> list[Frame]:
-        """Take what has arrived: keep events and the epoch, and return the replies."""
+        """Process the received frames: keep events and the epoch, and return the replies."""
         *packets, self._unread = (self._unread + self.wire.receive(LOOK_INTERVAL_MS, 1)).split(
             b"\0"
         )

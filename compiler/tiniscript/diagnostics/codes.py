@@ -30,8 +30,8 @@ class Repair(NamedTuple):
 class Diagnostic(NamedTuple):
     """A diagnostic with its place. `values` fill the gaps in its message.
 
-    `place` is what the thing to try stands for, if that is not `span`. `repair` is what
-    who found it says of the change, None if `fixing` looks for it in the values.
+    `place` is the text that the thing to try replaces, if that is not `span`. `repair` is the
+    finder's description of the change, None if `fixing` looks for it in the values.
     """
 
     code: Code
@@ -238,7 +238,7 @@ NEW_THROW = _warning("TS843")
 def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """Return diagnostics by place, and of several mistakes in one place the first that was found.
 
-    What begins where another mistake begins is most often its consequence.
+    A mistake that begins where another one begins is usually its consequence.
     """
     diagnostics_kept = []
     mistake_starts = set()

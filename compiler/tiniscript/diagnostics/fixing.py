@@ -1,9 +1,9 @@
 """Makes the certain repairs of a program, and checks that offers are right.
 
-What is offered is right: the text with it has no mistake that begins in what it writes, else the
-mistake is told without it (`drop_wrong_offers`). A repair is sure where the message leaves no
-choice: it drops or invents no number, it does not guess a name, and with it the program has fewer
-mistakes. All others are left to the reader.
+An offer is always right: the text with it has no mistake that begins in the new part; otherwise the
+mistake is reported without the offer (`drop_wrong_offers`). A repair is sure where the message
+leaves no choice: it drops or invents no number, it does not guess a name, and with it the program
+has fewer mistakes. All others are left to the reader.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from tiniscript.base.source import Edit, Source, Span, apply_edits, edits_overla
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 
-# The gap of a message that is to be written. What is only an example (`F(2, 80)` for F alone), or
-# names two ways, is no change.
+# The gap of a message that is to be written. A suggestion that is only an example (`F(2, 80)` for F
+# alone), or names two ways, is not an edit.
 _SHOWN_GAPS = ("fix", "right", "near")  # the first of them that a diagnostic has
 _GAPS_BY_CODE: dict[Code, tuple[str, ...]] = {
     **dict.fromkeys((codes.UNKNOWN_WORD, codes.UNKNOWN_NAME, codes.WANTS_CONDITION,
@@ -53,7 +53,7 @@ MOST_OFFERS = 20  # repairs of one text that are tried
 
 
 class RepairedProgram(NamedTuple):
-    """`text` is the program with its sure repairs, `diagnostics_left` what it still has."""
+    """`text` is the program with its sure repairs, `diagnostics_left` its remaining diagnostics."""
 
     text: str
     repair_count: int
@@ -90,7 +90,7 @@ def repair_program(text: str, check: Check) -> RepairedProgram:
 def _tidy(edit: Edit, text: str) -> Edit:
     """Return an edit that leaves no blank line, and no blanks before an instruction or at an end.
 
-    What is taken out takes with it the blanks that stood around it, or its line.
+    Removing text also removes the blanks around it, or its whole line.
     """
     start, end = edit.span
     if edit.text or start == end:
@@ -128,15 +128,16 @@ def _repair_steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ..
 def edits_offered(
     text: str, diagnostics: Sequence[Diagnostic], index: int, check: Check
 ) -> list[Edit]:
-    """Return the changes of one of a text's diagnostics that a reader may choose to make, or none.
+    """Return the edits that a reader may choose for one of a text's diagnostics, if any.
 
-    With them the program has fewer mistakes, or for a warning no more of them and the warning is
-    gone. They may be a guess, and change what the program does: somebody looks at them.
+    The edits leave fewer mistakes; for a warning, the warning disappears and there are no more
+    mistakes than before. They may be a guess, and change the program's behaviour: a person reviews
+    them.
     """
     source, diagnostic = Source(text), diagnostics[index]
     edits = edits_of(diagnostic) or []
     lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
-    # Nothing has changed yet, so nothing is copied.
+    # No edit has been made yet, so no copy is needed.
     if not edits or any("~" in line for line in lines):
         return []
     diagnostics_after = check(apply_edits(text, edits))
@@ -159,10 +160,11 @@ def _removes_warning(
 def drop_wrong_offers(
     diagnostics: Sequence[Diagnostic], text: str, check: Check
 ) -> list[Diagnostic]:
-    """Return diagnostics without what they offer where that is itself wrong.
+    """Return diagnostics without offers that are themselves wrong.
 
-    It may be right only together with what others offer, as the header of a block and its end, and
-    another mistake in it may be told as well. In a long text what is told last is not looked at.
+    An offer may be right only together with others, such as the header of a block and its end, and
+    another mistake in it may be reported as well. In a long text, the last diagnostics are not
+    checked.
     """
     checks_left = min(MOST_CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
     diagnostics_kept = list(diagnostics)
@@ -204,11 +206,11 @@ def drop_wrong_offers(
 def _covered_by_offer(
     diagnostics: Sequence[Diagnostic], offers: Sequence[list[Edit]], k: int, text: str
 ) -> set[str]:
-    """Return codes and words of mistakes that may be in what the diagnostic `k` offers."""
+    """Return codes and words of mistakes that may be in the offer of diagnostic `k`."""
     codes_and_words = (
         set() if offers[k] else {codes.NEVER_ENDS.number}
     )  # a header is shown without its end
-    if diagnostics[k].code is codes.RESERVED:  # `S = S + 1`, by whatever name
+    if diagnostics[k].code is codes.RESERVED:  # `S = S + 1`, with any name
         codes_and_words.add(codes.USED_BEFORE_SET.number)
     for diagnostic, edits in zip(diagnostics, offers, strict=True):
         if diagnostic is not diagnostics[k]:
@@ -230,7 +232,7 @@ def _covered_by_offer(
 
 
 def _shown_edits(diagnostic: Diagnostic, text: str) -> Iterator[list[Edit]]:
-    """Yield how a message may mean what it shows, where it names no changes.
+    """Yield the possible edits of a message that shows an example but names no edits.
 
     In its place, in place of its line, or of all.
     """

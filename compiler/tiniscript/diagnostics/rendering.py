@@ -1,16 +1,16 @@
 """Diagnostics become words: in the reader's language, for people and for editors.
 
 Knows how the texts of the catalogue are filled, and how a line of a program is shown with the place
-marked under it. Knows no single diagnostic. Prints nothing.
+marked under it. Knows no single diagnostic. It prints nothing.
 
-Of each code the catalogue has a title, which is the diagnostic in general words; a message, which
-is one cause; what to try, which is one thing; and what `tsc check --explain` says: more, a program
-with the diagnostic, its first one, and the mended program, both if it is in a short text. Messages
+For each code, the catalogue has a title, which describes the diagnostic in general; a message,
+which names one cause; one thing to try; and the text of `tsc check --explain`: more details, a
+program for which this is the first diagnostic, and the mended program, if they are short. Messages
 and things to try have gaps: `{found}` is a value itself, `{@unit}` one in the reader's language.
-Words in it that are terms are translated, all else stays: `F(time, power)` is `F(tiempo,
-potencia)`. A value that begins with @ is a term, wherever it stands. Of several texts, `/message`,
-`/message/2`, the first one whose gaps all have a value is taken, else the last one. No full stop
-stands right after a gap or a piece of program: it would look like a part of it.
+Terms in it are translated, the rest stays as it is: `F(time, power)` is `F(tiempo, potencia)`. A
+value that begins with @ is a term, anywhere. Of several texts, `/message`, `/message/2`, the first
+one whose gaps all have a value is used, otherwise the last one. No full stop comes right after a
+gap or a piece of program: it would look like a part of it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ LINE_COLUMNS = 100  # columns of a program's line; a longer one is cut to a wind
 MOST_COLUMNS_ON_LEFT = 40  # columns of that window before the place
 ROW_CHARACTERS = 110  # a longer message has its suggestion in a row of its own
 VALUE_CHARACTERS = 60  # characters of the program's text within a message
-FIX_CHARACTERS = 200  # characters of a fix, which is cut only if nobody would copy it
+FIX_CHARACTERS = 200  # characters of a fix, which is cut only if a reader would not copy it
 TAB = "    "
 
 _LINE_GAPS = frozenset(("line", "row", "here", "first", "last", "out", "rest"))
@@ -55,9 +55,9 @@ class Message(NamedTuple):
     fix: str
 
 
-# What else belongs to what is to be tried, which is copied as it stands: what is written then where
-# it is used, what may be meant as well, and that it may be a note. What is said of it belongs to
-# the message: what it leaves out, and what of it nobody wrote.
+# Additions to the thing to try, which is copied as it is: what is then written where it is used,
+# other possible meanings, and that it may be a note. The message describes its limits: what it
+# leaves out, and which parts nobody wrote.
 _SECONDARY_GAPS = ("carried", "rival", "note", "last_note")
 _COPIED_GAPS = frozenset(("fix", "right", "whole", "made", "note", "after", "begun"))
 _SUPPLEMENT_GAPS = ("lost", "sample", "samples")
@@ -239,7 +239,8 @@ def _value_text(value: str, should_translate: bool, language: str, most_characte
 
 
 def _shown_range(text: str, span: Span) -> tuple[int, int]:
-    """Return the start and the end of what to point at: something, wherever there is something.
+    """Return the start and the end of the text to point at, which is never empty if there is any
+    text.
 
     Line ends at the end are left out; an empty place becomes the character there or, at the end
     of a line, the last one before that can be seen.

@@ -32,7 +32,7 @@ _MODULE_NAME = re.compile(
 
 
 class Adapter(NamedTuple):
-    """A USB adapter: its chip, the driver that it wants, and the one that has it (or none)."""
+    """A USB adapter: its chip, the driver that it needs, and the one in use (or none)."""
 
     chip: str
     wanted_driver: str
@@ -41,10 +41,10 @@ class Adapter(NamedTuple):
 
 
 class Computer(NamedTuple):
-    """`adapters` and `paired_names` are None if the system does not tell.
+    """`adapters` and `paired_names` are None if the system does not report them.
 
-    `paired_names` are names of Bluetooth devices: they may be those of persons' telephones, and are
-    never told. `programs` are those of interest that run.
+    `paired_names` are names of Bluetooth devices: they may be those of people's phones, and are
+    never reported. `programs` are those of interest that run.
     """
 
     platform: str

@@ -1,7 +1,7 @@
-"""The way of the doctor: first the computer, then the port, then what answers there.
+"""The steps of the doctor: first the computer, then the port, then the device there.
 
-A port is opened only if nothing else has it, and that of a cable only after a yes: opening it
-restarts most boards.
+A port is opened only if no other program has it open, and the port of a cable only after the user
+agrees: opening it restarts most boards.
 """
 
 from __future__ import annotations
@@ -154,7 +154,7 @@ def _diagnose_open_port(
         findings = [Finding(cause, not is_address(port))]
     finally:
         wire.close()
-    # a key is shown by the connection alone, and a robot with an owner tells more then
+    # only the connection shows a key, and then an owned robot reports more
     has_key = any(
         answer.hello.features & OWNED and expectations.has_key(answer.hello.id)
         for answer in answers
@@ -166,7 +166,8 @@ def _diagnose_open_port(
 
 
 def _only_port(computer: Computer, virtual_ports: tuple[str, ...]) -> str | None:
-    """Return the only port that may be a robot's: of USB or Bluetooth, else of a virtual one."""
+    """Return the only port that may be a robot's: on USB or Bluetooth, otherwise a virtual
+    one's."""
     names = [
         port.port for port in computer.ports
         if "usb" in port.port.lower() or "acm" in port.port.lower()

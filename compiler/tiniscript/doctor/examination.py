@@ -1,6 +1,6 @@
 """Examines a robot that answers: its versions, kit, supply and restarts, and how well it hears.
 
-Everything is asked; nothing is started, stopped, set or written.
+It queries everything, but starts, stops, sets and writes nothing.
 """
 
 from __future__ import annotations
@@ -53,13 +53,13 @@ class RobotAnswers(NamedTuple):
 
 
 class Expectations(NamedTuple):
-    """The kit that the robot should have, None for any; `name_of_kit` says whose a kit is, or
-    nothing.
+    """The kit that the robot should have, None for any; `name_of_kit` returns the robot of a kit,
+    or an empty text.
 
     `has_key` says whether this computer has a key of the robot with this id. `doubt_of` returns the
-    cause why what answers on `port` may be another robot than that of a key, or nothing. `on_facts`
-    gets what a robot has told of itself, whatever is wrong with it, and `on_answers` the answers.
-    `ping_count`: how many times it is asked whether it hears.
+    cause why the robot on `port` may not be the one of a key, or nothing. `on_facts` gets a robot's
+    own description, whatever is wrong with it, and `on_answers` the answers. `ping_count`: how many
+    times it is asked whether it hears.
     """
 
     kit: int | None
@@ -86,7 +86,7 @@ def examine(
 ) -> list[Finding]:  # fmt: skip
     """Return the faults of a robot whose answer to HELLO is `hello_reply`.
 
-    If nothing is, the only finding that is not a note is `fine`. `on_step` gets `pings` and
+    If there are none, the only finding that is not a note is `fine`. `on_step` gets `pings` and
     `watch`.
     """
     hello = hello_values(hello_reply)
@@ -160,7 +160,7 @@ def _other_link(reply: Reply[SentReply]) -> Finding:
 
 
 def _version_findings(hello: HelloReply) -> list[Finding]:
-    """Compare versions: what a newer robot has more does no harm."""
+    """Compare versions: additional features of a newer robot do no harm."""
     robot_isa, own_isa = (hello.isa_major, hello.isa_minor), (ISA_MAJOR, ISA_MINOR)
     is_newer = hello.isa_major > ISA_MAJOR or hello.major > MAJOR
     if not is_newer and robot_isa >= own_isa and (hello.major, hello.minor) >= (MAJOR, MINOR):
@@ -185,7 +185,7 @@ def _kit_findings(hello: HelloReply, expectations: Expectations) -> list[Finding
 
 
 def _owner_findings(robot: Robot, hello: HelloReply, expectations: Expectations) -> list[Finding]:
-    """Compare the allowed drivers: refusals look like a robot that does nothing."""
+    """Compare the allowed drivers: a refusal looks like a robot that does nothing."""
     may_be_own = not robot.has_shown_keys and expectations.has_key(hello.id)
     is_others = hello.features & (OWNED | YOURS) == OWNED and not may_be_own
     return [sure_finding("of_another_owner")] if is_others else []
@@ -239,7 +239,7 @@ def _link_findings(
 def trips_of(
     robot: Robot, count: int, pause: Callable[[], None] = lambda: None
 ) -> tuple[float, ...]:
-    """Send so many PING; return how many milliseconds each answer took that came at once."""
+    """Send this many PINGs; return the time in milliseconds of each immediate answer."""
     trips_ms: list[float] = []
     for _ in range(count):
         missed_before, began_s = robot.missed_count, perf_counter()

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.link import foreign
 
-OK, OPEN, WRONG = "ok", "open", "wrong"  # OPEN: nothing is wrong for sure, and a person may look
+OK, OPEN, WRONG = "ok", "open", "wrong"  # OPEN: no fault is sure, and a person may look
 
 
 class FindingKind(NamedTuple):
@@ -93,7 +93,7 @@ CAUSES = dict((
 
 
 class Finding(NamedTuple):
-    """A cause, whether it is sure or only probable, and what was seen: it fills the sentences.
+    """A cause, whether it is sure or only probable, and the evidence, which fills the sentences.
 
     `part_name` is the part that it is about, if that is another one than the table says: `left`.
     """

@@ -1,8 +1,8 @@
 """Identifies the other end of a port: a robot, an echo, a module, another board, nothing.
 
 First it listens, then it says HELLO, then it asks the harmless questions of `link.foreign`. Only on
-a cable, where the user has said yes, it asks at other speeds, too: a radio carries bytes, whatever
-speed its port has. Bytes that are text at a speed are of something that has this speed.
+a cable, and if the user has agreed, it also tries other speeds: a radio carries bytes whatever the
+speed of its port. Bytes that are text at a speed are of something that has this speed.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ def find_bootloader(
 ) -> tuple[Bootloader, bool] | None:
     """Restart the board and return the bootloader that answers, or None.
 
-    The second value: it answers later on, too; then there is nothing behind it. `on_bytes` gets
-    what the board says after each restart.
+    The second value: it still answers later on; then nothing is connected to it. `on_bytes` gets
+    the board's output after each restart.
     """
     for bootloader, greeting, answer in GREETINGS:
         wire.set_baud(bootloader.baud)
@@ -71,7 +71,7 @@ HELLO_TRIES = 5  # an old Nano's bootloader takes longer
 BAUDS = (9600, 115200, 57600, 38400, 19200)
 LISTEN_MS = 400  # time to listen for a sketch's output at one speed
 PROBE_TIMEOUT_MS, RADIO_PROBE_TIMEOUT_MS = 200, 500  # time for the answer of a foreign board
-LEAST_BYTES = 4  # fewer bytes prove nothing
+LEAST_BYTES = 4  # fewer bytes are not enough
 
 
 class PortFacts(NamedTuple):
@@ -130,7 +130,7 @@ def _has_module_error(received_bytes: bytes) -> bool:
 
 class _ForeignBoards:
     """Looks for foreign boards in the received bytes. A certain finding is reported at once; the
-    best uncertain one waits until nothing else is found.
+    best uncertain one is reported if nothing better is found.
     """
 
     def __init__(self, wire: Wire, wait_ms: int) -> None:
@@ -160,10 +160,10 @@ class _ForeignBoards:
         )
 
     def probe(self, received_bytes: bytes, may_be_text: bool) -> Finding | None:
-        """Send the probes, and return what surely answers, or is surely text without them.
+        """Send the probes, and return sure answers, or text that surely came without them.
 
-        Each answer is looked at by itself: one who says again what it gets must not be taken for a
-        board that answers the last probe with the next one.
+        Each answer is examined on its own: a device that echoes its input must not be mistaken for
+        a board that answers the last probe with the next one.
         """
         for row in foreign.BOARD_KINDS:
             if row.probe:
@@ -219,7 +219,7 @@ def _identify_echo_of_one_speed(wire: Wire, baud: int) -> Finding:
 
 
 def _text_beside(received_bytes: bytes, sent_bytes: bytes) -> str:
-    """Return the text received beside an echo, if any."""
+    """Return the text received together with an echo, if any."""
     for frame in sent_bytes.split(b"\0"):
         received_bytes = received_bytes.replace(frame, b"") if frame else received_bytes
     return foreign.readable_line(received_bytes.replace(b"\0", b""))
@@ -240,7 +240,7 @@ def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
 
 
 def _diagnose_radio(received_bytes: bytes) -> Finding:
-    """Diagnose the device behind a module that answers while its port is open."""
+    """Diagnose the device connected to a module that answers while its port is open."""
     if len(received_bytes) >= LEAST_BYTES:
         return probable_finding("module_baud", n=str(len(received_bytes)))
     return probable_finding("crossed")

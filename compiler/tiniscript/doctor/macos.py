@@ -31,7 +31,8 @@ def _query(system: System, data_type: str) -> list[dict[str, Any]] | None:
 
 
 def _adapters(devices: list[dict[str, Any]], has_port: bool) -> Iterator[Adapter]:
-    """Yield the adapters. Which port is whose is not told: a USB port is taken for all of them."""
+    """Yield the adapters. The system does not report which port is whose: a USB port is assumed for
+    all of them."""
     pending_devices = list(devices)
     while pending_devices:
         device = pending_devices.pop()

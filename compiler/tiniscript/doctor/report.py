@@ -38,7 +38,8 @@ def head(mark: str, title: str, facts: Iterable[tuple[str, str]], port: str | No
 
 
 def shown_port(name: str) -> str:
-    """Return a port's name without what tells whose it is: `socket://…`, `/dev/tty.usbmodem…`."""
+    """Return a port's name without parts that identify its owner: `socket://…`,
+    `/dev/tty.usbmodem…`."""
     if is_address(name):
         return name.partition("://")[0] + "://" + HIDDEN
     if re.fullmatch(r"/dev/(?:tty(?:USB|ACM|S|AMA)|rfcomm|pts/)\d{1,3}|COM\d{1,3}", name, re.I):

@@ -28,7 +28,7 @@ MOST_UNANSWERED = 3  # unanswered questions in a row after which the check ends
 
 class Robot(ABC):
     """`missed_count` is how many requests were not answered at the first try. `has_shown_keys`:
-    those of this computer, so that the robot has told whether it is the person's."""
+    those of this computer, so that the robot has reported whether it is the person's."""
 
     missed_count = 0
     has_shown_keys = False
@@ -108,7 +108,7 @@ class WireRobot(Robot):
 class SharedRobot(Robot):
     """A robot on a shared connection, which does the retries and shows keys.
 
-    `wait` waits for a request, if somebody is to be told that it takes long.
+    `wait` waits for a request, and may show the user that it takes long.
     """
 
     has_shown_keys = True

@@ -1,6 +1,6 @@
 """The door to this computer: files, folders, links, programs and ports, read and never written.
 
-Everything else in the doctor sees the computer through it, so that a test can give another one.
+The rest of the doctor sees the computer only through it, so that a test can substitute another one.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Owner(NamedTuple):
 class System:
     """The computer that this runs on, seen from the folder `root`.
 
-    What cannot be read is None or empty.
+    Values that cannot be read are None or empty.
     """
 
     def __init__(self, root: Path = Path("/")) -> None:
@@ -70,13 +70,13 @@ class System:
         return Owner(stat_result.st_gid, os.access(self._path(path), os.R_OK | os.W_OK))
 
     def groups(self) -> set[int]:
-        """Return the groups of this session: of those the user joined since, it has none."""
+        """Return the groups of this session: it lacks those that the user has joined since."""
         if sys.platform == "win32":
             return set()
         return {os.getegid(), *os.getgroups()}
 
     def user(self) -> str:
-        """Return the user's name, to look it up in a list of members. It is never told."""
+        """Return the user's name, to look it up in a list of members. It is never reported."""
         if sys.platform == "win32":
             return ""
         import pwd

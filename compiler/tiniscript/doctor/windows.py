@@ -1,6 +1,6 @@
 """Facts about a computer on Windows: pnputil, whose output is in the system's language.
 
-Only what is the same in every language is read: the numbers of devices.
+It reads only the parts that are the same in every language: the numbers of devices.
 """
 
 from __future__ import annotations

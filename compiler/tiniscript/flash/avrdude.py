@@ -1,6 +1,7 @@
 """Runs avrdude, which writes a firmware through a bootloader: finds it and reads its messages.
 
-Knows its messages from version 6.3 on. Prints nothing: progress and outcome are returned as data.
+Knows its messages from version 6.3 on. It prints nothing: progress and outcome are returned as
+data.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ MOST_ATTEMPTS = 2  # attempts before giving up; avrdude would make ten, of five 
 BAR_MARKS = 50  # marks of a full bar
 
 WRITING, READING = "writing", "reading"
-# How it may end.
+# The possible outcomes.
 DONE, NOBODY, OTHER_CHIP, DIFFERS = "done", "nobody", "other_chip", "differs"
 PORT_FAILED, BROKEN_OFF, FAILED, ENDLESS = "port", "broken_off", "failed", "endless"
 OUTCOMES = (DONE, NOBODY, OTHER_CHIP, DIFFERS, PORT_FAILED, BROKEN_OFF, FAILED, ENDLESS)

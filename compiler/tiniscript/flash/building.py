@@ -1,8 +1,8 @@
 """Builds the firmware of a robot with PlatformIO, from the sources that are in `vm_arduino`.
 
-Knows where sources and PlatformIO are, and what PlatformIO says while it builds. Prints nothing:
-progress is returned as data. A build is for one robot on one board; the header `own.h` describes
-the robot, whether it is a shipped one or not.
+It knows where sources and PlatformIO are, and how to read PlatformIO's output during a build. It
+prints nothing: progress is returned as data. A build is for one robot on one board; the header
+`own.h` describes the robot, whether it is a shipped one or not.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tiniscript.robots import firmware
 from tiniscript.robots.profile import Robot
 
 PACKAGE = Path(__file__).resolve().parent.parent
-# A wheel brings the sources; in a clone they are beside `compiler`.
+# A wheel contains the sources; in a clone they are next to `compiler`.
 SOURCE_FOLDERS = (PACKAGE / "flash" / "vm_arduino", PACKAGE.parent.parent / "vm_arduino")
 SETTINGS_FILE, PARTITIONS_FILE = "platformio.ini", "partitions.csv"
 HEADER_FILE = "src/boards/kits/own.h"
@@ -175,7 +175,7 @@ class _Project:
         return self.folder / ".pio" / "build" / self.environment / "firmware.hex"
 
     def run(self, on_progress: Callable[[StepProgress], None], *words: str) -> tuple[int, str]:
-        """Run PlatformIO; return its exit code, and what it has said.
+        """Run PlatformIO; return its exit code, and its output.
 
         It runs in the folder: Python finds modules where it begins, and not in a pupil's.
         """

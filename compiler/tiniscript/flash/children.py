@@ -1,6 +1,6 @@
-"""Other programs that run for this one: what they say meanwhile, and that they end with it.
+"""Child programs: reads their output while they run, and ensures that they end with this process.
 
-Knows processes. Does not know what they do; prints nothing.
+Knows processes. It does not know what they do, and prints nothing.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ def run(
     may_end: Callable[[str], bool] = lambda output: True,
     exit_timeout_s: float | None = None,
 ) -> tuple[int, str]:
-    """Run a program in a folder, or here; return its exit code, and what it has said.
+    """Run a program in a folder, or here; return its exit code, and its output.
 
-    `on_output` gets what it has said until now, ten times a second. An exception, such as Ctrl-C,
-    ends the program and its children; if it may not end after what it has said, it is waited for
+    `on_output` gets the output so far, ten times a second. An exception, such as Ctrl-C, ends the
+    program and its children; if its output shows that it must not be interrupted, it is awaited
     first. Raises CannotStart, and TimeoutExpired where it has not ended `exit_timeout_s` after its
     last output.
     """
@@ -81,7 +81,7 @@ def run(
             if reader.is_alive():  # a thread that reads while Python ends can take it down
                 reader.join(KILL_DELAY_S)
             raise
-    _kill(process)  # its children may go on, and hold a port
+    _kill(process)  # its children may continue, and hold a port
     return exit_code, output.decode(errors="replace")
 
 
@@ -90,7 +90,7 @@ def _hold_interrupt() -> Iterator[Callable[[], None]]:
     """Delay Ctrl-C until the yielded function is called, because a starting program could not be
     ended.
 
-    Only the main thread hears of it.
+    Only the main thread gets it.
     """
     if current_thread() is not main_thread():
         yield lambda: None
@@ -111,7 +111,7 @@ def _hold_interrupt() -> Iterator[Callable[[], None]]:
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a program and its children: it may be in the middle of keeping what it has fetched."""
+    """End a program and its children: it may be in the middle of storing a download."""
     try:
         if sys.platform != "win32":
             with suppress(OSError, subprocess.TimeoutExpired):
@@ -133,7 +133,7 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 
 def reason(log: str) -> str:
-    """Return the most useful line of what a program has said: the first error, else the last."""
+    """Return the most useful line of a program's output: the first error, else the last."""
     rows = [row.strip() for row in log.splitlines() if re.search(r"\w", row)]
     errors = [row for row in rows if re.search(r"\berror\b", row, re.IGNORECASE)]
     error_like_rows = [row for row in rows if "Error" in row]

@@ -24,7 +24,7 @@ DATA_RECORD, END_RECORD = "00", "01"  # record types in a HEX file
 
 
 class ReadyFile(NamedTuple):
-    """A firmware: an Intel HEX file, or what an ESP32 has in its flash."""
+    """A firmware: an Intel HEX file, or the content of an ESP32's flash."""
 
     title: str
     board: str
@@ -39,7 +39,7 @@ class ReadyFile(NamedTuple):
 
 
 def firmware_cache() -> Path:
-    """Return the user's folder for what was built."""
+    """Return the user's folder for built firmware."""
     return cache_folder() / "firmware"
 
 
@@ -104,7 +104,7 @@ def is_complete_hex(path: Path) -> bool:
 
 
 def store(title: str, board: str, digest: str, data: bytes) -> ReadyFile:
-    """Put a firmware into the cache, all of it or nothing. Raises OSError."""
+    """Put a firmware into the cache atomically. Raises OSError."""
     folder = firmware_cache()
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / file_name_of(title, board, digest)

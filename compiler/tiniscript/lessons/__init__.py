@@ -1,8 +1,8 @@
-"""Lessons: what pupils read and do, and how the virtual robot checks what they have done.
+"""Lessons: their texts and tasks, and how the virtual robot checks pupils' programs.
 
 Each lesson is a folder: `lesson.toml` (robot, criteria, how worlds vary), `world.toml`,
 `answers.toml` (programs that are right, and typical wrong ones), and the pages of pupils and
 teachers in each language. `reader` reads the data, `catalogue` finds folders, `variation` makes a
-world of a seed, `running` lets a program drive there, `judging` compares the run with the
-criteria, `sentences` says what came of it. `sheet` makes pages to print.
+world from a seed, `running` lets a program drive there, `judging` compares the run with the
+criteria, `sentences` describes the result. `sheet` makes pages to print.
 """

@@ -101,8 +101,8 @@ def page(folder: Path, audience: str, language: str) -> str:
 
 
 def whole_page(folder: Path, audience: str, language: str, form: str = TEXT) -> str:
-    """Return a page of a lesson with its numbers and its marks, for those who see programs in a
-    form. Raises LessonRefused.
+    """Return a page of a lesson with its numbers and its marks, for readers of one form of
+    programs. Raises LessonRefused.
     """
     paths = [folder / f"{audience}.{item}.md" for item in (language, SOURCE_LANGUAGE)]
     path = next((path for path in paths if path.is_file()), None)

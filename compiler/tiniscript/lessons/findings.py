@@ -22,7 +22,7 @@ STILL_CM = 1.0  # less is no move
 class Finding(NamedTuple):
     """A missing result. `kind` is that of the criterion, or "" for the whole run.
 
-    `key` names a sentence. `labels` is what its place is called in each language. `ms`: when it
+    `key` names a sentence. `labels` has the name of its place in each language. `ms`: when it
     happened; None if it is known only at the end of the run.
     """
 

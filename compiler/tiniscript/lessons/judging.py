@@ -65,15 +65,13 @@ def judge_run(run: Run, lesson: Lesson) -> list[Finding]:
         finding = judge(criterion, task) if judge is not None else None
         if finding is not None:
             findings.append(finding)
-    if (
-        run.ending == BUSY and not findings
-    ):  # it stands in the right place, and may drive on from there
+    if run.ending == BUSY and not findings:  # it is in the right place, and may drive on from there
         return busy
     return _drop_consequences(findings)
 
 
 def _drop_consequences(findings: list[Finding]) -> list[Finding]:
-    """Leave out what follows from another finding: one misunderstanding gives one sentence."""
+    """Leave out consequences of another finding: one misunderstanding gives one sentence."""
     kinds = {finding.kind for finding in findings}
     keys = {finding.key for finding in findings}
     has_touched = any(finding.kind == "never_touches" for finding in findings)
@@ -226,7 +224,7 @@ def _judge_pauses(criterion: Criterion, task: Task) -> Finding | None:
 
 
 def _paused_at(criterion: Criterion, task: Task, pauses: list[tuple[int, int]]) -> Finding | None:
-    """Compare where the robot stood in these times with where it should."""
+    """Compare the robot's resting places in these times with the expected ones."""
     track = task.run.track
     poses = [next((pose for ms, pose in track if ms >= end), track[-1].pose) for _, end in pauses]
     seconds = [in_seconds(end_ms - begin_ms) for begin_ms, end_ms in pauses]
@@ -246,7 +244,7 @@ def _first_missed_place(
     values: Mapping[str, str],
     seconds: Sequence[str],
 ) -> Finding | None:
-    """Return the first place of a criterion that none of the poses is near, or None."""
+    """Return the first place of a criterion that is not near any of the poses, or None."""
     within_cm = criterion.number_by_key.get("within_cm", 0.0)  # empty if it has no places
     kind = criterion.kind
     key = f"{kind}/place" if len(criterion.places) == 1 else f"{kind}/places"
@@ -279,7 +277,7 @@ def _judge_end(criterion: Criterion, task: Task) -> Finding | None:
 
 
 def _judge_keys(criterion: Criterion, task: Task) -> Finding | None:
-    """Compare what the robot does with each key that is held, and with none, in their order."""
+    """Compare the robot's behaviour with each key held, and with none, in order."""
     rested_ms = 0.0
     for press in task.run.presses:
         at_ms, end_ms = press.at_seconds * 1000, press.end_seconds * 1000 + LATE_MS
@@ -332,7 +330,7 @@ def _displacement(run: Run, from_ms: float, to_ms: float) -> tuple[float, float]
     return ahead_cm, degrees
 
 
-# -- what it says ---------------------------------------------------------------------------------
+# -- its sentences --------------------------------------------------------------------------------
 
 
 def _judge_shown(criterion: Criterion, task: Task) -> Finding | None:

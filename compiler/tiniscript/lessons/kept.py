@@ -1,6 +1,7 @@
-"""Finds the question that kept a robot where it is, and what a move needs to be one.
+"""Finds the condition that kept a robot from moving, and the requirements of a move.
 
-Knows tokens, and how a run ended. Does not know what the robot reads, or what the lesson asks for.
+Knows tokens, and how a run ended. It does not know what the robot reads, or what the lesson
+requires.
 """
 
 from __future__ import annotations
@@ -119,9 +120,10 @@ def count_unasked(tokens: Sequence[Token]) -> int:
 
 
 def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question | None:
-    """Return what prevented each move of a robot, or all moves except turns; None: no question.
+    """Return what prevented each move of a robot, or all moves except turns; None if there is no
+    question.
 
-    `tokens` are those of a program without what nothing calls.
+    `tokens` are those of a program without uncalled DEFs.
     """
     moves = set(find_moves(tokens, FORWARD_MOVES if is_turned else MOVES))
     questions: list[Question] = []

@@ -1,6 +1,6 @@
 """The types of a lesson: its robot, its world, how that varies, and the criteria of its task.
 
-The table of criteria says what each kind takes.
+The table of criteria lists the parameters of each kind.
 
 Knows no TOML (`reader`), no files (`catalogue`) and no sentences (`sentences`).
 """
@@ -35,9 +35,9 @@ class Place(NamedTuple):
 class Criterion(NamedTuple):
     """A requirement for a run or a program. `kind` is a row of `criteria.KINDS`.
 
-    `number_by_key` has the numbers of that row by their keys, `words` its words, `places` its places.
-    `labels[language]` is what a place is called in sentences. `area` is around a place: from and
-    to, along x and y, in centimetres.
+    `number_by_key` has the numbers of that row by their keys, `words` its words, `places` its
+    places. `labels[language]` is the name of a place in sentences. `area` is around a place: from
+    and to, along x and y, in centimetres.
     """
 
     kind: str
@@ -97,8 +97,7 @@ class Lesson(NamedTuple):
 class Answer(NamedTuple):
     """A program for a task, and the remarks on it in each language.
 
-    `said[language]` is the first sentence of the checker where the program is wrong; a right one
-    has none.
+    `said[language]` is the checker's first sentence about a wrong program; a right one has none.
     """
 
     program: str
@@ -110,7 +109,7 @@ LARGEST_NUMBER = 10_000.0  # the largest number allowed
 
 
 class Number(NamedTuple):
-    """A number of a criterion, from `low` to `high`. Without a default it must be there."""
+    """A number of a criterion, from `low` to `high`. Without a default, the key is required."""
 
     key: str
     low: float
@@ -121,11 +120,11 @@ class Number(NamedTuple):
 class CriterionKind(NamedTuple):
     """The fields of a kind of criterion besides `kind`, and its meaning.
 
-    `places` are how many places at least; 0: it has none. `words` is what its words are: "" for
-    none, "word" of the language or a sensor, "event" of EVENTS, "block" of REMOVABLE_BLOCKS; or, as its
-    `what`, "value" of a sensor or TIME, "sensor" with a place in the robot's body, "switch": an
-    actuator that is on or off. `may_be_anywhere`: its places may
-    be left out. `flags` are true or false, and false if they are left out. `has_area`: it may have AREA.
+    `places` is the minimum number of places; 0: it has none. `words` is the kind of its words: ""
+    for none, "word" of the language or a sensor, "event" of EVENTS, "block" of REMOVABLE_BLOCKS;
+    or, as its `what`, "value" of a sensor or TIME, "sensor" with a place in the robot's body,
+    "switch": an actuator that is on or off. `may_be_anywhere`: its places may be left out. `flags`
+    are true or false, and false if they are left out. `has_area`: it may have AREA.
     """
 
     meaning: str

@@ -1,7 +1,7 @@
 """A plan of a lesson's world, from above, as SVG for a page to print.
 
-Knows shapes and greys. What moves from world to world is drawn where `world.toml` has it, with a
-dashed outline. Goals are circles with a flag.
+Knows shapes and greys. Parts that move from world to world are drawn where `world.toml` has them,
+with a dashed outline. Goals are circles with a flag.
 """
 
 from __future__ import annotations

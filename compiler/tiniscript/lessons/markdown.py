@@ -1,10 +1,10 @@
 """The small part of Markdown that pages of lessons are written in: text becomes blocks.
 
 Headings (`#`, `##`), paragraphs, lists (`-`, `- [ ]`, `1.`), tables, and fences of programs; in
-lines `**bold**` and `` `code` ``. Anything else is a paragraph. Knows no HTML (`sheet`).
+lines `**bold**` and `` `code` ``. Anything else becomes a paragraph. Knows no HTML (`sheet`).
 
-A pupil's page is printed, and it is read beside the studio's simulator. A line whose text begins
-with `[print]` is only in the first, one with `[page]` or `[hint]` only in the second.
+A pupil's page is printed, and shown next to the studio's simulator. A line that begins with
+`[print]` appears only on paper, one with `[page]` or `[hint]` only in the studio.
 """
 
 from __future__ import annotations

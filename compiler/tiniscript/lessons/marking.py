@@ -22,7 +22,7 @@ PASSED, FAILED = "passed", "failed"
 class Outcome(NamedTuple):
     """The result of a program. `seed` is the world in which it failed, or 0.
 
-    `findings` say what is missing; `run` is the last run.
+    `findings` list what is missing; `run` is the last run.
     """
 
     verdict: str
@@ -34,8 +34,8 @@ class Outcome(NamedTuple):
 class Marking:
     """A program on its way through the worlds of `seeds`, at least one.
 
-    Where a lesson says that it needs a LOOP, a DEF, a WHEN or a TASK, the program that has done its
-    task goes through them again without that, until it misses something.
+    If a lesson requires a LOOP, a DEF, a WHEN or a TASK, a program that has passed runs the worlds
+    again without it, until it fails.
     """
 
     def __init__(

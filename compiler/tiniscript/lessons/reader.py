@@ -115,7 +115,7 @@ def _answer(table: Table, is_wrong: bool) -> Answer:
 def _sentences(table: Table) -> dict[str, str]:
     """Return the sentences of a finding by language: its key, values and place.
 
-    That one is `place`, or a text in each language.
+    A sentence is `place`, or a text in each language.
     """
     key = table.text("key", 'key = "still"') or "still"
     texts = (
@@ -203,7 +203,7 @@ def _known_words(robot: Robot) -> dict[str, tuple[str, ...]]:
 
 
 def _criterion(table: Table, world: World, known_words: Mapping[str, tuple[str, ...]]) -> Criterion:
-    """Return a row. `known_words` has what it may name, by `Kind.words`."""
+    """Return a row. `known_words` has the words that it may name, by `Kind.words`."""
     name = table.text("kind", 'kind = "never_touches"')
     kind = KINDS.get(name or "")
     if name is None or kind is None:

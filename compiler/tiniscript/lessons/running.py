@@ -1,4 +1,4 @@
-"""Lets a program drive in the world of a seed, and notes what a teacher would see.
+"""Lets a program drive in the world of a seed, and records what a teacher would see.
 
 The robot is the virtual one, in its own time: a run takes no longer than it must, and gives the
 same on every computer. A run is cut after the lesson's seconds, and after MOST_EVENTS actions, so
@@ -27,7 +27,7 @@ MOST_EVENTS = 200_000  # most events in a run
 BRINGING_MS = 60_000  # limit for the way of a program to the robot
 PUSH_MS = 60
 
-# How a run ends.
+# The ways in which a run ends.
 DONE, FAULT, LIMIT, BUSY, ASKS = "DONE", "FAULT", "LIMIT", "BUSY", "ASKS"
 
 
@@ -61,7 +61,7 @@ class Beep(NamedTuple):
 
 
 class SwitchedOn(NamedTuple):
-    """An actuator that went on, by its number."""
+    """An actuator that was switched on, by its number."""
 
     ms: int
     actuator: int
@@ -182,7 +182,7 @@ def _upload(robot: VirtualRobot, image: Image) -> Computer:
 
 
 class _Witness:
-    """Notes what a robot does, from the start of its program on."""
+    """Records a robot's actions from the start of its program."""
 
     def __init__(self, robot: VirtualRobot, seed: int, presses: tuple[Press, ...]) -> None:
         self.robot = robot
@@ -202,7 +202,7 @@ class _Witness:
         self._is_moving = False
 
     def record_state(self) -> None:
-        """Take what has happened since the last time."""
+        """Record the events since the last call."""
         robot = self.robot
         pose = robot.pose
         for event in robot.take_events():
@@ -244,7 +244,7 @@ class _Witness:
             self._shown_values.append(ShownValue(ms, event.values[0], is_yes_no, pose))
 
     def _add_stop(self, ms: int) -> None:
-        """Note a stop, before what it has shown in the same moment."""
+        """Record a stop before the values shown at the same moment."""
         count_at_once = 0
         for shown_value, word in zip(
             reversed(self._shown_values), reversed(self._event_words), strict=False

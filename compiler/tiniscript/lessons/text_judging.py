@@ -1,6 +1,6 @@
 """Compares the text of a program with the criteria of a lesson: which words it has.
 
-Knows tokens: a word in a comment does not count. Does not know what the program does.
+Knows tokens: a word in a comment does not count. It does not know what the program does.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ MISSING_KEYS = {
     "shows/nothing": "SHOW", "order//shows": "SHOW", "beeps/none": "BEEP", "order//beeps": "BEEP",
 }  # fmt: skip
 TASKS = ("WHEN", "TASK")  # they are not nested, in other blocks or in each other
-ACTING_WORDS = MOVES | {"S", "BEEP", "SHOW"}  # waiting alone is nothing to repeat
+ACTING_WORDS = MOVES | {"S", "BEEP", "SHOW"}  # a wait alone is not worth repeating
 
 
 def judge_text(text: str, lesson: Lesson) -> list[Finding]:
@@ -44,7 +44,7 @@ def judge_text(text: str, lesson: Lesson) -> list[Finding]:
 def explain(findings: Sequence[Finding], text: str, lesson: Lesson, ending: str) -> list[Finding]:
     """Return the findings about a run, with the reasons found in the text.
 
-    Where the robot did nothing, and the text has what it should do, then it was never reached.
+    If the robot did not do something that the text contains, that part was never reached.
     """
     tokens = scan(text).tokens
     words = [token.text for token in tokens if token.kind in (WORD, NUMBER)]
@@ -167,7 +167,7 @@ def _def_names(words: Sequence[str]) -> list[str]:
 
 
 def _uncalled_words(words: Sequence[str]) -> list[str]:
-    """Return the words of DEF that nothing calls, or only such a word."""
+    """Return the DEFs that are called by none, or only by such a DEF."""
     words_by_def: dict[str, set[str]] = {name: set() for name in _def_names(words)}
     main_words, name = set[str](), ""
     for previous, word in pairwise(["", *words]):

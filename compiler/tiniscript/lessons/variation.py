@@ -64,7 +64,7 @@ def point_of(place: Place, world: World, is_flipped: bool) -> Point:
 
 
 def shape_of(place: Place, world: World, is_flipped: bool) -> list[Segment]:
-    """Return the outline of a part of a world; of anything else its point."""
+    """Return the outline of a part of a world; for anything else, its point."""
     k = place.number - 1
     if place.part == "walls":
         return join_points(list(world.walls[k]))

@@ -3,5 +3,5 @@
 `compiling` goes from text to image, one line per stage; `client` is the client of a robot for
 library, command and studio.
 
-Connects the stages and returns data. Prints nothing, reads no input, and knows no command.
+Connects the stages and returns data. It prints nothing, reads no input, and knows no command.
 """

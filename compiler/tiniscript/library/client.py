@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 REQUEST_TIMEOUT_MS = (
     EXCHANGE_TIMEOUT_MS  # time without progress after which a robot counts as silent or busy
 )
-SAVE_TIMEOUT_S = 10.0  # timeout for saving a program while the motors stand
+SAVE_TIMEOUT_S = 10.0  # timeout for saving a program while the motors are off
 # Timeout while the voltage is too low for saving: the robot checks every 0.5 s.
 LOW_VOLTAGE_TIMEOUT_S = 2.0
 
@@ -59,7 +59,7 @@ class Client:
         """Connect to a port through its server, or open it. Raises RobotError.
 
         `verb` is the name that other commands show for this one. `baud` is the speed that the user
-        has asked for, else that of the profile. While `is_latched` no other command starts a run.
+        asked for, otherwise that of the profile. While `is_latched` no other command starts a run.
         `poll` is called before every request, and repeatedly in every wait.
         """
         self._poll = poll
@@ -101,7 +101,7 @@ class Client:
         return self.server is not None and self.server.has_run
 
     def hold_for_others(self, goes_on: Callable[[], bool] = lambda: True) -> None:
-        """Hold the port until they have ended. Raises RobotError if it is gone."""
+        """Hold the port until they have ended. Raises RobotError if it is lost."""
         while self.holds_for_others and goes_on():
             self.event()
 
@@ -313,7 +313,8 @@ class Saving:
         self.saved = status.saved if status.program == self.program else SAVED_STORED
 
     def polls(self) -> Iterator[None]:
-        """Yield while it is worth waiting, as the motors stand: learn the status each time."""
+        """Yield while it is worth waiting, because the motors are off: learn the status each
+        time."""
         begun_s = monotonic()
         low_since_s: float | None = None
         while not self.is_over and monotonic() < begun_s + SAVE_TIMEOUT_S:
@@ -324,6 +325,6 @@ class Saving:
 
     @property
     def reason(self) -> str:
-        """The key of why it is not saved, or nothing."""
+        """The key of the reason why it is not saved, or an empty text."""
         reasons = {SAVED_STORED: "", SAVED_SAVING: "saves_later", SAVED_LOW_SUPPLY: "low_supply"}
         return reasons.get(self.saved, "not_saved")  # its memory is worn out

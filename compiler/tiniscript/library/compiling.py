@@ -1,7 +1,7 @@
 """The whole road, a line for each stage: text, tokens, AST, IR, instructions, image.
 
-The command, the page and the functions of the library use it. It prints nothing, opens nothing and
-needs the standard library alone. What only wrong programs need is imported for them.
+The command, the page and the functions of the library use it. It prints nothing, opens no files and
+needs only the standard library. It imports what only wrong programs need only for them.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from tiniscript.syntax.parser import parse
 class Compilation(NamedTuple):
     """The result of compiling a text. If a diagnostic is a mistake, `image` is empty.
 
-    `program` is the checked program, as written, and `lowered_program` what the code was made of;
+    `program` is the checked program, as written, and `lowered_program` the source of the code;
     `locations` says where in the text each instruction comes from, `yes_no_flags` which of its
     variables are a yes/no.
     """
@@ -114,9 +114,9 @@ def check_size(compilation: Compilation, robot: Robot, is_mistake: bool) -> Comp
 
 
 def fit_to_robot(compilation: Compilation, robot: Robot) -> Compilation:
-    """Return `compilation`, with a mistake and no image where the robot lacks what it uses.
+    """Return `compilation`, with a mistake and no image if the robot lacks something that it uses.
 
-    For what is about to be sent to a robot, a virtual one too.
+    For a program that is about to be sent to a robot, even a virtual one.
     """
     program, verdict = compilation.program, compilation.verdict
     if program is None or verdict is None or not compilation.is_right:
@@ -213,15 +213,15 @@ def compile_source(
 ) -> Compilation:
     """Return the result of compiling a program's text.
 
-    `is_strict`: a program that is too large for the robot is a mistake, else a warning.
+    `is_strict`: a program that is too large for the robot is a mistake, otherwise a warning.
     `names_robots`: a word of another robot is said to be that; not if no other can be chosen.
-    `is_chosen`: the robot is what somebody has chosen, else what `named_robot` says of the text.
+    `is_chosen`: the user chose the robot; otherwise `named_robot` finds it in the text.
     """
     text = text_of(data, name)
     if not isinstance(text, str):
         return text
     unknown_robot_diagnostic = None if is_chosen else unknown_robot(text)
-    if unknown_robot_diagnostic is not None:  # nobody knows the words of an unknown robot
+    if unknown_robot_diagnostic is not None:  # the words of an unknown robot are unknown
         return Compilation(Source(text, name), [unknown_robot_diagnostic])
     compilation = compile_text(text, robot.kit, name, optimize)
     if not compilation.is_right:

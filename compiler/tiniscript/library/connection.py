@@ -117,9 +117,9 @@ class RobotConnection:
     ) -> Receipt:  # fmt: skip
         """Send a program to the robot, and start it there if it begins with SI.
 
-        `run=False` starts nothing. With `save=False` the robot forgets the program when it is
-        switched off. `detached`: the program goes on after this connection is closed. Returns when
-        the robot has the program; `wait` waits for its end. Raises ProgramError, RobotError.
+        With `run=False`, nothing starts. With `save=False`, the robot forgets the program when it
+        is switched off. `detached`: the program continues after this connection is closed. Returns
+        when the robot has the program; `wait` waits for its end. Raises ProgramError, RobotError.
         """
         self._check_open()
         ready_program = self._prepare(program)
@@ -164,8 +164,8 @@ class RobotConnection:
         """Bring back the program that the robot held before the last saved one; a second call
         brings the later one back.
 
-        What runs ends, and nothing starts. Returns when the robot holds it; `close` waits until
-        that is saved. Raises RobotError, with the reason `NO_PREVIOUS` if there is none.
+        The running program ends, and nothing starts. Returns when the robot holds it; `close` waits
+        until that is saved. Raises RobotError, with the reason `NO_PREVIOUS` if there is none.
         """
         self._check_open()
         reply = self._client.request(lambda session: session.undo())
@@ -177,7 +177,7 @@ class RobotConnection:
     def events(self, timeout: float | None = None) -> Iterator[RobotEvent]:
         """Yield the robot's events until the program that this connection has started ends (that
         event is the last one) or `timeout` seconds have passed. If it has started none, only the
-        timeout ends the events: None is forever. Raises RobotError if the robot is lost.
+        timeout ends the events: None means forever. Raises RobotError if the robot is lost.
         """
         self._check_open()
         if timeout is not None:
@@ -217,7 +217,7 @@ class RobotConnection:
         saved then.
 
         Raises RobotError if the robot is lost. After `timeout` seconds its reason is
-        `still_running`, and the program goes on.
+        `still_running`, and the program continues.
         """
         self._check_open()
         if self._follower is None:
@@ -231,9 +231,9 @@ class RobotConnection:
 
     def press(self, *keys: str, x: int = 0, y: int = 0) -> None:
         """Hold these keys of a remote control ("UP", "DOWN", "LEFT", "RIGHT", "A", "B") and its pad
-        so, in percent to the right and up, and nothing else.
+        in this position, in percent to the right and up, and no other keys.
 
-        It counts for half a second: press anew before. Without keys all are let go. Returns when
+        It counts for half a second: press anew before. Without keys, all are released. Returns when
         the robot has it, or has not answered in time. Raises RobotError if it takes none.
         """
         self._check_open()
@@ -259,14 +259,14 @@ class RobotConnection:
         """Stop the robot, unless its program is detached, and close the port. A second call does
         nothing. Raises StopNotConfirmed.
 
-        What another command has started through this one goes on: a thread holds the port until it
-        has ended."""
+        A run that another command started through this one goes on: a thread holds the port until
+        it has ended."""
         self._leave(is_clean=True)
 
     # -- leaving ----------------------------------------------------------------------------------
 
     def _leave(self, is_clean: bool, is_interrupted: bool = False) -> None:
-        """Leave the connection; Ctrl-C stops the robot, whoever started the run."""
+        """Leave the connection; Ctrl-C stops the robot, no matter who started the run."""
         if self._is_closed:
             return
         if self._follower is not None and self._ending is None:
@@ -306,7 +306,7 @@ class RobotConnection:
 
     def _hold_port(self) -> None:
         try:
-            with suppress(RobotError):  # the port is gone
+            with suppress(RobotError):  # the port is lost
                 self._client.hold_for_others()
         finally:
             self._client.close()

@@ -51,7 +51,7 @@ class Follower:
 
 
 def end_of(event: Event, run: int | None) -> End | None:
-    """Return the end of a run if an event is its end, else None. `run` None matches any run."""
+    """Return the end of a run if this event ends it, else None. `run` None matches any run."""
     if isinstance(event, DoneEvent) and run in (None, event.run):
         return End(DONE)
     if isinstance(event, FaultEvent) and run in (None, event.run):

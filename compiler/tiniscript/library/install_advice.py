@@ -38,7 +38,7 @@ def command(extra: str) -> str:
 def install_command(extra: str) -> list[str] | None:
     """Return the command with which this Python installs the packages of an extra for itself.
 
-    None if that is not its business: it has no pip, or pipx or the system manages it.
+    None if this Python cannot do it: it has no pip, or pipx or the system manages it.
     """
     needed_packages = requirements(extra)
     if not needed_packages or is_pipx() or is_managed() or find_spec("pip") is None:

@@ -1,4 +1,4 @@
-"""The robots whose kits this computer knows: shipped profiles and those that users have given."""
+"""The robots whose kits this computer knows: shipped profiles and those of users."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def has_remote(robot: Robot) -> bool:
 
 
 def missing_need_key(needs: int, robot: Robot) -> str:
-    """Return the name of the text that says what the firmware lacks of `needs`, or nothing."""
+    """Return the key of the text about the missing part of `needs`, or an empty text."""
     if lacks(needs & TASKS, robot):
         return "no_tasks"
     return "no_ways" if lacks(needs, robot) else ""

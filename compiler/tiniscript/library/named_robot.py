@@ -30,7 +30,7 @@ class NamedRobot(NamedTuple):
 
 
 def named_robot(text: str) -> NamedRobot | None:
-    """Return the robot that a program names first, or None."""
+    """Return the first robot that a program names, or None."""
     offset = 0
     while offset < len(text) and (match := _ROBOT_LINE.match(text, offset)):
         if match["name"]:

@@ -2,9 +2,9 @@
 
 If two programs open the same port at once, the lock of the serial port decides; an address has no
 lock, so a locked file decides. The second program then looks for the server of the first one for
-some seconds before it reports a busy port. A stop does not wait for who is suspended: it goes past
-the lock of a serial port, or wakes the holder. Failures are `RobotError`s: the
-command puts their reason and values into sentences of its own.
+some seconds before it reports a busy port. A stop does not wait for a suspended holder: it bypasses
+the lock of a serial port, or wakes the holder. Failures are `RobotError`s: the command puts their
+reason and values into sentences of its own.
 """
 
 from __future__ import annotations
@@ -96,9 +96,10 @@ def _is_suspended(address: str) -> bool:
 def _connect_past_holder(
     address: str, baud: int, kit: int, limit_s: float, language: str, port: str, waited_s: float
 ) -> PortConnection | None:
-    """Return a connection past the suspended holder of a busy port; None while others may get in.
+    """Return a connection past the suspended holder of a busy port; None while a normal connection
+    is possible.
 
-    A holder that cannot be passed is woken. One that goes on may be writing firmware: it is left
+    A holder that cannot be passed is woken. One that continues may be writing firmware: it is left
     alone. Raises RobotError in the end.
     """
     registration = registry.find_registration(address)

@@ -35,7 +35,7 @@ def with_robot_hints(
 ) -> list[Diagnostic]:
     """Return diagnostics with hints to the robots that have a word that `robot` lacks.
 
-    `is_chosen`: somebody has chosen it, and what the program names does not count.
+    `is_chosen`: the user chose it, and the robot that the program names is ignored.
     """
     if not any(diagnostic.code in (*_UNKNOWN_CODES, OTHER_ROBOT) for diagnostic in diagnostics):
         return diagnostics
@@ -48,7 +48,7 @@ def with_robot_hints(
 
 
 def _add_robot_name(diagnostic: Diagnostic, text: str) -> Diagnostic:
-    """Return a hint to a robot that comes with tsc with what the program needs to name it."""
+    """Return a hint about a shipped robot, with the line that names it in a program."""
     first_robot = diagnostic.values.get("first")
     if diagnostic.code is not OTHER_ROBOT or first_robot not in robots.names():
         return diagnostic
@@ -67,8 +67,8 @@ def hints_among(
 ) -> list[Diagnostic]:
     """Return diagnostics that name the robots that have an unknown word; at most three of them.
 
-    Where a robot has all kit words of the program, those that lack one are not named. Words that
-    lead to the same robots are one mistake, of the first of them.
+    If a robot has all kit words of the program, robots that lack one are not named. Words that lead
+    to the same robots are one mistake, of the first of them.
     """
     own_words = set(kit.names)
     words_by_robot = {

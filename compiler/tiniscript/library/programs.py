@@ -90,8 +90,8 @@ def compile(
     text: str, robot: str | os.PathLike[str] | None = None, *, name: str = "",
     optimize: bool = True, language: Language = "en",
 ) -> Program:  # fmt: skip
-    """Compile a text for a robot: the name of a shipped one, or the path of a profile; without it
-    for the one that the text names, `// robot: liner`, else for tinibot.
+    """Compile a text for a robot: the name of a shipped one, or the path of a profile. By default
+    it is the one that the text names, `// robot: liner`, or else tinibot.
 
     Raises ProgramError with all diagnostics if the text has mistakes. `name` is the program's name
     in messages and disassemblies; `language` (en, es) is that of diagnostics.
@@ -106,8 +106,8 @@ def check(
     text: str, robot: str | os.PathLike[str] | None = None, *, language: Language = "en"
 ) -> list[Message]:
     """Return all mistakes and warnings of a text by place; the list may be empty. `robot` as for
-    `compile`. Never raises ProgramError. A program that is too large for the robot's board gives a
-    warning."""
+    `compile`. It never raises ProgramError. A program that is too large for the robot's board gives
+    a warning."""
     if not isinstance(text, str):
         raise UsageError("bad_program", _check_language(language), {"found": type(text).__name__})
     compilation = _compile_for(text, robot, "", language, is_strict=False)[0]
@@ -215,7 +215,7 @@ def _compile_for(
     text: str, robot: str | os.PathLike[str] | Robot | None, name: str, language: Language,
     is_strict: bool = True, optimize: bool = True,
 ) -> tuple[Compilation, Robot]:  # fmt: skip
-    """Return the compilation of a text for a robot; None means the named or the default one."""
+    """Return the compilation of a text for a robot; None: the named or the default one."""
     data = _encode(text)
     if robot is None:
         profile = robot_of(data, profile_of(robots.DEFAULT, language))

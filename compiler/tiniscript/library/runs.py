@@ -1,4 +1,4 @@
-"""Run a program without a robot: what it does, as data."""
+"""Runs a program without a robot, and returns its actions as data."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def run(
     `sensors` has readings by sensor name: each READ takes the next one, and the last one repeats;
     the default is 0 or False. `max_time` is in simulated seconds, `max_steps` in instructions while
     no time passes, `seed` is that of RANDOM. Raises ProgramError for mistakes, UsageError for wrong
-    arguments. A fault raises nothing: `ending` reports it.
+    arguments. A fault raises no exception: `ending` reports it.
     """
     ready_program = program_of(program, robot, language)
     profile, image = ready_program._profile, ready_program._image

@@ -1,7 +1,7 @@
-"""Which SHOW of a program's text has shown a value: its expression names the value.
+"""Finds the SHOW in a program's text that has shown a value: its expression names the value.
 
-Two programs with the same code have one map, the newest; what runs keeps its own. A value whose
-program is not known here has no name, and neither has a plain number.
+Two programs with the same code share one map, the newest; a running program keeps its own. A value
+of an unknown program has no name, and neither has a plain number.
 """
 
 from __future__ import annotations
@@ -96,7 +96,8 @@ class ShowFinder:
 
 
 def expression_of(program_map: SourceMap, location: MapLocation) -> str:
-    """Return the expression of a SHOW; nothing for another instruction, or for a plain number."""
+    """Return the expression of a SHOW; or an empty text for another instruction or a plain
+    number."""
     lines = list(program_map.lines[location.line - 1 : location.end_line])
     if not lines:
         return ""

@@ -97,7 +97,7 @@ class VirtualRobotConnection(RobotConnection):
         self._simulated.push()
 
     def _close_port(self, holds_port: bool = False) -> None:
-        """Close it at once: nobody drives a virtual robot that has ended."""
+        """Close it at once: a virtual robot that has ended cannot be driven."""
         try:
             super()._close_port()
         finally:
@@ -117,7 +117,7 @@ class SimulatedRobot(SimulatorThread):
         self._thread.start()
 
     def on_turn(self) -> None:
-        self.robot.take_events()  # discarded: nothing draws them
+        self.robot.take_events()  # discarded: no one draws them
         driving = self.robot.driving
         self.drive_state = DriveState(self.robot.pose, driving.driven_cm, driving.bumps)
 

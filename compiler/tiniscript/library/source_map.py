@@ -1,7 +1,7 @@
 """The source map: which instruction of a compiled program comes from which line, and the names.
 
-An image holds no text. Its map lies in the user's cache under the image's checksum, so that a
-fault can name its line and a disassembly can show it. Losing a map loses nothing else.
+An image holds no text. Its map lies in the user's cache under the image's checksum, so that a fault
+can name its line and a disassembly can show it. If a map is lost, nothing else is lost.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class MapLocation(NamedTuple):
 
 class SourceMap(NamedTuple):
     """`lines` are those of the program's text, without their ends; `variables` are names in the
-    order of their numbers, and `yes_no_flags` says which of them are a yes/no: none where a map of
-    an earlier version was kept."""
+    order of their numbers, and `yes_no_flags` says which of them are yes/no: empty for a map of an
+    earlier version."""
 
     name: str
     lines: tuple[str, ...]
@@ -58,7 +58,7 @@ class SourceMap(NamedTuple):
     def task_of(self, location: MapLocation) -> tuple[str, int] | None:
         """Return the word and the line of the TASK or WHEN around a place; "" and 0 outside.
 
-        Returns None if there are no tasks, and in a DEF, which any of them may have called.
+        Returns None if there are no tasks, or in a DEF, which any of them may have called.
         """
         blocks = [(self._word(block_location), block_location) for block_location in self.locations]
         if not any(word in TASKS for word, _ in blocks):

@@ -1,6 +1,6 @@
 """The exchanges about a robot's owner: to show a key, to claim a robot, to give it up.
 
-Knows the order of messages and what a tag is made of. Knows no file: a `KeyRing` keeps the keys.
+It knows the order of messages and the format of a tag. Knows no file: a `KeyRing` keeps the keys.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ class RobotKey(NamedTuple):
     """A key of a robot. `which` is one of KEYS; `name` is the robot's.
 
     `is_pending`: it is not known whether the robot has taken it; `is_stale`: the robot has refused
-    it, so it is shown only where something depends on it; `uses_seals`: the robot seals, so
-    what is not sealed is not believed.
+    it, so it is shown only if something depends on it; `uses_seals`: the robot seals, so unsealed
+    frames are not trusted.
     """
 
     id: int
@@ -43,7 +43,7 @@ class RobotKey(NamedTuple):
 
     @property
     def slot(self) -> tuple[int, int]:
-        """A robot and a person, who have one key."""
+        """A robot and a person, who share one key."""
         return self.id, self.which
 
     def __repr__(self) -> str:  # a key is in no message
@@ -83,7 +83,7 @@ class KeyRing:
         return key if self._change_keys(with_key_added) else None
 
     def robot_at(self, place: str) -> int | None:
-        """Return the robot of ours that has proved at a place who it is."""
+        """Return the robot of ours that has proved its identity at a place."""
         return None
 
     def remember_robot(self, place: str, robot_id: int) -> None:
@@ -126,7 +126,7 @@ def ownership_of(robot: DeviceInfo) -> str:
 
 
 def has_to_seal(ring: KeyRing | None, robot: DeviceInfo | None) -> bool:
-    """Return whether our keys say that a robot seals; if none is known, whether any does."""
+    """Return whether our keys say that a robot seals; if no robot is known, whether any does."""
     if ring is None:
         return False
     keys = ring.keys_of_robot(None if robot is None else robot.id)

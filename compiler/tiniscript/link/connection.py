@@ -89,7 +89,7 @@ class Requester:
         return self._ask("start", ReceiptReply, True, is_detached=is_detached)
 
     def live(self, code: bytes, kit: int = 0, halts: bool = False) -> PendingRequest[ReceiptReply]:
-        """`kit` is the kit whose words the code uses, or 0 for none; what `halts` does so before
+        """`kit` is the kit whose words the code uses, or 0 for none; with `halts`, it halts before
         its first statement."""
         return self._ask("live", ReceiptReply, True, code=code, kit=kit, halts=halts)
 
@@ -119,8 +119,9 @@ class Requester:
     def press(
         self, keys: int = 0, x: int = 0, y: int = 0, speaker: int = 0
     ) -> PendingRequest[EmptyReply]:
-        """Hold these keys of a remote control (a bit for each of REMOTE_KEYS) and its pad so, and
-        nothing else. Who has said nothing for half a second holds nothing: say it anew before.
+        """Hold these keys of a remote control (a bit for each of REMOTE_KEYS) and its pad in this
+        position, and no others. A client that is silent for half a second holds no keys, so repeat
+        this before then.
         """
         return self._ask("press", EmptyReply, keys=keys, x=x, y=y, speaker=speaker)
 
@@ -136,11 +137,12 @@ class Requester:
         return self._ask("resume", ResumeReply, how=how)
 
     def read_variables(self, first: int = 0) -> PendingRequest[ReadVariablesReply]:
-        """Ask for the variables of what runs, from a number on: as many as a frame takes."""
+        """Ask for the variables of the running program, from this number on: as many as fit into a
+        frame."""
         return self._ask("read_variables", ReadVariablesReply, first=first)
 
     def read_tasks(self) -> PendingRequest[ReadTasksReply]:
-        """Ask where the tasks of what runs are."""
+        """Ask for the positions of the running program's tasks."""
         return self._ask("read_tasks", ReadTasksReply)
 
     def tell_readings(self, is_on: bool) -> PendingRequest[EmptyReply]:
@@ -170,7 +172,7 @@ class Requester:
         return self._ask("allow_text", TextReply, is_allowed=is_allowed)
 
     def wifi(self) -> PendingRequest[WifiReply]:
-        """Ask what the robot's WiFi is set to."""
+        """Ask for the robot's WiFi settings."""
         return self._ask("wifi", WifiReply)
 
     def join(self, network: Network) -> PendingRequest[WifiReply]:
@@ -197,7 +199,7 @@ class LinkConnection:
 
     `holder_verb` is that of the command that holds the port, if that is another command.
     `heard_count` counts received bytes, `early_bytes` are the last of those that came before a
-    robot has answered; `is_echoed`: the line returns what is sent.
+    robot has answered; `is_echoed`: the line echoes what is sent.
     """
 
     holder_verb = ""

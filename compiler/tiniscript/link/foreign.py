@@ -1,14 +1,14 @@
 """The table of foreign devices at the other end of a line.
 
-A row looks at the bytes that have come, and may have a probe: a question that such a board answers
-and that changes nothing. What boards send is known from their sources and documents, as of
+A row examines the received bytes, and may have a probe: a query that such a board answers and that
+changes nothing. The bytes that boards send are known from their sources and documents, as of
 November 2026:
 
 - Firmata: `FirmataMarshaller.cpp` and `FirmataParser.cpp` of github.com/firmata/arduino. After it
   has started, and when it is asked, it reports the version of its protocol, 0xF9 and two bytes, and
   its firmware, 0xF0 0x79, two bytes and a name, two bytes for each letter, 0xF7. 57600 baud. It
-  sends no 0xFF 0x55: 0xFF is its reset, and only the computer sends that. So the two are told
-  apart by their whole messages, and two bytes alone say nothing.
+  sends no 0xFF 0x55: 0xFF is its reset, and only the computer sends that. So the two are
+  distinguished by their whole messages; two bytes alone prove nothing.
 - mBot: `mbot_factory_firmware.ino` of github.com/Makeblock-official/Makeblock-Libraries, whose
   other boards do the same. "Version: 06.01.009" after its start, and answers that begin with
   0xFF 0x55 and end with CR LF. 115200 baud.
@@ -37,11 +37,11 @@ from tiniscript.link.messages import FIRST_EVENT
 
 CATALOGUE = "foreign"
 MOST_TEXT_CHARACTERS = 60  # characters of the message
-LEAST_BYTES = 4  # fewer bytes prove nothing
+LEAST_BYTES = 4  # fewer bytes are not enough
 LEAST_PRINTABLE_SHARE = 0.9  # the share of printable characters in text
 LEAST_DIFFERENT_BYTES = 3  # different bytes in text: the noise of a wrong speed repeats itself
 ROBOT_LINE_START = "//"  # a robot's lines begin so
-OTHER_SKETCH = "other_sketch"  # the row of whatever prints text and has no row of its own
+OTHER_SKETCH = "other_sketch"  # the row of any device that prints text and has no row of its own
 ECHO_SKETCH = "echo_sketch"
 
 
@@ -144,7 +144,7 @@ def _recognise_at(data: bytes) -> tuple[str, bool] | None:
 
 
 BOARD_KINDS = (
-    # Its supply first, because nothing on such a board works before that is right.
+    # Its supply first, because everything on such a board depends on it.
     BoardKind(
         "esp32_brownout",
         _line_recogniser(r"[Bb]rownout detector was triggered|\([A-Z_]*BROWN_?OUT"),
@@ -184,7 +184,7 @@ def identify_board(data: bytes) -> ForeignBoard | None:
 def identify_stranger(data: bytes) -> ForeignBoard | None:
     """Return the row of the sender of these bytes, or that of another sketch for text.
 
-    Sure text has a whole line. None for a robot's bytes, and for noise.
+    Sure text has a whole line. None for a robot's bytes, or for noise.
     """
     board = identify_board(data)
     if board is not None or is_robot(data):
@@ -203,13 +203,13 @@ def is_robot(data: bytes) -> bool:
 
 
 def last_robot_line(data: bytes) -> str:
-    """Return the last whole line of a robot's text, `// OK`, or nothing."""
+    """Return the last whole line of a robot's text, such as `// OK`, or an empty text."""
     lines = re.findall(rb"(?:^|[\r\n\x00])(// [\x20-\x7e]+)[\r\n]", data)
     return _printable(lines[-1].decode("ascii")) if lines else ""
 
 
 def readable_line(data: bytes) -> str:
-    """Return a line of bytes that are text, else an empty text.
+    """Return a line of bytes if they are text, otherwise an empty text.
 
     If no line ends all of them have to be.
     """
@@ -249,7 +249,7 @@ def explanation_of(name: str, language: str) -> Explanation:
 
 
 def explain(board: ForeignBoard, language: str) -> Explanation:
-    """Return the sentences of a board, with what it says in the first one."""
+    """Return the sentences about a board, with its message in the first one."""
     meaning, advice = explanation_of(board.name, language)
     says_form = languages.text(CATALOGUE, "says", language)
     return Explanation(

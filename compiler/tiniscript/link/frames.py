@@ -3,7 +3,7 @@
 A large frame has a 0 after its head: so its first byte on the wire is 4 at most. In a sealed one
 that is the 0 of the seal, which belongs to the payload.
 
-Does not know what a message means. The C++ version is `vm_arduino/src/link/frames.cpp`.
+It does not know the meaning of messages. The C++ version is `vm_arduino/src/link/frames.cpp`.
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ class Handshake:
     has the keys of robots; `current_epoch` returns the robot's; `place` is where it is reached.
 
     `is_open`: the robot has answered HELLO, and has not been lost since. `doubted` is the last
-    epoch of which it is known what has ended it, while that of a later one is not.
+    epoch whose end is explained, while the end of a later one is not.
     """
 
     def __init__(
@@ -114,7 +114,7 @@ class Handshake:
 
     def open_then(self, make: Callable[[], Exchange[T]]) -> Exchange[T]:
         """Open the session if needed, then make and run an exchange; anew, after a reset or a
-        fault. What a stop has made void is not done again: the session sees to that.
+        fault. Requests that a stop has cancelled are not repeated: the session ensures that.
         """
         if not self.is_open or self.is_in_doubt:
             hello = yield from self.hello()
@@ -210,7 +210,7 @@ class Handshake:
         return reply
 
     def hold_back(self) -> Exchange[EmptyReply]:
-        """Stop the robot so that only the teacher's key, or its button, lets it go on."""
+        """Stop the robot so that only the teacher's key, or its button, releases it."""
         key_reply = yield from self.show_keys(KEY_TEACHER)
         if key_reply.status != OK:
             return as_refusal(key_reply)
@@ -283,7 +283,7 @@ def status() -> Exchange[StatusReply]:
     return requests.send_single(Request("STATUS"), StatusReply)
 
 
-# What carries out the requests of a `Requester` that are more than the message of their name.
+# Carries out those requests of a `Requester` that involve more than the message of their name.
 _EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
     "hello": Handshake.hello,
     "ping": lambda handshake: ping(),

@@ -1,7 +1,7 @@
-"""Which process holds a port, whether it is suspended, and how it is woken.
+"""Finds which process holds a port and whether it is suspended, and wakes it.
 
-A suspended command (Ctrl-Z) keeps its port, and neither shares it nor lets go of it. Linux tells
-who has a file open; of a command that shares its port the registration tells it, too.
+A suspended command (Ctrl-Z) keeps its port, and neither shares nor releases it. Linux reports who
+has a file open; the registration of a command that shares its port does so, too.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Holder(NamedTuple):
 def find_holder(path: str, pid: int | None = None) -> Holder | None:
     """Return the process that has a port or a lock open; `pid` is the one that says so of itself.
 
-    None if nobody tells.
+    None if this is unknown.
     """
     holder_pid = next(_pids_with_open_file(path), None) if sys.platform == "linux" else pid
     holder_pid = pid if holder_pid is None else holder_pid
@@ -77,7 +77,8 @@ def _pids_with_open_file(path: str) -> Iterator[int]:
 
 
 def _command(pid: int) -> str | None:
-    """Return the name of a process's program, with the verb of a tsc; None if it has ended."""
+    """Return the name of a process's program, with its verb if it is a tsc; None if it has
+    ended."""
     words = []
     if sys.platform == "linux":
         with suppress(OSError):

@@ -32,7 +32,7 @@ _KEY_KINDS = tuple(name.lower() for name, _ in KEYS)
 
 
 class BadKeys(Exception):
-    """A file without keys, or that cannot be read or written; `detail`: what the system says."""
+    """A file without keys, or that cannot be read or written; `detail` is the system's message."""
 
     def __init__(self, detail: str = "") -> None:
         super().__init__(detail)
@@ -40,7 +40,7 @@ class BadKeys(Exception):
 
 
 class TooManyKeys(BadKeys):
-    """More keys than a file has: none was written."""
+    """More keys than a file can have: none was written."""
 
 
 class KeyFile(KeyRing):
@@ -161,8 +161,8 @@ class KeyFile(KeyRing):
 def with_keys_added(stored_keys: list[RobotKey], added_keys: Iterable[RobotKey]) -> list[RobotKey]:
     """Return stored keys with those of a list, each in the place of the one before.
 
-    A pending key stays beside it: which of the two is right, the robot alone knows. What was known
-    of a key before stays, too: that its robot seals.
+    A pending key is kept as well: only the robot knows which of the two is right. The file also
+    keeps that an earlier key's robot seals.
     """
     sealing_keys = {key.key for key in stored_keys if key.uses_seals}
     new_keys = {
@@ -174,7 +174,7 @@ def with_keys_added(stored_keys: list[RobotKey], added_keys: Iterable[RobotKey])
 
 
 def is_shared(path: Path) -> bool:
-    """Return whether others may read a file; where the system has no such bits, they don't tell."""
+    """Return whether others may read a file; if the system has no such bits, assume no."""
     if sys.platform == "win32":
         return False
     try:

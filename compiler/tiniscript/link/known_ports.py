@@ -1,6 +1,6 @@
 """The ports on which robots have answered, the robots' names, and the port used last.
 
-They are in the user's cache: if it is lost, nothing else is lost. Opens no port.
+They are in the user's cache: losing it loses only this list. Opens no port.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 `frames` and `session` import it; `python -m tools.generate` writes from it
 `vm_arduino/src/link/messages.h` and the tables of `docs/develop/link.md`. Numbers on the wire are
-stable: a number is never reused for something else.
+stable: a number is never reused.
 
 Knows numbers, sizes and times. Does not know how a message is answered.
 """
@@ -123,7 +123,7 @@ DEAD_MAN_MS = 1000  # dead-man timer: without a valid frame, an attached program
 LISTEN_MS = 3000  # time without a valid frame after which a robot sends no events
 AGAIN_MS = 50  # between two STOPPED events of a stopped robot
 AUTHORITY_MS = 2000  # time without a valid frame after which a key must be shown again
-LONG_MS = 1000  # a press of the button of this length starts nothing
+LONG_MS = 1000  # a press of the button of this length has no effect
 CLAIM_MS = 2000  # a press of this length lets a client claim the robot, or lets text drive it
 FORGET_MS = 10_000  # a press of this length from power-on makes the robot forget its keys
 
@@ -174,7 +174,7 @@ FEATURES = (
     (READINGS, "READINGS", "It can report what its programs read: TELL_READINGS."),
 )
 # The state of a remote control: a bit for each held key, and the pad in percent to the right and
-# up. It expires after this time, so that an old state of a client that has gone moves nothing.
+# up. It expires after this time, so that an old state of a client that has left moves nothing.
 REMOTE_KEYS = ("UP", "DOWN", "LEFT", "RIGHT", "A", "B")
 MOST_PAD = 100
 HOLD_MS = 500
@@ -203,7 +203,8 @@ WHEELS = (
 class Field(NamedTuple):
     """`kind` is one of KINDS, or `rest`: all remaining bytes, `least_bytes` to `most_bytes`.
 
-    What `fills_frame` has as many bytes as the frame; `most_bytes` is that of a large one.
+    A field that `fills_frame` has as many bytes as the frame allows; `most_bytes` is that of a
+    large one.
     """
 
     name: str
@@ -331,8 +332,8 @@ FIRST_ACTING = 6
 RETIRED_NUMBERS = (10, 13)  # a request that is LF or CR on the wire could be the end of a line
 RADIO_MESSAGES = ("WIFI",)  # requests that only robots with WiFi know,
 REMOTE_MESSAGES = ("KEYS",)  # messages that need a remote control
-# These are the last ones, so that the table of a robot without them ends before. A robot that tells
-# readings has breakpoints.
+# These are the last ones, so that the table of a robot without them ends before. A robot that
+# reports readings has breakpoints.
 BREAKPOINT_MESSAGES = ("BREAK", "RESUME", "READ_VARIABLES", "READ_TASKS")
 READING_MESSAGES = ("TELL_READINGS",)
 FIRST_EVENT = 32
@@ -475,8 +476,8 @@ class Malformed(Exception):
 
 
 def encode_payload(fields: tuple[Field, ...], values: Mapping[str, int | bytes]) -> bytes:
-    """Return the payload with these values, one for each field; a rest that may be empty is, where
-    it has none."""
+    """Return the payload with these values, one for each field; an optional rest without a value is
+    empty."""
     assert set(values) <= {field.name for field in fields}, (fields, values)
     parts = []
     for field in fields:

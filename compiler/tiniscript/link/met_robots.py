@@ -1,7 +1,7 @@
-"""Which robot of this person has answered where, and which other robots the person has accepted.
+"""Remembers which robot of this person has answered where, and which other robots were accepted.
 
-The file lies beside that of the keys: whoever answers at a port is compared with it. Where it
-cannot be read nobody has been met.
+The file is next to that of the keys: whoever answers at a port is compared with it. If it cannot be
+read, no robot has been met.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ FILE_MODE = 0o600  # readable by this user only
 
 
 class MetRobots(NamedTuple):
-    """`id_by_place` maps each port to the id of the robot that has proved there who it is."""
+    """`id_by_place` maps each port to the id of the robot that has proved its identity there."""
 
     id_by_place: dict[str, int]
     accepted_ids: list[int]
@@ -37,7 +37,8 @@ def read_met_robots(path: Path) -> MetRobots:
 
 
 def remember_robot(path: Path, place: str, robot_id: int) -> None:
-    """Remember which robot is at a place. Where the file cannot be written it is not remembered."""
+    """Remember which robot is at a place. If the file cannot be written, the robot is not
+    remembered."""
     if read_met_robots(path).id_by_place.get(place) == robot_id:
         return
 

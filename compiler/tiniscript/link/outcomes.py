@@ -18,8 +18,8 @@ from tiniscript.link.payloads import (
     StoppedEvent,
 )
 
-# Outcomes produced by the session. UNKEPT: of a key; UNPROVEN: the other end does not seal, though
-# our key's robot does; OTHER_ROBOT: another robot than that of our key, whose id is the detail.
+# Outcomes produced by the session. UNKEPT: of a key; UNPROVEN: the other end does not seal, but our
+# key's robot does; OTHER_ROBOT: not the robot of our key; its id is the detail.
 LOST, CANCELLED, UNKEPT, UNPROVEN, OTHER_ROBOT = -1, -2, -3, -4, -5
 DETAIL_MIDWAY = 1  # detail of CANCELLED: it was under way, and the robot may have done it before
 LOOK_S = 0.1  # between two checks for events: Windows handles Ctrl-C only then
@@ -66,7 +66,7 @@ class EchoEvent(NamedTuple):
 
 
 class RestartedEvent(NamedTuple):
-    """The robot was reset while a run of ours went on."""
+    """The robot was reset during one of our runs."""
 
     name: Literal["RESTARTED"] = "RESTARTED"
 
@@ -80,7 +80,7 @@ class StartedEvent(NamedTuple):
 
 
 class PlaceEvent(NamedTuple):
-    """The program is at another place: byte `at` of its code, or -1 when nothing runs any more.
+    """The program is at another place: byte `at` of its code, or -1 after the end of the run.
 
     `program` is the checksum of its image.
     """
@@ -128,9 +128,9 @@ EVENTS: dict[str, type[Event]] = {
 
 
 class ConnectionLost(Exception):
-    """The connection to the robot has ended; `detail` is what the system says.
+    """The connection to the robot has ended; `detail` is the system's message.
 
-    `is_server`: the command that held the port has ended. Otherwise the port is gone.
+    `is_server`: the command that held the port has ended. Otherwise the port is lost.
     """
 
     def __init__(self, detail: str = "", is_server: bool = False) -> None:

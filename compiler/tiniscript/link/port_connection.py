@@ -1,6 +1,6 @@
 """A session on a port: a separate thread reads, writes and keeps the time.
 
-So the heartbeat goes on while the program waits for a person. Knows the clock and when to read;
+So the heartbeat continues while the program waits for a person. Knows the clock and when to read;
 `session` knows the messages, and `ports` opens ports.
 """
 
@@ -114,13 +114,13 @@ class PortConnection(LinkConnection):
         return began_ms
 
     def end_run(self, run: int) -> None:
-        """End a run whose client has gone; what others have asked for goes on."""
+        """End a run whose client has left; requests of others continue."""
         with self._session_lock:
             self.session.end_run(run, self._now_ms())
         self._wake()
 
     def withdraw(self, request: PendingRequest[Any]) -> None:
-        """Do no more of a request whose client has gone."""
+        """Abandon a request whose client has left."""
         with self._session_lock:
             self.session.withdraw(request)
 
@@ -139,7 +139,7 @@ class PortConnection(LinkConnection):
         self._end(str(bug))
 
     def listen(self, listener: Callable[[list[TimedEvent]], None]) -> None:
-        """Call `listener` with new events, and when a request is over or the port is gone.
+        """Call `listener` with new events, and when a request is over or the port is lost.
 
         The line's thread makes the call, and is blocked until it returns.
         """
@@ -156,7 +156,7 @@ class PortConnection(LinkConnection):
             self._is_closing = True
         self._wake()
         self._thread.join(2 * LOOK_S)
-        with suppress(OSError):  # the port is gone already
+        with suppress(OSError):  # the port is lost already
             self._port.close()
         if self._port_lock is not None:
             self._port_lock.close()
@@ -167,7 +167,7 @@ class PortConnection(LinkConnection):
         """Interrupt a waiting read, if the system can; without this it ends within READ_S."""
         cancel = getattr(self._port, "cancel_read", None)
         if cancel is not None:
-            with suppress(OSError, TypeError):  # the port is gone
+            with suppress(OSError, TypeError):  # the port is lost
                 cancel()
 
     def _run(self) -> None:
@@ -197,9 +197,10 @@ class PortConnection(LinkConnection):
                 self._listener([])
 
     def _read(self) -> bytes:
-        """Wait for a byte and return it with those after it: a socket of pyserial tells of one."""
+        """Wait for a byte and return it with those after it: a socket of pyserial reports only
+        one."""
         data = bytes(self._port.read(1))
-        with suppress(OSError):  # the port is gone: the next read reports it, after its last bytes
+        with suppress(OSError):  # the port is lost: the next read reports it, after its last bytes
             while 0 < len(data) < READ_BYTES and (more := self._port.in_waiting):
                 data += self._port.read(more)
         return data

@@ -2,7 +2,7 @@
 
 `ble://` names a robot in reach of Bluetooth LE, `tcp://` one that announces itself in the network,
 `mqtt://host:port/class/id` one at a broker.
-Opens nothing, and needs no pyserial.
+It opens nothing, and needs no pyserial.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import sys
 import unicodedata
 
 BLE, TCP, MQTT = "ble://", "tcp://", "mqtt://"
-PSEUDO_TERMINALS = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals: nothing restarts there
+PSEUDO_TERMINALS = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals: opening them restarts nothing
 _LOCAL_HOSTS = ("localhost", "[::1]")
 
 

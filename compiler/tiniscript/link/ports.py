@@ -1,7 +1,7 @@
 """Ports: lists them, opens one, and says why one cannot be opened.
 
 Finds the transport of a port by how its name begins, and imports it with its first use: its package
-may be missing. Knows no robot and no sentences: what goes wrong has a name in `errors`.
+may be missing. It knows no robot and no sentences: each failure has a name in `errors`.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class ListedPort(NamedTuple):
 
 
 def list_ports() -> list[ListedPort]:
-    """Return the ports that the system knows. Opens none of them, because that resets boards."""
+    """Return the ports that the system knows. It opens none of them, because that resets boards."""
     from tiniscript.link.transports import serial
 
     ports = []

@@ -2,12 +2,12 @@
 
 Everything is text until a 0x00. After a 0x00 everything is frames, until a second passes without a
 byte. A frame ends with 0x00. In frames, CR or LF after one or more bytes that since the last 0x00
-are all 0x20 to 0x7e ends a line of text, and text goes on.
+are all 0x20 to 0x7e ends a line of text, and more text may follow.
 
 Knows where a packet begins and ends; `frames` checks whether a frame is undamaged. Holds one packet
 until it is taken, or several frames; packets that find no place are dropped, a stop is not. In C++
-it is `vm_arduino/src/link/receiver.cpp`, where bytes come in an interrupt; what has the same name
-there does the same, and `tests/project/test_twins.py` lists the rest.
+it is `vm_arduino/src/link/receiver.cpp`, where bytes come in an interrupt; members with the same
+name do the same, and `tests/project/test_twins.py` lists the rest.
 """
 
 from __future__ import annotations
@@ -155,7 +155,7 @@ class Receiver:
         self._length = 0
 
     def _has_place(self) -> bool:
-        """Return whether a packet that begins now may wait: frames do, and nothing after text."""
+        """Return whether a packet that begins now may wait: frames may, but nothing after text."""
         if self.packet is None:
             return True
         return not self.packet.is_text and len(self._waiting_frames) < self._window - 1
@@ -180,7 +180,8 @@ class StopSequence:
 
 
 class KeySequence:
-    """Finds what a terminal sends for a cursor key: ESC [ A, ESC O A, ESC [ 1 ; 5 C."""
+    """Finds the sequences that a terminal sends for a cursor key: ESC [ A, ESC O A, ESC [ 1 ; 5
+    C."""
 
     def __init__(self) -> None:
         self._is_escape = False  # an ESC alone is no sequence yet
@@ -203,5 +204,5 @@ def _is_printable(byte: int) -> bool:
 
 
 def _is_skipped(byte: int) -> bool:
-    """Return whether a byte between two lines belongs to none."""
+    """Return whether a byte between two lines belongs to neither."""
     return byte <= 0x20 or byte == 0x7F or byte in BYTE_ORDER_MARK

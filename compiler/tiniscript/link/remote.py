@@ -1,8 +1,8 @@
 """The keys of a remote control: the newest state of each speaker, and when to send it.
 
-No word is sent twice, as a repeated one would press a key again that was let go: what waits is
-replaced by the newest, and what is held is said anew. Who falls silent holds nothing any more.
-Times are milliseconds. Knows no frame and no clock.
+No word is sent twice, because a repeated one would press a released key again: a waiting word is
+replaced by the newest, and held keys are sent again. A client that falls silent no longer holds any
+keys. Times are milliseconds. Knows no frame and no clock.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def remote_state_of(names: Iterable[str], x: int = 0, y: int = 0) -> RemoteState
 
 
 class RemoteControl:
-    """Each who speaks has a number."""
+    """Each speaker has a number."""
 
     def __init__(self) -> None:
         self._state_by_speaker: dict[int, RemoteState] = {}  # the newest word last
@@ -66,9 +66,9 @@ class RemoteControl:
         self._sent_requests: list[PendingRequest[EmptyReply]] = []
 
     def press(self, speaker: int, state: RemoteState) -> PendingRequest[EmptyReply]:
-        """Hold what somebody holds now, and nothing else; it is over after HOLD_MS.
+        """Hold exactly these keys, for at most HOLD_MS.
 
-        What he has said before, and nothing of which was sent, is replaced: CANCELLED.
+        An earlier state that has not been sent at all is replaced: CANCELLED.
         """
         assert state.is_sound, state
         self._state_by_speaker.pop(speaker, None)
@@ -85,7 +85,8 @@ class RemoteControl:
         return request
 
     def let_go(self, status: int = CANCELLED) -> None:
-        """The robot has let all go, or hears nothing: nothing is held before somebody says so."""
+        """The robot has released all keys, or hears nothing: no key is held until the next
+        press."""
         self._state_by_speaker.clear()
         self._sent_state, self._unanswered_count = NOTHING_PRESSED, 0
         self._note_sent()
@@ -93,7 +94,7 @@ class RemoteControl:
 
     @property
     def combined_state(self) -> RemoteState:
-        """All keys that somebody holds, and the pad of who has moved his last."""
+        """All keys held by any speaker, and the pad that was moved last."""
         combined_state = NOTHING_PRESSED
         for state in self._state_by_speaker.values():
             pad = (state.x, state.y) if state.x or state.y else (combined_state.x, combined_state.y)
@@ -124,7 +125,7 @@ class RemoteControl:
         return min(times, default=None)
 
     def expire_and_check_due(self, now_ms: int) -> bool:
-        """Return whether to send now. A speaker silent for HOLD_MS holds nothing."""
+        """Return whether to send now. A speaker silent for HOLD_MS holds no keys."""
         for speaker in list(self._state_by_speaker):
             until_ms = self._until_ms_by_speaker[speaker]
             if until_ms is None:
@@ -146,7 +147,7 @@ class RemoteControl:
         return dict(self.combined_state._asdict())
 
     def take_answer(self, outcome: Reply[Any]) -> None:
-        """Take the robot's answer. One that takes no keys is not told about them again."""
+        """Take the robot's answer. A robot that accepts no keys gets no more of them."""
         self._unanswered_count = 0
         if outcome.status == OK:
             self._finish_sent(Reply(OK, 0, EmptyReply()))
@@ -161,7 +162,7 @@ class RemoteControl:
         self._unanswered_count = max(0, self._unanswered_count - 1)
 
     def note_unanswered(self) -> None:
-        """No answer has come in time."""
+        """Call this when no answer came in time."""
         self._finish_sent(Reply(LOST))
 
     def _note_sent(self) -> None:

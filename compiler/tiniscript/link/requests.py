@@ -1,8 +1,8 @@
 """The exchanges with a robot: each is a sequence of a few requests.
 
-An exchange is a generator: it yields a request, is sent the reply, and returns its outcome. Knows
-the order of messages, and does not send what the robot would refuse. Knows no frame, no time and
-no retry: `session` does.
+An exchange is a generator: it yields a request, is sent the reply, and returns its outcome. It
+knows the order of messages, and does not send requests that the robot would refuse. Knows no frame,
+no time and no retry: `session` does.
 """
 
 from __future__ import annotations
@@ -68,9 +68,9 @@ class Pieces(NamedTuple):
 
 
 class Request(NamedTuple):
-    """`pause_ms` is how long to wait before it is sent; `seal` what its reply is sealed with.
+    """`pause_ms` is the wait before it is sent; `seal` the seal of its reply.
 
-    With `pieces` it stands for many DATA, and its reply is the last of theirs.
+    With `pieces`, it represents many DATA, and its reply is the last of theirs.
     """
 
     name: str
@@ -87,7 +87,7 @@ T = TypeVar("T")
 class Reply(Generic[T_co]):
     """The outcome of a request: a status of the robot, or one that the session produces.
 
-    With the status OK there are `values`, with any other a `detail`.
+    With the status OK, it has `values`, with any other one a `detail`.
     """
 
     def __init__(self, status: int, detail: int = 0, values: T_co | None = None) -> None:

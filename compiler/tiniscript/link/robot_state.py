@@ -51,7 +51,7 @@ class UnresolvedShow(NamedTuple):
 
     @property
     def _run(self) -> _Run | None:
-        """The run, or None of an older robot, which does not tell it."""
+        """The run, or None for an older robot, which does not report it."""
         if len(self.event.place) != SHOW_PLACE_BYTES:
             return None
         return _Run(self.epoch, self.event.place[0])
@@ -66,7 +66,7 @@ class RobotState:
     def __init__(self) -> None:
         self.state = STATE_IDLE
         self.run: int | None = None  # the run that we have started
-        self._ended_run: int | None = None  # the last run whose end we know
+        self._ended_run: int | None = None  # the last run whose end is known
         self._is_going = False  # our run has begun, and its end is unknown
         self._is_end_asked = False  # whether the reason of the end has been requested
         self.has_reset_ended_run = False  # a reset has ended it
@@ -97,7 +97,8 @@ class RobotState:
         return 0 if earlier_seq is None else (seq - earlier_seq - 1) & 0xFF
 
     def may_be_reset(self, values: SentReply) -> bool:
-        """Take a reply in another epoch; return whether neither stop nor fault explains that."""
+        """Process a reply in another epoch; return whether neither a stop nor a fault explains
+        it."""
         if not isinstance(values, (PingReply, StatusReply)):
             return False
         return values.state <= STATE_RUNNING or self.run not in (None, values.run)
@@ -166,7 +167,8 @@ class RobotState:
         self._ended_run, self._is_end_asked = self.run, False
 
     def note_replaced(self) -> list[Event]:
-        """Note that a program which waits to be started has ended our run; return what tells so."""
+        """Record that a program waiting for its start has ended our run; return the event that
+        reports this."""
         is_going, run = self._is_going, self.run
         self.forget_run()
         if not is_going or run is None:

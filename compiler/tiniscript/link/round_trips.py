@@ -43,8 +43,9 @@ class RoundTrips:
         self._mean_ms += (took_ms - self._mean_ms) * _MEAN
 
     def back_off(self) -> None:
-        """No answer has come in time. What was learnt of a request that was sent more than once may
-        be too much: if nothing comes, one is waited for half as long, so that it is tried often.
+        """Call this when no answer came in time. The time learnt from a request that was sent more
+        than once may be too long: if no answer comes, the next wait is half as long, so that it is
+        retried soon.
         """
         self._doublings += 1
         if self._byte_ms is not None and not self._is_certain:

@@ -1,7 +1,8 @@
 """The seal of a session: a key that both ends have derived, and a counter for each direction.
 
 Knows the bytes of a sealed frame, and no message; the algorithm is SipHash.
-`docs/develop/owners.md` says what they protect. The C++ version is `vm_arduino/src/link/seal.cpp`.
+`docs/develop/owners.md` describes what they protect. The C++ version is
+`vm_arduino/src/link/seal.cpp`.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ _BLOCK_BYTES = 8  # bytes that are covered at once
 def session_key(
     key: bytes, challenge: bytes, nonce: int, robot_nonce: int, epoch: int, which: int
 ) -> bytes:
-    """Derive the key of a seal from a key of the robot and what both have said: 16 bytes."""
+    """Derive the key of a seal from a key of the robot and the nonces of both sides: 16 bytes."""
     nonces = nonce.to_bytes(4, "little") + robot_nonce.to_bytes(4, "little")
     origin = challenge + nonces + bytes([epoch, which])
     return siphash(key, b"\1" + origin) + siphash(key, b"\2" + origin)
@@ -110,7 +111,7 @@ class Seal:
         return frame._replace(payload=payload[_PREFIX_BYTES:])
 
     def _mask(self, counter: bytes, data: bytes) -> bytes:
-        """Cover bytes of the frame with this counter: nobody else can read them."""
+        """Cover bytes of the frame with this counter: only the other side can read them."""
         stream = b"".join(
             siphash(self._key, counter + bytes([k])) for k in range(-(-len(data) // _BLOCK_BYTES))
         )

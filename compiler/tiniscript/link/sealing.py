@@ -1,4 +1,4 @@
-"""Which requests of a session are sealed, and which frames of the robot it believes.
+"""Decides which requests of a session are sealed, and which frames of the robot are trusted.
 
 Knows no exchange. `seal` knows the bytes of a sealed frame.
 """
@@ -19,7 +19,7 @@ SEALED_ONLY_MESSAGES = ("WIFI",)  # these contain a password, so they must be se
 
 
 class Sealing:
-    """`seal` is what requests are sealed with; `sealed_ms` is when that was last done."""
+    """`seal` seals requests; `sealed_ms` is the time of the last sealed one."""
 
     def __init__(self) -> None:
         self.seal: Seal | None = None
@@ -42,7 +42,8 @@ class Sealing:
         """Return the content of a frame, or None if it may not be the robot's.
 
         A robot that has not heard our seal for some time has dropped it, and says so without one.
-        Nor can it seal that a tag is wrong: so the tag is sent again first, for a sealed reply.
+        Nor can it seal the answer that a tag is wrong, so the tag is sent again first, to get a
+        sealed reply.
         """
         if frame.is_sealed:
             return self.seal.open_frame(frame) if self.seal else None

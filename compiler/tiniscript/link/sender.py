@@ -1,7 +1,7 @@
 """Puts a 0x00 before frames where the robot may not be waiting for one.
 
-Everything is text for a robot that has heard nothing for a second, and what it heard last may be
-half a frame. Knows no clock, and nothing of frames.
+After a second of silence a robot takes all bytes for text, and the last bytes that it received may
+be half a frame. It knows no clock and no frames.
 """
 
 from __future__ import annotations

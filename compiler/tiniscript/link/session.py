@@ -2,9 +2,9 @@
 
 `receive` takes the bytes that have arrived, `poll` returns the bytes to send, `wakes_at` the time
 of the next poll, `events` the new events. One request is in flight at a time; it is repeated until
-it is answered or its exchange times out. Times are milliseconds. Knows which exchange is next, and
-what ends one. `transmission` times retries and stops, `requests` and
-`handshake` know the order of requests, and `robot_state` what the robot does.
+it is answered or its exchange times out. Times are milliseconds. It knows which exchange is next,
+and when one ends. `transmission` times retries and stops, `requests` and `handshake` know the order
+of requests, and `robot_state` the state of the robot.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ class PendingExchange(PendingRequest[T]):
         self.deadline_ms = 0
         self.epoch: int | None = None  # epoch of the request
         self.is_own = is_own  # made by the session itself
-        self.ends_orphan = ends_orphan  # the run of a client that has gone
+        self.ends_orphan = ends_orphan  # the run of a client that has left
         self.presses_keys = presses_keys  # keys of a remote control
         self.is_void = False  # requested before a stop, so it is not continued
         self.answered_ms = 0  # time of the robot's last answer
@@ -150,13 +150,13 @@ class PendingExchange(PendingRequest[T]):
 
     @property
     def target(self) -> PendingExchange[Any]:
-        """The exchange itself, or the one before which something else is done first."""
+        """The exchange itself, or the one that has to wait for another one."""
         return self if self.interrupted is None else self.interrupted.pending
 
 
 class InterruptedExchange(NamedTuple):
-    """An exchange whose request goes on when a key was shown again, or a run is ended, or keys
-    were pressed."""
+    """An exchange whose request continues after a key is shown again, a run is ended, or keys are
+    pressed."""
 
     pending: PendingExchange[Any]
     transmission: Transmission
@@ -177,7 +177,7 @@ class Session(Requester):
         """
         self.tells_places = False  # PLACE events are wanted
         self.tells_starts = False  # STARTED events are wanted
-        self.is_attached = True  # events are wanted, so the heartbeat continues while nothing runs
+        self.is_attached = True  # events are wanted, so the heartbeat continues without a program
         # Whether a client attends to the robot.
         self.sends_heartbeat: Callable[[], bool] = lambda: True
         self.damaged = 0  # count of damaged frames
@@ -187,8 +187,8 @@ class Session(Requester):
         self._epoch = 0
         self._baud = baud
         self._stop = StopSender()
-        self._is_lost = False  # the link is, and nothing was sent since
-        # Time of the last transmission, or of the last answer while nothing runs.
+        self._is_lost = False  # the link is; no frame was sent since
+        # The time of the last transmission, or of the last answer while no program runs.
         self._talked_ms = 0
         self._unanswered_since_ms: int | None = None  # time of the first unanswered heartbeat
         self._remote = RemoteControl()
@@ -201,7 +201,7 @@ class Session(Requester):
         self._pending: PendingExchange[Any] | None = None
         self._round_trips = RoundTrips(baud)
         self._transmission = Transmission(self._round_trips)
-        self._orphan_run: int | None = None  # the run of a client that has gone
+        self._orphan_run: int | None = None  # the run of a client that has left
         # Request for the program of values that wait.
         self._program_query: PendingExchange[PingReply] | None = None
         self._told_stop_epoch: int | None = None  # epoch begun by the last reported stop
@@ -239,12 +239,12 @@ class Session(Requester):
         self._stop.begin(now_ms)
 
     def end_run(self, run: int, now_ms: int) -> None:
-        """End a run whose client has gone. What others have asked for goes on."""
+        """End a run whose client has left. Requests of other clients continue."""
         self._orphan_run = run
         self._end_orphan(now_ms)
 
     def withdraw(self, request: PendingRequest[Any]) -> None:
-        """Do no more of a request whose client has gone.
+        """Abandon a request whose client has left.
 
         A frame that may have started a run is under way until it is answered.
         """
@@ -357,7 +357,7 @@ class Session(Requester):
             for event in events
         ]
 
-    # -- what is sent -----------------------------------------------------------------------------
+    # -- sending ----------------------------------------------------------------------------------
 
     def _may_press(self) -> bool:
         """Return whether keys may be sent before the next frame, or instead of a heartbeat. They
@@ -371,7 +371,7 @@ class Session(Requester):
         return not self._transmission.is_sent and not self._transmission.is_of("AUTHENTICATE")
 
     def _is_heartbeat(self) -> bool:
-        """Return whether a heartbeat, or keys with nothing after them, are under way."""
+        """Return whether a heartbeat, or keys without a following request, are under way."""
         pending = self._pending
         is_alone = pending is not None and pending.is_own and pending.interrupted is None
         return is_alone and any(map(self._transmission.is_of, _HEARTBEAT_MESSAGES))
@@ -400,7 +400,7 @@ class Session(Requester):
         return (yield from send_single(Request("KEYS", self._remote.newest_message()), PingReply))
 
     def _end_press(self) -> None:
-        """Go on with what was under way before a key was pressed."""
+        """Resume the exchange that a key press has interrupted."""
         assert self._pending
         interrupted_exchange, self._pending = self._pending.interrupted, None
         self._transmission.end()
@@ -410,7 +410,7 @@ class Session(Requester):
     def _deafness_time_ms(self, now_ms: int) -> int:
         """Return the time at which the link is lost without an answer to a heartbeat."""
         if now_ms - self._talked_ms > 2 * HEARTBEAT_MS:
-            self._unanswered_since_ms = None  # nothing has been sent for a while
+            self._unanswered_since_ms = None  # no frame was sent for a while
         return (
             now_ms if self._unanswered_since_ms is None else self._unanswered_since_ms
         ) + DEAF_MS
@@ -497,9 +497,9 @@ class Session(Requester):
         return self._seq
 
     def _authenticate_again(self, now_ms: int) -> None:
-        """The robot no longer knows our seal: show a key, then go on with the same request.
+        """The robot no longer knows our seal: show a key, then continue with the same request.
 
-        It has the same number, so the robot does nothing twice.
+        It has the same number, so the robot does not repeat it.
         """
         pending, transmission = self._pending, self._transmission
         assert pending
@@ -509,7 +509,7 @@ class Session(Requester):
             return
         pending.key_showings += 1
         self._transmission = Transmission(self._round_trips)
-        if pending.key_showings > MOST_KEY_SHOWINGS:  # its exchange is told, and may repeat it
+        if pending.key_showings > MOST_KEY_SHOWINGS:  # its exchange is notified, and may repeat it
             pending.exchange.close()
             pending.outcome = Reply(NOT_OWNER)
             self._pending = None
@@ -536,7 +536,7 @@ class Session(Requester):
             self._advance(Reply(key_reply.status or _STALE_STATUS, key_reply.detail), now_ms)
 
     def _end_orphan(self, now_ms: int) -> None:
-        """End the run of a client that has gone, between two frames of what others ask for."""
+        """End the run of a client that has left, between two frames of other clients' requests."""
         if self._orphan_run is None:
             return
         if not self.is_running or self.run != self._orphan_run:
@@ -562,7 +562,7 @@ class Session(Requester):
         self._advance(None, now_ms)
 
     def _go_on(self, interrupted_exchange: InterruptedExchange) -> None:
-        """Go on with an exchange whose request has not been sent yet, not even in part."""
+        """Resume an exchange whose request has not been sent yet, not even in part."""
         self._pending, self._transmission = interrupted_exchange
         seal = None if self._transmission.is_of("HELLO") else self._sealing.seal
         self._transmission.renew(self._epoch, self._next_number(seal is not None))
@@ -583,10 +583,11 @@ class Session(Requester):
         self._talked_ms = now_ms
         return self._stop.bytes_to_send(now_ms, self._sender)
 
-    # -- what arrives -----------------------------------------------------------------------------
+    # -- receiving --------------------------------------------------------------------------------
 
     def _lose_seal(self, frame: Frame, now_ms: int) -> None:
-        """The robot does not know our seal. Anybody may say so: nothing is done twice for that."""
+        """The robot does not know our seal. Such an answer may be forged: it causes no
+        repetition."""
         if self._pending and not self._pending.presses_keys:
             self._pending.target.may_be_done = True
         if frame.epoch == self._epoch:
@@ -659,8 +660,8 @@ class Session(Requester):
             self._unanswered_since_ms = None
             self._remote.note_answered()
 
-    # An epoch ends with a stop, a fault or a reset, or when another session begins. A stop alone
-    # voids what was asked for before it.
+    # An epoch ends with a stop, a fault or a reset, or when another session begins. Only a stop
+    # cancels earlier requests.
 
     def _doubt_epoch(self, frame: Frame) -> None:
         """The robot may have another epoch, which no event has announced."""
@@ -686,14 +687,14 @@ class Session(Requester):
         elif self._transmission.is_of("STOP"):
             is_stop = not (self._pending and self._pending.ends_orphan)
         else:
-            return True  # anyone who needs more sends HELLO
+            return True  # a client that needs more sends HELLO
         self._handshake.doubted_epoch = None
         if is_stop:
             self._void_requests()
         return True
 
     def _settle_epoch(self, robot: HelloReply, frame: Frame) -> None:
-        """Find out from HELLO what has ended the epoch that is in doubt."""
+        """Find out from HELLO what ended the doubtful epoch."""
         is_same = self.robot is not None and self.robot.values.nonce == robot.nonce
         if is_same and self._handshake.is_open:
             self._doubt_epoch(frame)  # a client has sent HELLO, which notices it first
@@ -712,9 +713,9 @@ class Session(Requester):
         self._handshake.doubted_epoch = None
 
     def _void_requests(self, began_epoch: int | None = None) -> None:
-        """The robot was stopped: do nothing that was asked for before. Questions are answered.
+        """The robot was stopped: discard all earlier requests. Questions are answered.
 
-        `began_epoch`: the one that has begun so, if what was asked for in it is known to be later.
+        `began_epoch` is the new epoch, if requests in it are known to be later.
         """
         self._remote.let_go()
         for pending in (*self._queue, *([self._pending] if self._pending else [])):
@@ -761,7 +762,7 @@ class Session(Requester):
     def _query_again(
         self, has_ended: bool, is_other_epoch: bool, run: int | None
     ) -> Exchange[StatusReply]:
-        """Ask who the robot is now that another epoch has begun, and how a run has ended."""
+        """Ask for the robot's identity, because a new epoch has begun, and for the end of a run."""
         if is_other_epoch:
             hello = yield from self._handshake.hello()
             if hello.status != OK:
@@ -838,7 +839,7 @@ class Session(Requester):
             self._events.append(event)
 
     def _take_show(self, show: UnresolvedShow) -> None:
-        """Report a value. If nobody here has started its run, the robot is asked for the program,
+        """Report a value. If no client here started its run, the robot is asked for the program,
         unless that would have to wait.
         """
         event = self._state.to_shown_event(show)
@@ -859,7 +860,7 @@ class Session(Requester):
         """Return whether the stop under way has stopped the robot, or found it stopped.
 
         Another stop's STOPPED may have been under way, and the robot may have started again since:
-        then the next one tells, as the stop is sent again.
+        then the next one decides, because the stop is sent again.
         """
         is_known = self.is_latched and frame.epoch == self._epoch
         return self._stop.is_sent and (event.cause == _BY_SEQUENCE or is_known)
@@ -928,7 +929,7 @@ class Session(Requester):
         return pending
 
     def _heartbeat(self) -> Exchange[PingReply]:
-        """Ping, and ask where the program is, if that is wanted and the robot tells it."""
+        """Ping, and ask for the program's place, if that is wanted and the robot reports it."""
         asks = PLACE_QUESTION if self.tells_places and self._has_places else b""
         return self._handshake.with_key(lambda: ping(asks))
 

@@ -1,7 +1,7 @@
 """A robot's answers in words: the sentence of each status, in the reader's language.
 
 Knows how the texts of the catalogue are filled, which has IMAGE and RULE for the numbers of images
-and of the verifier that have no text of their own. Knows no message. Prints nothing.
+and of the verifier that have no text of their own. Knows no message. It prints nothing.
 
 Gaps: `{detail}` is the number that follows the status, `{kit}` the same as four hexadecimal digits,
 `{version}` the same as major and minor, `{name}` the name of an image's refusal or a rule.
@@ -20,7 +20,7 @@ CATALOGUE = "statuses"
 
 
 class StatusText(NamedTuple):
-    """The message, and what to do next, which may be empty."""
+    """The message, and the next step, which may be empty."""
 
     message: str
     advice: str

@@ -1,6 +1,6 @@
 """Transmissions that wait for an answer: a frame, the pieces of a program, or a stop.
 
-Does not know what an answer means; `round_trips` knows how long one may take.
+Does not know the meaning of answers; `round_trips` knows how long one may take.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class Transmission:
         answer_bytes: int = SMALL_FRAME,
         ends_when_silent: bool = False,
     ) -> None:
-        """`answer_bytes` is how many bytes the frame of an answer has at most, before COBS;
-        `ends_when_silent`: the robot runs a program that ends when it hears nothing.
+        """`answer_bytes` is the maximum length of the frame of an answer, before COBS;
+        `ends_when_silent`: the robot runs a program that ends in silence.
         """
         self._round_trips = round_trips
         self._ends_when_silent = ends_when_silent
@@ -106,7 +106,7 @@ class Transmission:
     def learn_round_trip(self, reply: Frame, now_ms: int) -> None:
         """Learn from an answer how long one takes."""
         if self.tries == 0:
-            return  # nothing of the frame was sent, so this answers another one
+            return  # no part of the frame was sent, so this answers another one
         byte_count = self._wire_bytes + HEAD_BYTES + len(reply.payload) + CRC_BYTES
         self._round_trips.add_round_trip(now_ms - self._began_ms, byte_count, self.tries == 1)
 
@@ -198,7 +198,7 @@ class Window(Transmission):
         self._is_over = False
 
     def begin_again(self, due_ms: int, seal: Seal | None) -> None:
-        """Send what the robot has not taken, from then on."""
+        """From then on, send the bytes that the robot has not accepted."""
         super().begin_again(due_ms, seal)
         self._sent_pieces.clear()
         self._lost_pieces.clear()
@@ -253,7 +253,8 @@ class Window(Transmission):
     def take_reply(self, frame: Frame, next_offset: int | None, now_ms: int) -> bool:
         """Take the reply to a frame that was sent; return whether all has arrived.
 
-        `next_offset` of None: the robot has not looked at the frame, as a later one came before it.
+        A `next_offset` of None: the robot has not processed the frame, because a later one arrived
+        before it.
         """
         has_come = next_offset is not None and next_offset > self._next_offset
         if next_offset is not None and has_come:

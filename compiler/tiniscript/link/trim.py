@@ -1,6 +1,6 @@
 """The trim of a robot's motors and how fast it was measured to be, which the robot keeps.
 
-Knows what the bytes mean. The robot applies the trim to its motors
+It knows the meaning of the bytes. The robot applies the trim to its motors
 (`vm_arduino/src/firmware/trim.cpp`), and the pace to moves by centimetres and degrees (`pace.cpp`).
 """
 
@@ -42,8 +42,8 @@ class Trim(NamedTuple):
     """The wiring of the motors, and the correction that makes the robot drive straight.
 
     `balance` is the percent by which the left wheel is too strong; if it is below 0, the right
-    wheel is. `least` is the smallest power in percent that moves the wheels. Without a pace: the
-    robot cannot keep one, or shall keep what it has.
+    wheel is. `least` is the smallest power in percent that moves the wheels. Without a pace, the
+    robot cannot keep one, or keeps the one that it has.
     """
 
     is_exchanged: bool = False

@@ -1,6 +1,6 @@
-"""Which lines are typed stops: of all their characters only ASCII letters and digits are looked at.
+"""Recognizes typed stops: of a line's characters, only ASCII letters and digits count.
 
-Nothing after // counts. Knows spellings, no receiver and no time. The C++ version is
+Text after // is ignored. Knows spellings, no receiver and no time. The C++ version is
 `vm_arduino/src/link/typed_stop.h`.
 """
 
@@ -36,7 +36,7 @@ def stops_at_once(line: bytes) -> bool:
 
 
 def is_at_stop(data: bytes) -> bool:
-    """Return whether text ends with a line that stops what runs if nothing more comes."""
+    """Return whether text ends with a line that stops the run if no more text follows."""
     line = _LINE_END.split(data)[-1]
     return is_typed_stop(line) or stops_at_once(line) or _CTRL_C.fullmatch(line) is not None
 

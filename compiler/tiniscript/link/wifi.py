@@ -1,4 +1,4 @@
-"""The exchanges about a robot's WiFi and its MQTT broker: what it is set to, another one, none.
+"""The exchanges about a robot's WiFi and its MQTT broker: read, change or remove the settings.
 
 Knows the order of messages. A name and a password go out sealed and covered: `seal` and `session`
 see to that.
@@ -50,7 +50,7 @@ class Tls(NamedTuple):
 class BrokerSettings(NamedTuple):
     """The broker of a robot: an IPv4 address and a port, its class, and the credentials.
 
-    It looks up `name`, if there is one, and takes the four bytes if nobody knows it.
+    The robot looks up `name`, if there is one, and uses the four bytes if the lookup fails.
     """
 
     address: bytes
@@ -87,7 +87,7 @@ def is_class_name(name: str) -> bool:
 
 
 def query(step: str) -> Exchange[WifiReply]:
-    """TELL: ask what the WiFi is set to; TELL_BROKER: what the broker is."""
+    """TELL: ask for the WiFi settings; TELL_BROKER: for those of the broker."""
     return requests.send_single(_request(step), WifiReply)
 
 
@@ -115,7 +115,7 @@ def use_broker(broker: BrokerSettings | None) -> Exchange[WifiReply]:
 
 
 def address(reply: WifiReply) -> str:
-    """Return the robot's address in the network, or nothing while it has none."""
+    """Return the robot's address in the network, or an empty text while it has none."""
     return ".".join(map(str, reply.address.to_bytes(4, "little"))) if reply.address else ""
 
 

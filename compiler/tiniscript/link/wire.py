@@ -1,7 +1,7 @@
 """A port as a wire: bytes that are sent and heard, at a speed that can change.
 
-For whoever looks at what is at the other end before a session is possible. Knows no frame, no
-robot and no clock: the port itself waits.
+For callers that need to know what is at the other end before a session is possible. Knows no frame,
+no robot and no clock: the port itself waits.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ RESET_MS = 100  # time for which the lines hold a board in reset
 
 
 class Wire:
-    """A port that `link.ports` has opened. All but `close` raise OSError where it is gone."""
+    """A port that `link.ports` has opened. All but `close` raise OSError if it is lost."""
 
     def __init__(self, port: Any) -> None:
         self._port = port
@@ -27,7 +27,7 @@ class Wire:
             raise OSError(str(error)) from None
 
     def receive(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
-        """Wait `wait_ms` for a byte at most; return it and what follows until a silence."""
+        """Wait `wait_ms` for a byte at most; return it and the following bytes until a silence."""
         data = b""
         limit_ms = wait_ms
         while len(data) < MOST_BYTES:

@@ -9,8 +9,8 @@ their order.
 The laws, from which no row and no reader is exempt, and where each is kept:
 
 - What is made keeps what was written: every number with its sign and its unit, every name,
-  command, comparison and branch, and no block or DEF is done more or less often. What loses one
-  is only shown, with what it loses (`conserved`).
+  command, comparison and branch, and no block or DEF is done more or less often. A repair that
+  loses one is only shown, with the loss (`conserved`).
 - What is offered is right: where it stands, no mistake begins in it (`diagnostics/fixing.py`).
 - A pattern speaks of an instruction, wherever that stands: first, last, in one line with others,
   or in a block (`rewrites` for `^` and `$`, `writing` for the end of a line).

@@ -1,7 +1,7 @@
 """Blocks: which end belongs to which header, over all lines of a program.
 
-Names bare ends, puts words for braces, and closes what a line or its indentation closes. Takes each
-line as it is read.
+Names bare ends, replaces braces by words, and closes the blocks that a line or its indentation
+closes. Takes each line as it is read.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tiniscript.syntax.outline import Item
 
 _ASKING_WORDS = ("IF", "WHILE", "WHEN")
 _REMOTE_NAMES = frozenset(device.name for device in REMOTE)
-MOST_ITEMS_AFTER_ELSE = 200  # items after an ELSE whose ends are counted
+MOST_ITEMS_AFTER_ELSE = 200  # the number of items after an ELSE whose ends are counted
 
 
 class Line(NamedTuple):
@@ -142,7 +142,7 @@ class Matching:
     def close_below(self, k: int, block: _OpenBlock) -> None:
         self.ends_below.setdefault(k, []).append(" " * block.indent + block.end)
 
-    # -- the beginning of a line: its indentation may close what is open -----------------------
+    # -- the beginning of a line: its indentation may close blocks --------------------------------
 
     def begin_line(self, line_before: int) -> None:
         indent = self.line.indent
@@ -195,7 +195,8 @@ class Matching:
     def is_when(self) -> bool:
         """Return whether an IF means a WHEN: at the top level, with lines and an end of its own.
 
-        A key is asked for so anyway: who asks once, as the program begins, never sees it pressed.
+        This is for keys: a program that checks a key only once, at its start, never sees it
+        pressed.
         """
         if self.open_blocks or not self.line.is_when or self.item.word != "IF":
             return False
@@ -251,7 +252,7 @@ class Matching:
         return True
 
     def drop_early_end(self) -> bool:
-        """Drop an end before the ELSE of its IF; return whether there was one."""
+        """Drop an end before the ELSE of its IF; return whether it found one."""
         item = self.item
         is_end_of_if = item.word == ANY_END or WORD_OF_END[item.word] == "IF"
         if not (

@@ -33,7 +33,7 @@ _ADVICE_GAPS = ("fix", "head", "named", "lost")  # gaps with the new form of the
 def explain_brackets(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> Diagnostic:
     """Return a mistake of needless brackets, with the new form of their content.
 
-    `is_offered`: where it is a question, that is asked; else it is named as lost.
+    `is_offered`: a question is asked; otherwise it is named as lost.
     """
     values = diagnostic.values
     has_other_advice = diagnostic.repair or any(values.get(gap) for gap in _ADVICE_GAPS)
@@ -55,10 +55,11 @@ def explain_brackets(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bo
 
 
 def explain_else_question(diagnostic: Diagnostic, text: str) -> Diagnostic:
-    """Return a mistake of a question after ELSE with ELSE alone first, where that says the same.
+    """Return a mistake for a question after ELSE, with ELSE alone as the first choice if it means
+    the same.
 
-    That is where it is no when the question before it is yes: `IF(DISTANCE < 20)`, and
-    `ELSE(DISTANCE > 20)`. ELSEIF with the question comes second.
+    This is the case if its answer is no whenever the question before it is yes: `IF(DISTANCE <
+    20)`, and `ELSE(DISTANCE > 20)`. ELSEIF with the question comes second.
     """
     start = diagnostic.span.start
     match = next(
@@ -96,7 +97,7 @@ def _innermost_question(text: str) -> str:
             if word == "IF":
                 questions.append(match[2] or "")
             elif questions and word == "ELSEIF":
-                questions[-1] = ""  # an ELSE comes only after the other answers
+                questions[-1] = ""  # an ELSE only takes the other answers
             elif questions and word.startswith("END"):
                 questions.pop()
     return questions[-1] if questions else ""

@@ -1,8 +1,8 @@
-"""Calls whose values are all there, but in another form: each gets all of them where it has them.
+"""Calls whose values are all present, but in another form: each call gets all of them.
 
 `F(20, CM, 60)` has its unit as a value of its own, `BEEP(1, 1,000)` a comma between thousands, and
-`M(50, 80, 3)` the seconds of a W. Of calls in a row each is an instruction, also of a word that
-nobody knows: `F(2, 80) I(1, 60)`.
+`M(50, 80, 3)` the seconds of a W. In a row of calls, each is an instruction, even if its word is
+unknown: `F(2, 80) I(1, 60)`.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def misplaced_values(source: Source) -> list[Diagnostic]:
 def run_on_calls(source: Source, names: Names) -> list[Diagnostic]:
     """Return the diagnostics for calls without a separator, one with an unknown word.
 
-    Where all are known, a search reads the line.
+    If all are known, a search reads the line.
     """
     diagnostics = []
     line_start = 0
@@ -133,7 +133,7 @@ def run_on_calls(source: Source, names: Names) -> list[Diagnostic]:
 
 
 def _only_calls(piece: str) -> list[re.Match[str]]:
-    """Return the calls of a text of calls alone, nothing if it has something else."""
+    """Return the calls of a text that consists of calls, else nothing."""
     calls: list[re.Match[str]] = []
     offset = 0
     while call := _CALL_AFTER_BLANKS.match(piece, offset):
@@ -245,7 +245,7 @@ def _are_powers(values: Sequence[str]) -> bool:
 
 
 def own_example(text: str) -> str:
-    """Return an instruction whose CM or DEG is misplaced, written with its own values."""
+    """Return an instruction with a misplaced CM or DEG, rewritten with its own values."""
     if stored_match := _STORED_WITH_UNIT.fullmatch(text):
         name, number, unit = stored_match[1], stored_match[2], stored_match[3].upper()
         word = next(word for word, unit_of_word in UNIT_OF.items() if unit_of_word == unit)
@@ -286,7 +286,7 @@ def likely_word(word: str, text: str) -> str:
 def usage_of_number(word: str, number_text: str) -> str:
     """Return the call of a word with its only number, or "" if the number may be another value.
 
-    So much of a turn is degrees; of a way it may be a power.
+    A large number after a turn means degrees; after a move it may be a power.
     """
     word_row = WORDS.get(word)
     is_long_time = float(number_text) >= LONG_TIME_S

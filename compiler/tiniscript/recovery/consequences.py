@@ -1,6 +1,6 @@
 """Diagnostics that are omitted because they follow from others.
 
-`_CONSEQUENCES` says it of codes, `_RULES` of what two diagnostics have in common. Knows no row.
+`_CONSEQUENCES` lists them by code, `_RULES` by what two diagnostics have in common. Knows no row.
 """
 
 from __future__ import annotations

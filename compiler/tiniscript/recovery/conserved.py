@@ -1,7 +1,7 @@
 """Conservation: the content that a repair omits, and the actions that it adds.
 
 Counts numbers with their signs and units, names, commands, comparisons and branches, as far as
-words and signs say them. Knows no row: what was written is compared with what is written then.
+words and signs say them. It knows no row: it compares the text before and after.
 """
 
 from __future__ import annotations
@@ -170,9 +170,9 @@ def difference(text: str, repaired_text: str, kit: Kit) -> Difference:
 def withhold_lossy_repairs(
     diagnostics: Sequence[Diagnostic], text: str, kit: Kit
 ) -> list[Diagnostic]:
-    """Return diagnostics whose certain repairs neither lose nor add anything.
+    """Return diagnostics whose certain repairs lose and add nothing.
 
-    It is shown together with what is `lost`, and so is what was not sure before.
+    A lossy repair is shown together with what is `lost`, and so is an unsure one.
     """
     sure_diagnostics = [
         diagnostic
@@ -231,8 +231,8 @@ def which_keep_all(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> li
 def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Difference]:
     """Return the losses of each diagnostic's edits alone.
 
-    Where they are many, they are looked at together: halves of them while there are looks left. Of
-    what many lose together each loses what stands in its own instructions.
+    If there are many, they are checked together: halves of them, while checks are left. If many
+    together lose something, each loses what its own instructions contain.
     """
     edits = [edits_of(diagnostic) or () for diagnostic in diagnostics]
     changing_keys = [k for k, edits_of_one in enumerate(edits) if edits_of_one]
@@ -311,7 +311,7 @@ def _surrounding_text(edits: Sequence[Edit], text: str) -> str:
 def _unmentioned_losses(diagnostic: Diagnostic, losses: Sequence[str], text: str) -> list[str]:
     """Return the unmentioned losses of a shown edit: a unit, or removed text.
 
-    A minus is none of these: a move goes the other way then.
+    A minus is not among these: it reverses a move.
     """
     edits = edits_of(diagnostic) or []
     new_text = " ".join(edit.text for edit in edits).upper()
@@ -332,8 +332,8 @@ def _unmentioned_losses(diagnostic: Diagnostic, losses: Sequence[str], text: str
 def name_samples(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
     """Return diagnostics that mark each number not written by the user as an example.
 
-    That is a distance that a pupil called near, `DISTANCE < 10` for "near a wall", and the time,
-    the power or the pitch that a call lacks. Where the text has that number, or where the message
+    Such a number is a distance that a pupil called near, `DISTANCE < 10` for "near a wall", or the
+    time, the power or the pitch that a call lacks. If the text has that number, or the message
     shows an example anyway, nothing changes.
     """
     written_numbers: set[float] | None = None
@@ -402,7 +402,7 @@ class _Statement:
         self._concepts_of_text: dict[str, set[str]] = {}
         # Last words of names with spaces, such as `mi velocidad`.
         self._name_ends = {row[-1] for row in self.names.spaced_names}
-        # A number without a unit counts something else: 50 % of light is not 50.
+        # A number without a unit has another meaning: 50 % of light is not 50.
         self.units = {reading.name: reading.unit or reading.name for reading in kit.readings} | {
             "TIME": "s"
         }
@@ -432,7 +432,7 @@ class _Statement:
         return _FRAME_PATTERN.sub(";", text)
 
     def _separated_numbers(self, line: str) -> str:
-        """Return a line in which numbers stand alone, but for those of names: `F2,80`, `F_2_80`."""
+        """Return a line with separate numbers, except those in names: `F2,80`, `F_2_80`."""
         for fraction, decimals in _FRACTIONS.items():
             line = re.sub(rf"(?<!\d)(\d) {fraction}(?!\d)", rf"\1{decimals}", line)
             lone_fraction = rf"(?i)(?<![\d)] )(?<!\d){fraction}(?!\d)(?=\s*[a-z])"
@@ -464,7 +464,7 @@ class _Statement:
             joined_tokens = joined_line[0]
         return joined_tokens
 
-    # -- what each word is -----------------------------------------------------------------------
+    # -- the meaning of each word ----------------------------------------------------------------
 
     def _sure_word(self, token: Lexeme) -> str:
         """Return the word of the language, or the name, that a word surely says, "" for none."""
@@ -983,7 +983,7 @@ def _lost_questions(statement: _Statement, repaired_statement: _Statement) -> It
         yield from (lost_senses - new_senses) or lost_senses
     elif lost_senses == new_senses and len(negations[0]) > len(
         negations[1]
-    ):  # nothing else is inverted instead
+    ):  # nothing is inverted instead
         yield negations[0][0]
     if repaired_statement.count_empty_branches() > statement.count_empty_branches():
         yield "ELSE"

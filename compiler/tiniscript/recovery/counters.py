@@ -1,6 +1,6 @@
 """Loops of other languages that count: `FOR I = 1 TO 5`, `for each i from 1 to 4`, `NEXT I`.
 
-LOOP counts nothing: a counter that the body uses becomes a variable that grows there. What the
+LOOP has no counter: a counter that the body uses becomes a variable that grows there. Text that the
 rows read is left to them.
 """
 
@@ -27,7 +27,7 @@ _IN_WORDS = ("IN", "EN", "EM")
 class _Counter(NamedTuple):
     """A header: tokens `start_index` to `end_index` count `loop_count` with `name`.
 
-    It begins at `first_value`, and goes on by `step`. The words before `name_index` say that it is
+    It begins at `first_value`, and advances by `step`. The words before `name_index` say that it is
     one: `for each`.
     """
 
@@ -193,7 +193,7 @@ class _TokenReader:
         return is_word and bool(lexicon_meaning(self.text(), *kinds))
 
     def try_take(self, *signs: str) -> bool:
-        """Pass one of these signs, or say that there is none."""
+        """Pass one of these signs; return whether there was one."""
         is_there = self.text() in signs
         self.k += is_there
         return is_there
@@ -203,7 +203,7 @@ class _TokenReader:
         return (*lexicon_meaning(self.text(), "unit")[:1], "")[0]
 
     def number(self) -> int | None:
-        """Pass a whole number, None for anything else: an amount with a unit is no count."""
+        """Return a whole number, or None for anything else: an amount with a unit is no count."""
         is_there = self.k < len(self.tokens) and self.tokens[self.k].kind is NUMBER
         number = int(self.text()) if is_there and self.text().isdecimal() else None
         self.k += is_there

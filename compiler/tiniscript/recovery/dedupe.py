@@ -1,4 +1,4 @@
-"""Says once what would be said of several places of a text. Knows no row."""
+"""Reports once what would be reported at several places of a text. Knows no row."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ _ENDLESS_CONDITIONS = (("(", "FOREVER", ")"), ("(", "TRUE", ")"))
 def possible_last_instructions(tokens: Sequence[Lexeme]) -> list[str]:
     """Return the instructions after which the block may end that these tokens begin, in order.
 
-    What comes after an endless loop is never done: that ends after all of them.
+    Instructions after an endless loop never run, so it ends after all of them.
     """
     header, *instructions_inside = instructions(tokens)
     candidates: list[str] = []

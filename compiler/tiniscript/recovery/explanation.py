@@ -1,7 +1,7 @@
 """Explanations: what was wrong with each line of a text, from the rewrites of its candidate.
 
-A line has slips, `slips` says what each of them is; here they get their edits, and what belongs to
-a block is told at its beginning. Knows no sentence of any language.
+A line has slips, `slips` says what each of them is; here they get their edits, and messages about a
+block move to its beginning. Knows no sentence of any language.
 """
 
 from __future__ import annotations
@@ -68,11 +68,11 @@ _WORDS_OF_SIGNS = ("BEEP", "SHOW", "S", "STOP")
 
 
 class SlipDetails(NamedTuple):
-    """A slip, and what only its line, or the text around it, can say of it.
+    """A slip, with the information from its line and the text around it.
 
     `right` are names that get their letters, or a note; `needless` is a brace, `early` an end, both
     too many. `spoken` are the names of signs, `digits` and `tones` the words of numbers. An end of
-    another block stands for `fix`, the end of the `word` on line `line`.
+    another block is in the place of `fix`, the end of the `word` on line `line`.
     """
 
     slip: Slip
@@ -97,10 +97,10 @@ class SlipDetails(NamedTuple):
 class UnendedBlock:
     """A block that begins with `word` and lacks its end, `right`.
 
-    It has `behind` on its own line, where it may end after any of `places`, or it is `begun` on
-    another line than that of the place, and line `line`, `last`, is its last one. Of `several`
-    instructions the last one may as well be after it: there `last` is empty. It may end `early`,
-    on the line before one that `begins`.
+    Either it has `behind` on its own line, and may end after any of `places`; or it is `begun` on
+    another line than that of the place, and line `line`, `last`, is its last one. With `several`
+    instructions, the last one may also be after it: then `last` is empty. It may end `early`, on
+    the line before one that `begins`.
     """
 
     word: str
@@ -122,12 +122,12 @@ class UnendedBlock:
 class Explanation:
     """The explanation of a line: its code, and `details`.
 
-    Where more of its block changes, that becomes `block_text`, and ends with `end_word`.
+    If more of its block changes, the block becomes `block_text` and ends with `end_word`.
 
-    `place` is what `fix` stands for; `edits` are all that belong to it: ends, braces. It begins in
-    change `first_change`, from 0; `last_line` is a change, and how many of its lines belong to it;
-    `opening_changes` are the changes in which blocks begin that it ends. `is_sure`: nothing that it
-    changes is a guess.
+    `fix` replaces the text at `place`; `edits` are all edits that belong to it: ends, braces. It
+    begins in change `first_change`, from 0; `last_line` is a change, and how many of its lines
+    belong to it; `opening_changes` are the changes in which blocks begin that it ends. `is_sure`:
+    none of its changes is a guess.
     """
 
     code: Code
@@ -210,7 +210,7 @@ class _Explainer:
         explanation.is_sure = self.is_sure(explanation)
 
     def is_sure(self, explanation: Explanation) -> bool:
-        """Return whether nothing that an explanation changes is a guess."""
+        """Return whether none of an explanation's changes is a guess."""
         offsets = (offset for edit in explanation.edits for offset in edit.span)
         lines = {self.program.count("\n", 0, offset) for offset in offsets}
         touched_changes = [
@@ -306,7 +306,8 @@ class _Explainer:
         old_tokens: Sequence[Lexeme],
         new_tokens: Sequence[Lexeme],
     ) -> list[InstructionChange]:
-        """Return the instructions of a line that change; nothing for one, or for others."""
+        """Return the instructions of a line that change; or an empty list for one, or for
+        others."""
         steps_by_instruction: dict[int, list[Step]] = {}
         for step in self.changes[k].steps:
             instructions_before, instructions_after = (instructions(tokens) for tokens in step[1:])
@@ -589,7 +590,7 @@ def _is_closed(tokens: Sequence[Lexeme]) -> bool:
 
 
 def trimmed_edit(start: int, old_text: str, new_text: str) -> Edit:
-    """Return the edit of what differs."""
+    """Return the edit, reduced to the part that differs."""
     head, tail = common_lengths(old_text, new_text)
     return Edit(
         Span(start + head, start + len(old_text) - tail), new_text[head : len(new_text) - tail]

@@ -1,7 +1,7 @@
 """A DEF that gives a value back, as a function of other languages does, which no DEF can.
 
-`DEF DOUBLE(N);RETURN N * 2;END_DEF;X = DOUBLE(4)` is one mistake, told where the RETURN stands, or
-else where the call is a value: the result goes into a variable, and the call is an instruction.
+`DEF DOUBLE(N);RETURN N * 2;END_DEF;X = DOUBLE(4)` is one mistake, reported at the RETURN, or else
+where the call is a value: the result goes into a variable, and the call is an instruction.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def find_returned_values(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
 
 
 def _value_calls(tokens: Sequence[Token], names: set[str]) -> Iterator[tuple[str, int]]:
-    """Yield each call of a DEF, with brackets, that stands for a value."""
+    """Yield each call of a DEF, with brackets, in the place of a value."""
     for k, token in enumerate(tokens[:-1]):
         if token.kind is not WORD or token.text not in names or tokens[k + 1].kind != "(":
             continue
@@ -99,7 +99,7 @@ def _until_end(tokens: Sequence[Token], k: int) -> Iterator[Token]:
 def _returns(tokens: Sequence[Token], called_names: set[str]) -> Iterator[tuple[str, Token, Span]]:
     """Yield each RETURN with a value in a DEF: the name of that, the word, and the value.
 
-    So is a sum alone, `N * 2`, in one that is `called_names` as a value.
+    So is a bare sum, `N * 2`, in a DEF whose name in `called_names` is used as a value.
     """
     name, begins_instruction = "", True
     for k, token in enumerate(tokens):
@@ -130,7 +130,7 @@ def _returns(tokens: Sequence[Token], called_names: set[str]) -> Iterator[tuple[
 
 
 def _placeholder(text: str, span: Span) -> str:
-    """Return a value that may stand for a call: a yes where that is a whole question."""
+    """Return a placeholder for a call: a yes if the call is a whole question."""
     text_before, text_after = text[: span.start].rstrip(), text[span.end :].lstrip()
     word = text_before.removesuffix("(").rstrip()[-6:].upper()
     is_condition = text_before.endswith("(") and word.endswith(("IF", "WHILE", "UNTIL", "WHEN"))

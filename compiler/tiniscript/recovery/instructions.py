@@ -1,6 +1,7 @@
-"""The instructions that one sentence says, all of them or none, and the block they are in.
+"""The instructions of one sentence, all of them or none, and the block that they are in.
 
-Knows no separators of programs and no row. A sentence with a word that has no place says none.
+Knows no separators of programs and no row. A sentence with a word that has no place gives no
+instruction.
 """
 
 from __future__ import annotations
@@ -92,7 +93,7 @@ def spoken_instructions(words: Sequence[Lexeme], names: Names) -> list[SpokenIns
             instruction.is_repeated
             for instruction in part_instructions[bool(not found_instructions) :]
         ):
-            return []  # nobody knows which part is repeated
+            return []  # it is unclear which part is repeated
         found_instructions += part_instructions
     return found_instructions
 
@@ -245,7 +246,7 @@ def _move_until(words: Sequence[Lexeme], names: Names) -> SpokenInstruction | No
 def _parse_condition(
     words: Sequence[Lexeme], names: Names, may_be_distance: bool = True
 ) -> tuple[str, tuple[str, ...]]:
-    """Return the condition that words ask, and what they do not say of it.
+    """Return the condition in words, and its missing parts.
 
     `may_be_distance`: it may be one for something near, which DISTANCE sees.
     """
@@ -264,7 +265,7 @@ def _parse_condition(
 def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
     """Return the block that one sentence describes: its header, its body, and its end.
 
-    `goes_on`: it goes on further down.
+    `goes_on`: it continues further down.
     """
     word = names.find_meaning(tokens[0].text)
     if word not in ("IF", "WHEN", "WHILE", "LOOP") or len(tokens) > MOST_WORDS:
@@ -322,9 +323,9 @@ def _block_header(word: str, words: Sequence[Lexeme], names: Names) -> str:
 
 
 def condition_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
-    """Return the question that words ask, in words of the language; nothing for none.
+    """Return the question that words ask, in words of the language; or an empty text.
 
-    A comparison is one, and what says yes or no by itself: `KEY_A`, `NOT KEY_A`.
+    A condition is a comparison, or a yes-no value: `KEY_A`, `NOT KEY_A`.
     """
     words = words[1:-1] if brackets_end(words, 0) == len(words) else words
     readings = lines.read(

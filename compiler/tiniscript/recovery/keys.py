@@ -1,9 +1,9 @@
 """Keys and the stick of a remote control in a pupil's own words: `botón A`, `palanca izquierda`.
 
 Each leads to one of the readings that a robot has of them, and a key that there is not to all of
-these. Where an instruction is given to a key, `flecha arriba = F(1, 60)`, the key is asked. A side
-of the stick, `PAD LEFT`, is a number below or above 0, and may be meant as the arrow: both are
-shown.
+these. If an instruction is assigned to a key, `flecha arriba = F(1, 60)`, the key becomes a
+question. A side of the stick, `PAD LEFT`, is a number below or above 0, and may be meant as the
+arrow: both are shown.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class _Piece(NamedTuple):
 class _Key(NamedTuple):
     """Pieces that say a key, from `start` up to `end`; `condition` is "" for one that there is not.
 
-    `arrow` is the key that may be meant where `condition` asks the stick. What is not sure is
+    `arrow` is the key that may be meant where `condition` asks the stick. An unsure repair is only
     shown.
     """
 
@@ -188,7 +188,7 @@ class _Instruction:
         values = {"word": re.split(r"\W", instruction)[0].upper(), "fix": fix}
         return Diagnostic(codes.NO_VALUE, span, values, span, repair)
 
-    # -- what says a key --------------------------------------------------------------------------
+    # -- words for a key --------------------------------------------------------------------------
 
     def _find_key(self, k: int) -> _Key | None:
         """Return the key that pieces from one on say: its side goes before it or after it."""
@@ -321,10 +321,9 @@ class _Instruction:
         )
 
     def _find_side(self, k: int, key_before: _Key | None) -> _Key | None:
-        """Return the key that a side alone says, which nothing else is asked with: `WHEN(UP)`.
+        """Return the key that a direction alone means, as in `WHEN(UP)`.
 
-        Left and right may be those of a line that a robot sees; `key_before` is what is asked
-        before.
+        Left and right may refer to a line that a robot sees; `key_before` is the question before.
         """
         side = _side_of(self._word_at(k))
         end = self._skip_while(k + 1, lambda it: _is_key_word(it, "is", "pressed"))
@@ -361,7 +360,7 @@ class _Instruction:
         return k
 
     def _skip_keys(self, k: int, *links: str) -> int:
-        """Pass what says a key, also in one name, `KEY_ARROW`, and words of these kinds."""
+        """Pass the words for a key, also in one name, `KEY_ARROW`, and words of these kinds."""
         while _is_key(self._word_at(k)) or _is_key_word(self._word_at(k), *links):
             next_word = self._word_at(k + 2) if self._word_at(k + 1) == "_" else ""
             k += 2 if _is_key(next_word) or _is_key_word(next_word, *links) else 1

@@ -1,6 +1,6 @@
 """Labels before instructions, which count them: `1)`, `a.`, `Step 2 -`, `Questão 3:`.
 
-A label stands where an instruction begins, in any language: a number or a letter with a sign, or
+A label is at the beginning of an instruction, in any language: a number or a letter with a sign, or
 any word that is not an instruction with one of these. Numbers alone are labels where they count all
 lines.
 """

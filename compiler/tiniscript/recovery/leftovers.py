@@ -1,6 +1,6 @@
 """Superfluous parts of an instruction: words without meaning, and a second `SI|`.
 
-Each is told to be taken out as what it is: an instruction without values is done with its word.
+Each message names what to remove: an instruction without values runs with its word alone.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The readings of one line: a best-first search over rewrites, calls from words, and slips.
 
-Tries only what touches the place where the grammar cannot go on. Knows no other line.
+It tries only rewrites that touch the place where the grammar cannot continue. Knows no other line.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ _EDGE_WORDS = {word for word in WORDS if WORDS[word].role.belongs_to_blocks} | {
 
 
 class Step(NamedTuple):
-    """A rewrite that was made: what it was for, and the line before and after it."""
+    """A rewrite that was made: its purpose, and the line before and after it."""
 
     code: Code
     old_tokens: Sequence[Lexeme]
@@ -68,7 +68,7 @@ class Step(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """A possible meaning of a line. `items` is None until it is right.
+    """A possible meaning of a line. `items` is None until the line is right.
 
     `is_sure`: no step was a guess, and `search` takes that back where a rival costs about the same.
     """
@@ -111,7 +111,8 @@ def is_right(tokens: Sequence[Lexeme], names: Names) -> bool:
 
 
 def _normalize(token: Lexeme) -> tuple[str, str]:
-    """Return a token as the lexer has it; all numbers that any instruction reads alike are one."""
+    """Return a token as the lexer has it; numbers that every instruction reads in the same way
+    become one."""
     text = token.text
     if text in DEGREES:
         return (WORD, "DEG")
@@ -163,7 +164,7 @@ def _joining_word_index(tokens: Sequence[tuple[str, str]]) -> int:
 
 
 def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list[Reading]:
-    """Return the cheapest readings of a line, which nobody may change: they are kept.
+    """Return the cheapest readings of a line, which callers must not change: they are cached.
 
     `is_quick`: those that few rows lead to.
     """
@@ -189,7 +190,7 @@ _Successors = Callable[[Reading, Failure], Iterator[Reading]]
 
 
 class _Search:
-    """Reads a line by what `rewrite` makes of it, and where that reads nothing by slips."""
+    """Reads a line with the result of `rewrite`, or by slips if that cannot be read."""
 
     def __init__(self, names: Names) -> None:
         self.names = names
@@ -292,7 +293,7 @@ class _Search:
         )
 
     def _apply_patterns(self, reading: Reading, failure: Failure | None) -> Iterator[Reading]:
-        """Make the rows that touch a place; for none those that come before all others."""
+        """Apply the rows that touch a place; without a place, those that come before all others."""
         encoded_words = rewrites.Encoded(reading.tokens, self.names)
         for row in rewrites.rows_to_try(encoded_words, is_first=failure is None):
             for match in encoded_words.matches(row.pattern):
@@ -321,7 +322,7 @@ class _Search:
             yield reading.with_change(new_tokens, call.cost, _code_of_call(words), call.is_sure)
 
     def _translate_word(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
-        """Translate the first word that is none of the language."""
+        """Translate the first word outside the language."""
         tokens, padded_texts = reading.tokens, ("", *reading.token_texts, "")
         for k, token in enumerate(tokens[: failure.failed_at + 2]):
             if token.kind is not WORD or (token.text in WORDS and token.text != "SI"):

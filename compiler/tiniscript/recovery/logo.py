@@ -1,8 +1,8 @@
 """Logo: lines as `REPEAT 4 [FD 30 RT 90]`, and words that it is taught, `TO SQUARE` up to `END`.
 
 Each word has one number, and no separator follows. A turtle goes steps and turns degrees, and has
-no power: what is read gets centimetres, DEG and a power, which is the program's own where it has
-one, and else an example. It is only shown.
+no power: the result gets centimetres, DEG and a power, which is the program's own if it has one,
+and an example otherwise. It is only shown.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def _definition_diagnostic(source: Source, span: Span, found_text: str, fix: str
 
 
 def _pieces(body: str, start: int) -> list[list[_Token]]:
-    """Return the instructions of a line, each nothing if it has other signs."""
+    """Return the instructions of a line, each empty if it has other signs."""
     pieces: list[list[_Token]] = [[]]
     depth = end = 0
     is_readable = True
@@ -143,7 +143,8 @@ class _Reader:
         self.move_count = 0
 
     def instructions(self, k: int, depth: int) -> tuple[list[str], int]:
-        """Return the instructions from a token on and where they end; nothing if one is none."""
+        """Return the instructions from a token on and where they end; or nothing if one is not an
+        instruction."""
         instructions: list[str] = []
         while k < len(self.tokens) and self.tokens[k].text != "]":
             token, number_tokens = self.tokens[k], self.tokens[k + 1 : k + 2]

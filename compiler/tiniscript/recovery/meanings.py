@@ -1,4 +1,4 @@
-"""Meanings: what each word and sign of a wrong line may stand for.
+"""Meanings: the possible meanings of each word and sign of a wrong line.
 
 Knows the lexicons, spelling, and the names that a program has. Knows no instruction of words.
 """
@@ -60,15 +60,15 @@ _CHECK_OF_UNIT: dict[str, Callable[[float], bool]] = {
         MOST_POWER < number <= FULL_TURN or (number >= _EIGHTH_TURN and number % _EIGHTH_TURN == 0)
     ),
 }  # fmt: skip
-_YEAR_WORDS = ("ANO", "ANOS")  # spellings that nobody uses for AÑO
+_YEAR_WORDS = ("ANO", "ANOS")  # spellings of AÑO that do not occur
 REMEMBERED_LINES = 500  # lines: each is asked for often while one program is read
 
 
 class Lexeme(NamedTuple):
     """A word in capitals without accents, a number or a sign.
 
-    `source` is how it was written, None if a repair made it; `space` stands before it, None
-    where the repair's own layout counts.
+    `source` is how it was written, None if a repair made it; `space` is before it, None where the
+    repair has its own layout.
     """
 
     kind: str
@@ -122,7 +122,7 @@ def texts(tokens: Iterable[Lexeme]) -> tuple[str, ...]:
 
 
 def setup_of(tokens: Sequence[Lexeme]) -> Sequence[Lexeme]:
-    """Return the `SI|` that a line begins with, or nothing."""
+    """Return the `SI|` at the beginning of a line, or an empty text."""
     is_begun = texts(tokens[1:2]) == ("|",) and tokens[0].text in ("SI", "SB")
     return tokens[:2] if is_begun else tokens[:0]
 
@@ -198,7 +198,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
 def heard_as(word: str) -> str | None:
     """Return the word of the language that a word sounds like, which may itself mean another thing.
 
-    Nobody calls a weight: `WEIGHT(1)` is what somebody hears who is told to write WAIT.
+    No device is called a weight: `WEIGHT(1)` is how WAIT sounds when dictated.
     """
     return lexicon_concept(_speller().find_sound_alike(word) or "")
 
@@ -219,7 +219,8 @@ def _sensor_with_side(parts: Sequence[str]) -> str:
 
 
 def meant_by(word: str) -> str | None:
-    """Return the word of the language that a word of another one surely says, misspelt or not."""
+    """Return the word of the language that a word of another language certainly means, misspelt or
+    not."""
     return next((meaning.concept for meaning in meanings(word) if meaning.cost < NEAR), None)
 
 
@@ -259,7 +260,7 @@ class _LineNames(NamedTuple):
     names_with_values: set[tuple[str, ...]]  # the name of a DEF, or one and those of its values
     block_starts: dict[str, str]  # instructions that begin blocks, since their ends are there: PARA
     lone_words: set[str]  # words that are an instruction alone
-    compared_words: set[str]  # words beside a sign that compares them with a number
+    compared_words: set[str]  # words next to a sign that compares them with a number
     counted_starts: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
     open_headers: int  # headers that lack an end
     units_given: set[
@@ -332,20 +333,21 @@ def _units_given(line: tuple[Lexeme, ...]) -> set[tuple[str, str]]:
 
 
 def _bare_values(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
-    """Return the names of `X, Y` or `X Y`, which lack their brackets, none beside other things."""
+    """Return the names of `X, Y` or `X Y`, which lack their brackets; none if there is other
+    text."""
     values_text = " ".join(texts(tokens)).partition(";")[0]
     names = tuple(values_text.replace(",", " ").split())
     return names if all(name.isidentifier() and name not in WORDS for name in names) else ()
 
 
 def _logo_names(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
-    """Return the names of `:SIZE :SPEED`, none where anything else is there."""
+    """Return the names of `:SIZE :SPEED`, or none if there is other text."""
     signs, names = texts(tokens[::2]), texts(tokens[1::2])
     return names if {*signs} == {":"} and len(signs) == len(names) else ()
 
 
 def _standalone_words(line: tuple[Lexeme, ...]) -> set[str]:
-    """Return words that stand alone between separators."""
+    """Return words that are alone between separators."""
     texts_around = (";", *texts(line), ";")
     triples = zip(texts_around, texts_around[1:], texts_around[2:], strict=False)
     return {
@@ -356,7 +358,7 @@ def _standalone_words(line: tuple[Lexeme, ...]) -> set[str]:
 
 
 def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
-    """Return words that are compared with a number, as nothing but a value is."""
+    """Return words that are compared with a number, as only values are."""
     windows = [*zip(line, line[1:], line[2:], line[3:], strict=False)]
     lone_words = {
         name.text
@@ -519,7 +521,7 @@ class Names:
         )
 
     def sensor_with_side(self, word: str) -> str:
-        """Return the sensor of a side that `SENSOR_L` says, "" for none."""
+        """Return the sensor of a side that `SENSOR_L` names, or ""."""
         parts = word.split("_")
         kept_parts = [part for part in parts if not lexicon_meaning(part, "sensing")]
         if len(kept_parts) != 1 or len(parts) == 1:
@@ -528,7 +530,7 @@ class Names:
         return self.sensor_on_side(side or lexicon_concept(kept_parts[0]) or kept_parts[0])
 
     def _lamp_of(self, word: str) -> str:
-        """Return the lamp that a word for light says of a robot which sees none."""
+        """Return the lamp that a word for light means on a robot without a light sensor."""
         is_light = lexicon_meaning(word, "stem") == ("LIGHT",) and "LED" in self.actuators
         return "LED" * (is_light and not any(name.startswith("LIGHT_") for name in self.sensors))
 
@@ -538,7 +540,8 @@ class Names:
         return sensors[0] if len(sensors) == 1 and side in ("L", "R") else ""
 
     def find_meaning(self, word: str, highest_cost: int = MISSPELT) -> str:
-        """Return the word of the language that a word means, "" for none or a less likely one."""
+        """Return the word of the language that a word means, or "" if it has none, or a less likely
+        one."""
         if word in WORDS and word != "SI":
             return word
         word_meanings = self.meanings(word)

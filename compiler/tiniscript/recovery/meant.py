@@ -39,7 +39,7 @@ def meant_diagnostics(
 ) -> list[Diagnostic]:
     """Return the mistakes in a text whose meaning is known.
 
-    `is_sure`: by all of it surely; else by the lines that are read.
+    `is_sure`: all of it is surely known; otherwise only the lines that could be read.
     """
     candidate = recovery.sure_candidate() if is_sure else recovery.best_candidate()
     if candidate is None:
@@ -64,7 +64,7 @@ def meant_diagnostics(
         (explanation, _diagnostic(explanation, candidate, diagnostics))
         for explanation in explanations
     ]
-    # A reading of a part of the text leaves nothing out.
+    # A reading of a part of the text must not leave anything out.
     loses_nothing = is_sure or not candidate.is_whole
     if loses_nothing and difference(text, candidate.text, recovery.kit).losses:
         kept_flags = (
@@ -221,11 +221,11 @@ def _moved_lines_diagnostic(
     return diagnostic._replace(values=values, repair=repair)
 
 
-# -- units that stand in a variable, or in the brackets of a DEF -----------------------------------
+# -- units in a variable, or in the brackets of a DEF ----------------------------------------------
 
 
 def _unit_word(unit: str) -> str:
-    """Return the word for a unit after the first value of a move, "" if none is."""
+    """Return the word for a unit after the first value of a move, or ""."""
     meaning = lexicon_meaning(plain(unit), "unit")
     return next(
         (word for word, way_unit in EXTENTS.items() if meaning and way_unit.unit == meaning[0]), ""
@@ -233,7 +233,7 @@ def _unit_word(unit: str) -> str:
 
 
 def _move_pattern(name: str, unit_word: str) -> re.Pattern[str]:
-    """Return the pattern of the moves that go so much of a unit, and have none."""
+    """Return the pattern of moves by an amount whose unit is missing."""
     moves = "|".join(move for move in MOVES if UNIT_OF[move] == unit_word)
     return re.compile(rf"(?i)\b(?:{moves})\s*\(\s*{name}(?P<unit>)\s*,[^();\n]*\)")
 
@@ -257,7 +257,7 @@ def _uses_in_bodies(
 
 
 def _with_units(written_text: str, meant_text: str) -> str:
-    """Return a program in whose DEFs the moves have the units that stood at their values."""
+    """Return a program in whose DEFs the moves have the units that were written at their values."""
     edits = [
         Edit(Span(*use.span("unit")), f" {unit_word}")
         for _, use, unit_word in _uses_in_bodies(written_text, meant_text)

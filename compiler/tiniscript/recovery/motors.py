@@ -1,7 +1,7 @@
 """Motors that a program switches: one by one, `motorLeft.run(60)`, or on, and after a wait off.
 
-A pair that stands together is one M with both powers, in whichever order. Of one alone it is said
-that M has both, since nobody knows what the other wheel does. `forward(50); sleep(2); stop()` is
+An adjacent pair becomes one M with both powers, in either order. For a single motor, the message
+says that M has both, since the other wheel's power is unknown. `forward(50); sleep(2); stop()` is
 F(2, 50).
 """
 

@@ -1,4 +1,4 @@
-"""Programs whose DEFs and ends stand where they belong: a DEF before all calls and in no block.
+"""Programs whose DEFs and ends are where they belong: a DEF before all calls and in no block.
 
 Moves instructions as they are written. Does not know whether the moved program is right.
 """
@@ -20,10 +20,10 @@ _FIRST_WORDS = re.compile(r"\s*(\w*)[ \t]*(\w*)")
 
 
 class MovedProgram(NamedTuple):
-    """A program in which all DEFs stand right, and what was moved first: its lines, from 1.
+    """A program with all DEFs in the right place, and the first moved part: its lines, from 1.
 
-    The end of `name` alone where `moves_only_end`, else all of its block; `target_line` which line.
-    `is_guess`: something else may be meant.
+    Moves only the end of `name` if `moves_only_end`, otherwise all of its block, to `target_line`.
+    `is_guess`: the person may have meant something else.
     """
 
     text: str

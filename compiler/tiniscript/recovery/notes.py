@@ -1,8 +1,8 @@
 """Notes of other languages: `# turn`, `-- turn`, `<!-- turn -->`, `REM turn`, `/* turn */`.
 
-What such a sign begins is a note up to the end of its line, and nothing in it is read. It stands
-where an instruction begins or ends. A note with an instruction in it, `# F(2, 80)`, may be one that
-counts: rows read it, and conservation says what is lost.
+Text from such a sign to the end of its line is a comment and is not read. It is at the beginning or
+the end of an instruction. A comment with an instruction in it, `# F(2, 80)`, may be meant as code:
+rows read it, and conservation reports what is lost.
 """
 
 from __future__ import annotations

@@ -20,7 +20,8 @@ _CODES_WITHOUT_PLACE = (
 
 
 def point_at_found(diagnostic: Diagnostic, source: Source) -> Diagnostic:
-    """Return a diagnostic at what it names, and with the place that it had for what to try."""
+    """Return a diagnostic that points at what it names, and keeps its old place for the thing to
+    try."""
     code, span, place = diagnostic.code, diagnostic.span, diagnostic.place
     found_text = diagnostic.values.get("found", "").strip()
     if not found_text or code in _COUNTING_CODES or not names_found(diagnostic):

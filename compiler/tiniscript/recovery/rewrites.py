@@ -1,4 +1,4 @@
-"""Rewrites: the rows of the tables, compiled, and what a line becomes by them.
+"""Rewrites: the rows of the tables, compiled, and the lines that result.
 
 Knows the language of the patterns, which `rows` explains. Knows no row.
 """
@@ -36,7 +36,7 @@ _ATOM = re.compile(r"'[^']*'|@\w+|[a-z]{2,}|[A-Z_0-9]+|\$|[^\w|'@\s$]+")
 _CAPTURE = re.compile(r"([a-z])=(?=.)")
 _PART_REFERENCE = re.compile(r"<(\w+)>")
 _CONTINUATION = re.compile(r"\n    ")
-# Where an instruction begins and ends, by the labels around it; and a line.
+# Where an instruction begins and ends, including the labels around it, and its line.
 _EDGE_PATTERNS = {
     "^": rf"(?:\A|(?<=\x01\|{re.escape(SEPARATOR)}\|\x02)|(?<=\x01\|s[{{}}]\|\x02))",
     "$": r"(?:\Z|(?=\x01\|s[;}]\|))",
@@ -52,9 +52,9 @@ _HEADER_OF = {"FOREVER": "LOOP", "ELSEIF": "IF"}
 
 
 class TokenRow(NamedTuple):
-    """A row of the table of tokens. `is_first`: made before anything else is tried.
+    """A row of the table of tokens. `is_first`: applied before all others.
 
-    `may_lose_numbers`: it is only shown, or says itself what becomes of them.
+    `may_lose_numbers`: it is only shown, or describes itself what becomes of them.
     """
 
     pattern: Pattern
@@ -128,13 +128,14 @@ def sign_rows() -> tuple[SignRow, ...]:
 
 
 def _anchor_edges(pattern: str) -> str:
-    """Return a pattern of characters whose `^` and `$` are where an instruction begins and ends."""
+    """Return a pattern of characters whose `^` and `$` match the beginning and the end of an
+    instruction."""
     edges = {"^": r"(?:\A|(?<=[;{}])|(?<=S[IB]\|))", "$": r"(?=\s*(?:[;}]|\Z))"}
     return _EDGE.sub(lambda match: edges.get(match[0], match[0]), pattern)
 
 
 def _example_texts(example: str) -> tuple[str, str]:
-    """Return the program of an example, and what becomes of it."""
+    """Return the program of an example, and the expected result."""
     wrong_text, _, right_text = example.replace("⏎", "\n").rpartition(" => ")
     return wrong_text.strip(" "), right_text
 
@@ -142,7 +143,7 @@ def _example_texts(example: str) -> tuple[str, str]:
 class Pattern(NamedTuple):
     """A row's pattern as one of labels, as `Names.label` writes them.
 
-    No line matches that has none of each of `needed_labels`, which is fast to see.
+    A line can match only if it has one of each of `needed_labels`, which is quick to check.
     """
 
     label_pattern: re.Pattern[str]
@@ -182,7 +183,7 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
     ]
     if labels in (["@all"], ["@cond"]) and quantifier:  # the brackets in it are closed in it
         body = body = _closing_pattern(["@flat"])
-        if labels == ["@cond"]:  # the condition may stand alone
+        if labels == ["@cond"]:  # the condition may be alone
             group = rf"{_token_pattern(['s('])}{body}*?{_token_pattern(['s)'])}"
             body = rf"(?:{group}|(?!{group}){_token_pattern(labels)})"
         body = f"(?:{body}{quantifier}?)"
@@ -268,7 +269,7 @@ class Encoded:
         return (self.token_at_offset[start], self.token_at_offset[end]) if start >= 0 else (0, 0)
 
     def apply_row(self, row: TokenRow, match: re.Match[str]) -> list[Lexeme] | None:
-        """Return the line after a row, or None if it does not hold here."""
+        """Return the line after a row, or None if it does not apply here."""
         new_tokens: list[Lexeme] = []
         for part in row.replacement:
             replacement = self._replacement(part, match)
@@ -354,7 +355,7 @@ def _end_of(match: _Match) -> _Replacement:
 
 
 def _decimal(match: _Match) -> _Replacement:
-    """`1,5` is 1.5 if nobody takes it for two values."""
+    """`1,5` is 1.5 if it cannot be two values."""
     (whole_token,), (comma_token,), (decimals_token,) = match.captures
     text_before = match.line.tokens[match.start - 1].text if match.start else ""
     most_decimals = 3 if whole_token.text == "0" else 2 if text_before == "=" else 1
@@ -407,12 +408,12 @@ def _equal_number(match: _Match) -> _Replacement:
 
 
 def _label(match: _Match) -> _Replacement:
-    """A name after the end of its DEF says which one ends, where something else calls it."""
+    """A name after the end of a DEF is a label if the DEF is called elsewhere."""
     return [] if match.captures[0][0].text in match.line.names.called_defs else None
 
 
 def _limit(is_high: bool, match: _Match) -> _Replacement:
-    """The end of what an actuator takes."""
+    """The limit of an actuator's range."""
     (device_token,) = match.captures[0]
     actuator = match.line.names.actuators[match.line.translate(device_token).text]
     limit = actuator.high if is_high else actuator.low

@@ -1,15 +1,15 @@
 r"""The rows: each slip that the recovery reads, with an example that is a test.
 
-`TOKENS` is what tokens with meanings become. Its columns:
+`TOKENS` rewrites tokens with meanings. Its columns:
 
     pattern | becomes | cost | code | how | example => what becomes of it
 
 A pattern is tokens with spaces between: a word of the language or one that means it (`LOOP`), a
 part of a sentence of the lexicon (`then`), a sign, or a class. `A|B` are alternatives, `'|'` is a
 sign that would be one of the signs here, `?`, `*` and `+` stand after what may be missing or come
-more often. `^` is where an instruction begins: a line, or what follows `SI|`, a `;` or a brace; `$`
-is where one ends. A row of a whole line says `^^` and `$$`. `c=` captures, and `<part>` is a piece
-of PARTS. The cheapest reading is told; 1 is usual.
+more often. `^` is the beginning of an instruction: a line, or the text after `SI|`, a `;` or a
+brace; `$` is its end. A row of a whole line says `^^` and `$$`. `c=` captures, and `<part>` is a
+piece of PARTS. The cheapest reading is reported; 1 is usual.
 Classes: @num @word @val (a value with a name), of which an @amount is no yes or no by itself,
 @cross (X that is not a name) @like_CM
 @like_DEG (a slip away) @name @newname @usedname @def, of which a @defw takes
@@ -25,17 +25,17 @@ functions: @not (the opposite question), @same (a number that is another one, to
 apart), @mmss, @own (a number with its unit, in the unit that values have), @xn (`x4`), @label
 (nothing, of a DEF that is called elsewhere). `how`: `first`
 is made before any other is tried, `applied` may be made without asking, `offered` is only shown, as
-is `first offered`. An example's lines are parted by ⏎. A row goes on in lines that are indented.
+is `first offered`. An example's lines are parted by ⏎. A row continues in indented lines.
 
 `⟨less¦more⟩` and, in the same row, `⟨<¦>⟩` make a row of each: one with `less` and `<`, and one
 with `more` and `>`. Each has its own example.
 
-`SIGNS` is what characters become before there are tokens: `re` patterns and what stands for them,
-in the same columns but for the cost. `^` and `$` are those of an instruction there, too, `\A` and
-`\Z` those of a line.
+`SIGNS` rewrites characters before there are tokens: `re` patterns and their replacements, in the
+same columns except for the cost. `^` and `$` are those of an instruction there, too, `\A` and `\Z`
+those of a line.
 
-Rows are sorted by what they are about. A row is here since programs of strangers need it, or since
-it keeps a law, which the heading above it names:
+Rows are sorted by subject. A row is here since programs of strangers need it, or since it keeps a
+law, which the heading above it names:
 
 - `sign`: a sign of paper, a telephone or another language means the one of this language.
 - `number`: a number keeps its digits, its sign, its unit and how many times it says.
@@ -70,10 +70,11 @@ SIGNS_MEANT_BY = {
     ",": ";", "'": ",", "|": ";", "!": "|",
 }  # fmt: skip
 
-# What is on the key of `)`, and beside that of `,`: what stands in the place of the sign may be it.
+# The sign on the same key as `)`, and the one next to `,`: text in the place of the sign may mean
+# it.
 CLOSE_KEY, COMMA_KEY = "9", "M"
 
-# Replacements of `SI|` and `SB|`: signs, a letter that looks like the bar, or nothing.
+# Replacements of `SI|` and `SB|`: signs, a letter that looks like the bar, or an empty text.
 SETUP = (
     r"\s*(?P<head>[Ss][IiÍíBb1Ll])(?P<sep>\s*(?:\|\|+|//|[^\w\s|｜(]{1,3}\|?|[(_]|\||"
     r"(?!IF\([^)]*[<>=])[lLI1](?=\s+[^\W\d]|(?i:[FBLRWM]|IF|LOOP|WHILE|BEEP)\())?)\s*"

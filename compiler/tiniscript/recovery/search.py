@@ -1,7 +1,7 @@
 """Candidates: whole programs that a wrong one may have been meant to be, and which one counts.
 
-The judge is who asks: the parser and the checker. A candidate has no mistakes, or fewer where a
-part of the text cannot be read; numbers, names and commands change by a row alone.
+The parser and the checker decide. A candidate has no mistakes, or fewer where a part of the text
+cannot be read; numbers, names and commands change by a row alone.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from tiniscript.recovery.writing import (
 from tiniscript.syntax.outline import Failure
 
 MOST_UNREAD_LINES = 5  # unreadable lines after which others are read quickly
-MOST_ALTERNATIVES = 12  # readings of a line that are tried beside the cheapest ones
+MOST_ALTERNATIVES = 12  # readings of a line that are tried besides the cheapest ones
 # First and last line of a block whose condition is at its end.
 _LONE_LOOP_START = re.compile(
     rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make')})\b\s*\{{?\s*$"
@@ -74,8 +74,8 @@ class LineChange(NamedTuple):
 class Candidate(NamedTuple):
     """A program that may have been meant. `is_applied`: it may be made without asking.
 
-    `is_whole`: it has no mistakes; else fewer than the text. `changes` are of all lines, none
-    where a DEF is moved: `move`.
+    `is_whole`: it has no mistakes; otherwise it has fewer than the text. `changes` has those of all
+    lines; it is empty if a DEF is moved: `move`.
     """
 
     text: str
@@ -90,7 +90,7 @@ _UNREAD_LINE = Reading(0, [], (), True, False)
 
 
 class _TextLine:
-    """A line on its way: what was written, and the readings of it."""
+    """A line in progress: its original text, and its readings."""
 
     def __init__(self, source: str, line_number: int) -> None:
         self.source = source
@@ -109,8 +109,8 @@ class _TextLine:
 class Recovery:
     """The possible meanings of a wrong program; each line of it is read once.
 
-    What a line may be read as (`choices`) gets its blocks and is asked about (`candidate`), until
-    `chosen_candidate` has a program without mistakes.
+    The possible readings of a line (`choices`) get their blocks and are checked (`candidate`),
+    until `chosen_candidate` has a program without mistakes.
     """
 
     def __init__(self, program: str, kit: Kit, mistakes: Mistakes) -> None:
@@ -128,14 +128,15 @@ class Recovery:
         self._reading = self._read_lines()
 
     def sure_candidate(self) -> Candidate | None:
-        """Return the program that is meant wholly and surely: soon, where a line is not read so."""
+        """Return the program if it is meant completely and certainly; stop early at a line that is
+        not."""
         if not self.mistake_count or not all(self._reading):
             return None
         candidate = self.chosen_candidate
         return candidate if candidate and candidate.is_whole and candidate.is_applied else None
 
     def best_candidate(self) -> Candidate | None:
-        """Return the program that was meant, or None; a right one has no other."""
+        """Return the program that was meant, or None for a correct one."""
         if not self.mistake_count:
             return None
         for _ in self._reading:
@@ -143,7 +144,7 @@ class Recovery:
         return self.chosen_candidate
 
     def _read_lines(self) -> Iterator[bool]:
-        """Read each line, and give whether it is read surely."""
+        """Read each line, and return whether the reading is certain."""
         for line in self.lines:
             self.read_line(line)
             yield line.reading.items is not None and line.reading.is_sure
@@ -158,8 +159,8 @@ class Recovery:
     def read_signs(self) -> None:
         """Make the rewrites of signs, in the lines that have them.
 
-        But none that loses a DEF, or opens a bracket that was closed: `F(2;80) R(1;50)` has no list
-        of `80)`.
+        It excludes readings that lose a DEF, or open a bracket that was closed: `F(2;80) R(1;50)`
+        has no list of `80)`.
         """
         names = Names([lexemes(text.body) for text in self.lines], self.kit)
         for line in self.lines:
@@ -240,7 +241,8 @@ class Recovery:
         self.lines = joined_lines
 
     def read_line(self, line: _TextLine) -> None:
-        """Find the cheapest reading of a line, sure if no rival costs about as much; else parts."""
+        """Find the cheapest reading of a line, sure if no rival costs about as much; otherwise of
+        its parts."""
         tokens, names = lexemes(line.body), self.names
         items = lines.parse_line(tokens, names)
         if not isinstance(items, Failure):
@@ -286,7 +288,7 @@ class Recovery:
 
     @cached_property
     def chosen_candidate(self) -> Candidate | None:
-        """Return the first sure program without mistakes; else an unsure one; else a part."""
+        """Return the first sure program without mistakes, or else an unsure one, or else a part."""
         best_candidate: Candidate | None = None
         for readings, has_blocks in self.choices():
             if best_candidate is not None and best_candidate.is_applied and best_candidate.is_whole:
@@ -455,7 +457,7 @@ def _rewritten_line(
         return text if tails or len(reading.items or ()) > 1 else text.rstrip("; ")
     text = as_written(tokens).strip()
     if "| " not in line.body:
-        text = text.replace("| ", "|", 1)  # a word that is gone leaves no blank
+        text = text.replace("| ", "|", 1)  # a removed word leaves no blank
     return line.source[: line.indent] + text
 
 

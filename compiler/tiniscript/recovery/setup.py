@@ -102,7 +102,7 @@ def setup_diagnostic(text: str) -> Diagnostic | None:
 def _frame_diagnostic(source: Source) -> Diagnostic | None:
     """Return the diagnostic for `void setup() { … }` at the beginning of a sketch.
 
-    What is in its brackets begins the program; `void loop()` after it is a loop.
+    The text in its brackets begins the program; `void loop()` after it is a loop.
     """
     head = _FRAME_HEADER.match(source.text)
     if head is None or lexicon_concept(plain(head[2])) != "START":
@@ -254,7 +254,7 @@ def _assignments_before_setup(source: Source, kit: Kit) -> list[Diagnostic]:
 
 
 def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return lines before `SI|` that are none of a program: its title, who wrote it."""
+    """Return lines before `SI|` that are not part of a program: its title, its author."""
     match = _SETUP.search(source.text)
     diagnostics: list[Diagnostic] = []
     for line_match in _LINE.finditer(source.text[: match.start() if match else 0]):

@@ -1,6 +1,6 @@
 """Shares of a sensor's range, `LIGHT_L > 80%`: each sensor has its own maximum.
 
-The number that the share is and the number without its sign are both shown, and none is made.
+The number that the share is and the number without its sign are both shown, and neither is applied.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def _percent_token_count(tokens: Sequence[Lexeme], k: int, names: Names) -> int:
 
 
 def _compared_index(tokens: Sequence[Lexeme], k: int) -> int:
-    """Return the place of the word that is compared with the number at a place, -1 for none."""
+    """Return the place of the word that is compared with the number at a place, or -1."""
     index = k - 1
     while index >= 0 and (
         tokens[index].text in COMPARISONS or lexicon_meaning(tokens[index].text, *_COMPARING_KINDS)

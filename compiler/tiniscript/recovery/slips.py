@@ -81,9 +81,9 @@ class Slip(NamedTuple):
     """The first change of a rewrite from `step_tokens` to `step_result`: from `start` on,
     `found_tokens` becomes `right_tokens`.
 
-    With all rewrites `old_instructions`, of one instruction or several, becomes `new_instructions`.
-    `shown_instructions` are the instructions to show of the `line_tokens` that it becomes, and
-    if there are more than before, the first one ends at `first_length` in `new_instructions`.
+    All rewrites together turn `old_instructions`, one or several, into `new_instructions`.
+    `shown_instructions` are the instructions to show of the `line_tokens` that it becomes, and if
+    there are more than before, the first one ends at `first_length` in `new_instructions`.
     """
 
     code: Code
@@ -225,7 +225,8 @@ def _code_of_steps(change: InstructionChange) -> tuple[Code, Step]:
 
 
 def _code_of_words(old_tokens: Sequence[Lexeme], new_tokens: Sequence[Lexeme]) -> Code:
-    """Return the code of what no rewrite made: a brace, an end, a letter with an accent."""
+    """Return the code of a change that no rewrite made: a brace, an end, a letter with an
+    accent."""
     if {*texts(old_tokens)} & {*BRACES}:
         return codes.BRACES
     source = "".join(token.source or "" for token in old_tokens)
@@ -247,11 +248,12 @@ def _code_of_words(old_tokens: Sequence[Lexeme], new_tokens: Sequence[Lexeme]) -
     return codes.NEVER_ENDS
 
 
-# -- what was found, where a code knows better than the first difference ------------------------
+# -- findings of codes that know better than the first difference -------------------------------
 
 
 def _foreign_words(slip: Slip) -> Slip:
-    """A word of another language, with what belongs to it: `bot.forward`, FOR of `FOR I = 1 TO`."""
+    """A word of another language, with the rest of its construct: `bot.forward`, FOR of `FOR I = 1
+    TO`."""
     old_tokens, start, found_tokens, right_tokens = (
         slip.step_tokens,
         slip.start,
@@ -324,7 +326,7 @@ def _sign_alone(slip: Slip) -> Slip:
 
 
 def _whole_sign(slip: Slip) -> Slip:
-    """All of a sign whose first part stays: `**` of `X ** 2`."""
+    """The whole sign if its first part stays: `**` of `X ** 2`."""
     k, found_tokens, right_tokens = slip.start, slip.found_tokens, slip.right_tokens
     is_part = (
         0 < k < len(slip.step_tokens)
@@ -353,7 +355,7 @@ _EXACT_SLIPS: dict[Code, Callable[[Slip], Slip]] = {
 }  # fmt: skip
 
 
-# -- what a message says ------------------------------------------------------------------------
+# -- the content of a message -------------------------------------------------------------------
 
 
 def found_in(slip: Slip) -> str:
@@ -361,7 +363,7 @@ def found_in(slip: Slip) -> str:
     code, found_tokens = slip.code, slip.found_tokens
     if _is_between_words(slip):
         return text_of(slip.step_tokens[slip.start : slip.start + 1])
-    is_missing_sign = code is codes.OTHER_ASSIGNMENT  # `X 5`: else it is missing
+    is_missing_sign = code is codes.OTHER_ASSIGNMENT  # `X 5`; otherwise it is missing
     is_whole_instruction = code is codes.REPEATED or (
         code is codes.OTHER_SIGN and not slip.right_tokens
     )
@@ -470,7 +472,8 @@ def _called_word(slip: Slip) -> str:
 
 
 def _grouping_header(slip: Slip) -> str:
-    """The header whose brackets have instructions in them, nothing for brackets of no header."""
+    """The header whose brackets have instructions in them, or an empty text if they have no
+    header."""
     if slip.start and slip.step_tokens[slip.start - 1].text == ";":
         return ""
     return next(
@@ -479,7 +482,7 @@ def _grouping_header(slip: Slip) -> str:
 
 
 def _accented_word(slip: Slip) -> str:
-    """The word of the language that has an accent, nothing for a name."""
+    """The word of the language that has an accent, or an empty text for a name."""
     return next(
         (token.text for token in slip.step_tokens[slip.start :][:1] if token.text in WORDS), ""
     )
@@ -515,7 +518,7 @@ def _usage(slip: Slip) -> str:
 
 
 def _letter(slip: Slip) -> str:
-    """Return the letter that stands in a number in the place of a digit."""
+    """Return the letter that is in a number in the place of a digit."""
     found_text, right_text = found_in(slip), right_of(slip)
     letters = (
         {letter for letter in found_text if letter.isalpha()} - {*right_text}
@@ -572,7 +575,7 @@ def first_difference(
 def instructions(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
     """Return the instructions of a line, split at separators.
 
-    A separator in brackets parts nothing, where all brackets of the line are closed.
+    A separator in brackets separates nothing if all brackets of the line are closed.
     """
     instructions_found: list[list[Lexeme]] = [[]]
     depth, is_closed = 0, texts(tokens).count("(") == texts(tokens).count(")")

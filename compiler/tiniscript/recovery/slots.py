@@ -44,7 +44,7 @@ _IGNORED_SIGNS = frozenset("(),:=.-_") | {"->", "%"}
 
 
 class FilledCall(NamedTuple):
-    """A call in tokens; `times` is its number in words. `is_sure`: nothing is guessed.
+    """A call in tokens; `times` is its number in words. `is_sure`: no part is a guess.
 
     `samples` are the values that no word says, with their units: `80 %`.
     """
@@ -57,7 +57,7 @@ class FilledCall(NamedTuple):
 
 
 class _Value(NamedTuple):
-    """A number, or the name of what has one, and its unit where that is said."""
+    """A number, or the name of something that has one, and its unit if given."""
 
     text: str
     unit: str | None
@@ -71,7 +71,7 @@ class _Value(NamedTuple):
 def fill_call(
     words: Sequence[Lexeme], names: Names, has_until: bool, is_instruction: bool = False
 ) -> FilledCall | None:
-    """Return the call that some words say, or None if one of them has no place in it.
+    """Return the call that some words describe, or None if one of them has no place in it.
 
     `is_instruction`: it may have no value of its own.
     """
@@ -114,7 +114,8 @@ class _Reader:
         return True
 
     def _has_one_group(self) -> bool:
-        """Return whether nothing follows the brackets of the call; odd contents make it a guess."""
+        """Return whether nothing follows the brackets of the call; unusual contents make it a
+        guess."""
         signs = [word.text for word in self.words]
         for k, (sign, next_sign) in enumerate(pairwise([*signs, ""])):
             tokens_after = self.words[k + 1 :]
@@ -174,7 +175,7 @@ class _Reader:
         return number, k
 
     def _read_number(self, k: int) -> int | None:
-        """Read a number with its unit; return where to read on, None if none is here."""
+        """Read a number with its unit; return where to continue, or None if there is none here."""
         number_and_next = self._value_of_words(k)
         if number_and_next is None:
             return None
@@ -366,7 +367,8 @@ class _Reader:
     def _own_value(self, argument: Argument) -> str:
         """Return the program's own value for an argument, or "" if there is not exactly one.
 
-        The one variable that is called so, VELOCIDAD for `F(2)`, else what all other calls give.
+        The one variable with such a name, VELOCIDAD for `F(2)`, or else the value of all other
+        calls.
         """
         own_values = [
             variable

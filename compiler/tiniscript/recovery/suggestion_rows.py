@@ -1,30 +1,31 @@
-"""Suggestions if no repair is read: for words beside instructions, and for the text found.
+"""Suggestions if no repair is read: for words next to instructions, and for the text found.
 
-`SUGGESTIONS` has these columns, and the first row that holds is told:
+`SUGGESTIONS` has these columns, and the first row that applies is reported:
 
     pattern | code | values | example => one of the values, or the code
 
-A pattern is one of `rows`. Its first token is what the row speaks of, the others are the tokens
-behind it:
+A pattern is one of `rows`. Its first token is the subject of the row, the others are the tokens
+after it:
 
-1. A whole instruction, with its brackets and its UNTIL, before words. Its classes, beside its word:
+1. A whole instruction, with its brackets and its UNTIL, before words. Its classes, besides its
+   word:
    @cmd (of the language), @did (a DEF), @more (others stand before it on its line), @later (others
    stand before it), @outer (in no block), @move, @clock (its first value is its time), @asked (has
    its UNTIL) and @unasked (may get one).
-2. No instruction, @none, before words; also @after where one stands before them, @opening where
+2. No instruction: @none, before words; also @after, if one is before them, @opening, if
    they are the first of several lines, @last where they end the text, and @unbegun in a text
    without `SI|`.
-3. What was found by who checks a text, TS015, before the instruction that it is in; also @strange
+3. A finding of a check of the text, TS015, before its instruction; also @strange
    (a word that nobody knows begins it), and @TS033_PING, with what stands there. `usage` has more.
 
-Classes of the words of 1 and 2: @number (in words, too), @often (a number of repetitions),
-@percent (one that says a power), @in_s (a unit of time), @other (the other way), @paced (another
-pace than its power), @told (says nothing that the instruction does not), @quote, @mark (what is
-written below a line that is meant again), @dots, @ask (a word of the language that asks) and
-@noBUTTON (a word for BUTTON, which the kit lacks), @call and @order (of the language: with values,
-or without); of 3: @quote, @known (of the language), @loose (a first word that means nothing) and
-@button. What `s` captures is pointed at. `h` is a header: the rest is read with what is asked as
-its question, else with TRUE.
+Classes of the words of 1 and 2: @number (in words, too), @often (a number of repetitions), @percent
+(one that says a power), @in_s (a unit of time), @other (the other way), @paced (another pace than
+its power), @told (says nothing that the instruction does not), @quote, @mark (what is written below
+a line that is meant again), @dots, @ask (a word of the language that asks) and @noBUTTON (a word
+for BUTTON, which the kit lacks), @call and @order (of the language: with values, or without); of 3:
+@quote, @known (of the language), @loose (a first word that means nothing) and @button. The message
+points at the text that `s` captures. `h` is a header: the rest is read with the question in it, or
+with TRUE if it has none.
 
 A code `=` is that which was found, with its values. Behind it stands where it is told, if not
 there, `here` (the instruction) or a place of `usage`, and what is done with it: `offered` (its fix
@@ -34,8 +35,9 @@ takes the place of the instruction, if somebody says so), `whole` (its fix stand
 Values are texts with gaps. A gap is a capture, or a function: of 1 and 2 in `suggestions`, of 3 in
 `usage`; a row with a gap that cannot be filled does not hold, unless `?` stands behind its name.
 `?=` must be filled and is not told, `*=` are values that come together. `⟨less¦more⟩` makes a row
-of each, and a row goes on in lines that are indented, as in `rows`. Rows are sorted by what is
-asked for; a heading names the laws of `rows` that those keep which no stranger's program needs.
+of each, and a row goes on in lines that are indented, as in `rows`. Rows are sorted by their
+purpose; a heading names the laws of `rows` that the rows below it obey and no stranger's program
+needs.
 """
 
 # Pieces of patterns that several rows have.

@@ -429,7 +429,7 @@ class Gaps(dict[str, str]):
 
 
 def _loop_over_all(gaps: Gaps, times: str) -> str:
-    """The loop that does so often all that stands before, nothing if that is long."""
+    """The loop that repeats everything before it that many times, or nothing if that is long."""
     trailing, lines_before = (
         gaps.trailing,
         [line for line in gaps.trailing.instructions_before if line],
@@ -491,7 +491,7 @@ def _sensor_on_side(gaps: Gaps) -> str:
 
 
 def _lone_condition(gaps: Gaps) -> str:
-    """A condition that stands alone, and sets nothing."""
+    """A condition on its own, without an effect."""
     texts = {token.text for token in gaps.tokens("s")}
     return format_line(_condition_tokens(gaps, "s")) if texts & {*COMPARISONS} - {"="} else ""
 
@@ -558,7 +558,7 @@ def _with_power(gaps: Gaps) -> str:
 
 
 def _condition_tokens(gaps: Gaps, name: str = "q") -> list[Lexeme]:
-    """The condition that words ask, in words of the language; nothing where they ask none."""
+    """The condition that the words express, in the language; nothing if they express none."""
     return [] if gaps.trailing.has_until else condition_in(gaps.tokens(name), gaps.trailing.names)
 
 
@@ -581,7 +581,8 @@ def _rest_of_words(gaps: Gaps, name: str) -> str:
 
 
 def _instructions_said(part: Trailing) -> list[SpokenInstruction]:
-    """The instructions that the words say, nothing if a turn of them says no way."""
+    """The instructions that the words describe, or nothing if a turn among them lacks a
+    direction."""
     found_instructions = spoken_instructions(part.row_tokens, part.names)
     return (
         []

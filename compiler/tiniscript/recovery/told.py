@@ -1,9 +1,9 @@
 """Diagnoses a wrong text by steps, in their order.
 
-The first of `READERS` that says something is told. The rest of the text is read as if its edits
-were made, so that no consequence of a mistake is reported; `usage` says what no reader does. What
-is told in all is held to the laws, each by a function that `diagnose` names. Of a given text
-`python -m tools.readers TEXT` shows all of it.
+The first of `READERS` with a result is used. The rest of the text is read with its edits applied,
+so that no consequence of a mistake is reported; `usage` has the messages that no reader covers. All
+diagnostics together obey the laws; each law is a function that `diagnose` names. `python -m
+tools.readers TEXT` shows each step for a text.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Findings(NamedTuple):
 
 
 class WrongText:
-    """A wrong text: `diagnostics` is what parser and checker, which `check` asks, say of it."""
+    """A wrong text: `diagnostics` are those of the parser and the checker, which `check` calls."""
 
     def __init__(
         self, source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
@@ -66,7 +66,7 @@ class WrongText:
 
     @cached_property
     def recovery(self) -> Recovery | None:
-        """The readings of the text; nothing for a long one, or one that is copied again."""
+        """The readings of the text; or nothing for a long one, or one that is copied again."""
         text = self.source.text.replace("\r\n", "\n").replace("\r", "\n")
         if len(text) > MOST_CHARACTERS or SEAL in text:
             return None
@@ -86,7 +86,8 @@ def diagnose(
 ) -> list[Diagnostic]:
     """Return the diagnoses of a wrong text, given the `diagnostics` of parser and checker.
 
-    The readers know one end of a line that is a character: what the text has instead takes as much.
+    The readers know only one line end, a single character: other line ends are replaced by text of
+    the same length.
     """
     text = _LONE_CR.sub("\n", source.text)
     source = Source(text, source.name)
@@ -95,12 +96,12 @@ def diagnose(
         results = sorted(results, key=lambda diagnostic: diagnostic.span)[: MOST_DIAGNOSTICS + 1]
     results = [explain_brackets(diagnostic, text, kit, is_offered=True) for diagnostic in results]
     results = drop_wrong_offers(results, text, check)  # every offer is correct
-    results = withhold_lossy_repairs(results, text, kit)  # every repair keeps what was written
+    results = withhold_lossy_repairs(results, text, kit)  # every repair keeps the written values
     results = [explain_brackets(diagnostic, text, kit, is_offered=False) for diagnostic in results]
     results = [explain_else_question(diagnostic, text) for diagnostic in results]
     results = name_samples(
         results, text, kit
-    )  # the distance is an example, because nobody wrote one
+    )  # the distance is an example, because none was written
     results = [name_invisible_sign(diagnostic, text) for diagnostic in results]
     return codes.in_order([point_at_found(diagnostic, source) for diagnostic in results])
 
@@ -145,7 +146,7 @@ def _read(wrong_text: WrongText, rounds_left: int) -> list[Diagnostic]:
 
 
 def _notes(wrong_text: WrongText) -> Findings:
-    """Return notes that begin with another sign: nothing in them is read (`notes`)."""
+    """Return comments that begin with another sign: their content is not read (`notes`)."""
     return _with_edits(note_diagnostics(wrong_text.source))
 
 
@@ -275,7 +276,7 @@ def _likely_findings(wrong_text: WrongText) -> Findings:
 def _words_of_blocks(wrong_text: WrongText) -> Findings:
     """Return misspelt words that begin blocks or end them: the rest is read with them.
 
-    Else what is inside would be told of as well.
+    Otherwise the inside of the blocks would be reported, too.
     """
     diagnostics = [
         diagnostic
@@ -332,7 +333,7 @@ def _unsure_if_guessed(diagnostic: Diagnostic, guessed_edits: Sequence[Edit]) ->
 def to_original(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
     """Return a diagnostic of the text with these edits, as one of the text without them.
 
-    A condition that nobody can read is shown as written, and not what it was passed over for.
+    An unreadable condition is shown as written, not as its placeholder.
     """
     values = dict(diagnostic.values)
     for edit in edits:
@@ -346,7 +347,7 @@ def to_original(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -
         )
         blanking_edits = [
             edit for edit in edits if edit.text.isspace()
-        ]  # words that nothing may drop
+        ]  # words that must not be dropped
         repair = (
             Repair((), False)
             if edits_overlap(own_edits, blanking_edits)

@@ -52,7 +52,7 @@ _LONG_WORDS = tuple(word for word in WORDS if len(word) > 2)
 class LineContext(NamedTuple):
     """The context of an instruction: `depth` is the number of open blocks.
 
-    `instructions_above` are the lines before it, "" for one of no instructions, None for one that
+    `instructions_above` are the lines before it, "" for one without instructions, None for one that
     begins a block.
     """
 
@@ -93,7 +93,7 @@ class Trailing:
     """An instruction and the words after it; or words without one, where `instruction_size` is 0.
 
     `instructions_before` are the other instructions of its line, None for one of a block. `command`
-    is the word of the language that it begins with, "" for none. `spoken_call` is the call where
+    is its first word if that is one of the language, otherwise "". `spoken_call` is the call where
     words say it.
     """
 
@@ -260,7 +260,7 @@ class Trailing:
         return self.row_tokens[k].text if 0 <= k < len(self.row_tokens) else ""
 
     def means(self, word: str) -> str:
-        """Return the word of the language that is said, "" if none is."""
+        """Return the word of the language that is meant, or ""."""
         meant_text = "" if word in EXTENTS else self.names.find_meaning(word)
         return WORD_OF_END.get(meant_text, meant_text)
 

@@ -1,6 +1,6 @@
-"""Usage: what was found wrong, with the instruction around it, as a place that rows speak of.
+"""Usage: a finding with the instruction around it, as a place that rows describe.
 
-What no reader reads is told by the rows of `suggestion_rows` that begin with its code. Here are
+The rows of `suggestion_rows` that begin with its code report text that no reader reads. Here are
 the classes of such a place, and the gaps of those rows. Knows no row.
 """
 
@@ -201,7 +201,7 @@ class _Text:
         return diagnostics
 
     def innermost_end(self, offset: int) -> str:
-        """Return the end of the innermost block that is open at a place, "" for none."""
+        """Return the end of the innermost block that is open at a place, or ""."""
         ends: list[str] = []
         for line in self.source.text[:offset].split("\n"):
             for part in split_note(line)[0].split(";"):
@@ -255,7 +255,7 @@ def _usage_diagnostic(usage: Usage) -> Diagnostic | None:
 class Usage:
     """A mistake, and the instruction around its place.
 
-    `row_tokens` are the tokens of the instruction; before them rows have what was found.
+    `row_tokens` are the tokens of the instruction; in rows, the finding comes before them.
     """
 
     def __init__(self, text: _Text, diagnostic: Diagnostic) -> None:
@@ -353,7 +353,8 @@ class Usage:
         }
         return join_labels(self.names.label(self.row_tokens[k])[:-2], labels)
 
-    # -- where it is told -------------------------------------------------------------------------
+    # -- the place of the message
+    # --------------------------------------------------------------------
 
     def diagnostic_of(self, row: SuggestionRow, gaps: Gaps) -> Diagnostic:
         """Return the diagnostic of a row, at the place or at its words."""
@@ -394,7 +395,7 @@ class Usage:
             raise UnfillableGap
         return values
 
-    # -- what its words say -----------------------------------------------------------------------
+    # -- the meaning of its words -----------------------------------------------------------------
 
     def usage(self, word: str) -> str:
         """Return the usage of an instruction: a block with its end, if the text has none."""
@@ -431,7 +432,7 @@ class Usage:
     def question(self, word: str) -> str:
         """Return a header with the question that was written, without numbers that were not.
 
-        Nothing if no number is asked for, and no yes or no.
+        Return nothing if the text asks for neither a number nor a yes or no.
         """
         tokens = self.question_tokens(word)
         if not any(token.kind is NUMBER or self.names.is_yes_no(token.text) for token in tokens):
@@ -486,7 +487,7 @@ class Usage:
         return spoken_instructions(self.row_tokens, self.names) if self.instruction_name else []
 
     def word_meaning(self, concept: str, default: str) -> str:
-        """Return the word that means another one, else `default`."""
+        """Return the word that this one means, or `default`."""
         return next(
             (text for text in self.token_texts if self.names.find_meaning(text) == concept != text),
             default,
@@ -531,7 +532,7 @@ class Usage:
 
     @cached_property
     def own_word(self) -> _OwnWord:
-        """A word of the program's own that nothing teaches."""
+        """A word of the program's own that is not defined."""
         instruction_text = plain(self.source[self.instruction_span])
         match = _OWN_WORD.fullmatch(instruction_text)
         name, is_call, number = match.groups() if match else ("", "", "")
@@ -558,7 +559,8 @@ class Usage:
         return lexemes(self.source[Span(self.instruction_span.start, self.diagnostic.span.start)])
 
     def header_word(self) -> str:
-        """Return the word before the brackets that the place is in, "" if none asks."""
+        """Return the word before the brackets that the place is in, or "" if it asks no
+        question."""
         header_concepts = [
             self.names.find_meaning(it.text)
             for it, sign in pairwise(self.tokens_before())
@@ -617,7 +619,7 @@ class Usage:
         )
 
     def button_values(self) -> dict[str, str]:
-        """A button that nobody can ask for; a program may begin with the one that starts it."""
+        """A button that cannot be read; a program may begin with the one that starts it."""
         asked_text = next((it.source for it in self.row_tokens if self.is_button(it.text)), "")
         setup_text = "SB|" if self.program_text.setup_word == "SB" else ""
         when_text = (
@@ -630,7 +632,7 @@ class Usage:
     def number_values(self, word: str) -> dict[str, str]:
         """Return the distance of a move with one number that is too large for seconds.
 
-        `forward 50` is a way as in Logo, or a power; what is no power is a way.
+        `forward 50` is a distance as in Logo, or a power; a number that is no power is a distance.
         """
         tokens = [token for token in self.row_tokens[1:] if token.text not in ("(", ")")]
         if UNIT_OF.get(word) != "CM" or not tokens or tokens[0].kind is not NUMBER:
@@ -652,7 +654,7 @@ class Usage:
         }
 
     def bound_values(self) -> dict[str, str]:
-        """`F(2, MAX)`: the range of a value that stands for its end, and a call with numbers."""
+        """`F(2, MAX)`: the range of a value for MAX or MIN, and a call with numbers."""
         call = _CALL_WITH_VALUES.fullmatch(self.source[self.instruction_span])
         word = WORDS.get(plain(call[1])) if call else None
         values = (
@@ -677,7 +679,7 @@ class Usage:
         }
 
     def sensor_on_side(self, word: str) -> str:
-        """The sensor on the side of an L or R that stands for a value, and is no name."""
+        """The sensor on the side of an L or R in the place of a value, if it is no name."""
         is_other = self.text_after.lstrip(" ").startswith("(") or word in words_set(self.text)
         return "" if is_other else self.names.sensor_on_side(word)
 
@@ -693,7 +695,8 @@ class Usage:
         return values if values.get("asked") or values.get("question") else {}
 
     def bracketed_values(self, word: str) -> dict[str, str]:
-        """A question in words in the brackets of a header: what they ask, else an example."""
+        """Return a question in words in the brackets of a header, or an example if it is not
+        understood."""
         start = next(
             k
             for k, token in enumerate(self.row_tokens)
@@ -799,7 +802,7 @@ class Usage:
 
     @cached_property
     def name_and_meaning(self) -> tuple[str, str]:
-        """A name without the letters that a name has not, and what it means."""
+        """A name without letters that names cannot have, and its meaning."""
         right = re.sub(r"^[^A-Za-z]+|\W", "", plain(self.source[self.diagnostic.span]))
         return right, self.names.find_meaning(right)
 
@@ -813,7 +816,7 @@ class _Turn(NamedTuple):
 
 
 class _OwnWord(NamedTuple):
-    """A `name` that stands alone `count_alone` times, or a call with values: `call_name`."""
+    """A `name` that is alone `count_alone` times, or a call with values: `call_name`."""
 
     name: str
     call_name: str
@@ -843,8 +846,8 @@ class _OtherName(NamedTuple):
 def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterator[int]:
     """Yield the places where a word of the language is used as the name of a DEF or a variable.
 
-    A DEF is called where its name stands alone, or with as many values as the DEF has and the word
-    has not, but not in its own body. Where a word of blocks stands alone it is of a block.
+    A DEF is called where its name is alone, or with as many values as the DEF has and the word has
+    not, but not in its own body. A word of blocks that is alone belongs to a block.
     """
     depth = parameters = 0
     is_inside = is_value = False
@@ -889,7 +892,7 @@ def _ends_question(token: Lexeme) -> bool:
 
 
 def _short_instructions(text: str) -> list[str]:
-    """Return the instructions of a text, nothing where they are many, or a block is among them."""
+    """Return the instructions of a text, or nothing if they are many or contain a block."""
     text_lines = (split_note(line)[0].split(";") for line in text.split("\n"))
     instructions = [
         instruction.strip() for line in text_lines for instruction in line if instruction.strip()
@@ -970,7 +973,7 @@ def _several_instructions(gaps: Gaps, is_sided: bool) -> str:
 
 
 def _other_instruction_words(gaps: Gaps) -> set[str]:
-    """Orders beside a turn, which it alone would lose."""
+    """Orders next to a turn, which would be lost with the turn alone."""
     instruction_of_word = _usage_of(gaps).instruction_of_word.items()
     return {
         instruction
@@ -1034,7 +1037,7 @@ def _own_example(gaps: Gaps) -> str:
 
 
 def _loop_of_repeated(gaps: Gaps) -> str:
-    """The loop of a word that stands several times."""
+    """The loop for a repeated word."""
     own_word = _usage_of(gaps).own_word
     return (
         f"LOOP({own_word.count_alone});{own_word.name};END_LOOP" if own_word.count_alone > 1 else ""
@@ -1194,7 +1197,7 @@ def _until_end(gaps: Gaps) -> str:
 
 
 def _task_name(gaps: Gaps) -> str:
-    """The name of a TASK that stands alone elsewhere, as if it started there."""
+    """The name of a TASK that is used alone elsewhere, as if to start it there."""
     usage = _usage_of(gaps)
     name = usage.source[usage.diagnostic.span].upper()
     lone_pattern = (
@@ -1204,7 +1207,7 @@ def _task_name(gaps: Gaps) -> str:
 
 
 def _begun_behind(gaps: Gaps) -> str:
-    """The beginning of a program that stands at its end: `F(2, 80)|SB`."""
+    """The beginning of a program at its end: `F(2, 80)|SB`."""
     match = re.compile(r"(?i)\|\s*(S[IB])\s*\Z").match(
         _usage_of(gaps).text, _usage_of(gaps).diagnostic.span.start
     )
@@ -1237,7 +1240,7 @@ def _saying_button(gaps: Gaps) -> str:
 
 
 def _part_of_when(gaps: Gaps) -> str:
-    """An ELSE in a WHEN."""
+    """Report an ELSE in a WHEN."""
     usage = _usage_of(gaps)
     text_before = usage.text[: usage.diagnostic.span.start]
     is_open = re.search(r"(?is)\bWHEN\b(?!.*\bEND_?WHEN\b)", text_before)
@@ -1274,7 +1277,7 @@ def _other_lines(gaps: Gaps) -> list[str]:
 
 
 def _later_lines(gaps: Gaps) -> list[str]:
-    """The lines in which TIME stands after the first place."""
+    """The lines with TIME after the first place."""
     usage = _usage_of(gaps)
     offsets = [match.start() for match in re.finditer(r"(?i)\bTIME\b", usage.text)][1:]
     return [str(usage.source.position(offset)[0]) for offset in offsets]
@@ -1337,7 +1340,7 @@ def _lamp_set(gaps: Gaps) -> str:
 
 
 def _leading_filler(gaps: Gaps) -> str:
-    """A word that says nothing, or the button, and begins an instruction."""
+    """A word without meaning, or the button, at the beginning of an instruction."""
     usage, right = _usage_of(gaps), _usage_of(gaps).name_and_meaning[0]
     is_needless = lexicon_meaning(right, "filler") or usage.is_button(right)
     return right if usage.is_first and is_needless else ""

@@ -1,7 +1,7 @@
 """A condition in words: `luz mucha`, `hay una pared`, `pared a medio metro`. Knows no row.
 
-Finds which sensor and which sign they mean, as far as they say it. Where the number is not in them
-it is an example.
+Finds which sensor and which sign they mean, as far as they say it. If they lack the number, it is
+an example.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tiniscript.recovery.meanings import (
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
 
-_EMPTY_WORD = make_token("THE")  # a word that asks nothing: one alone may be a name
+_EMPTY_WORD = make_token("THE")  # a word that asks no question: alone, it may be a name
 _KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
 _ASKED_KINDS = frozenset(("little", "much", "light", "ahead", "none"))
 _SAMPLE_CM = 10  # centimetres, as in every example
@@ -34,9 +34,9 @@ _ROUND_NUMBERS_FROM = 100  # above it an example is a round number
 def condition_values(tokens: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     """Return the values of a condition in words, or None if it is not understood.
 
-    It is `question` where it has its number, a `question` where a word says what, and else an
-    `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several,
-    and `aside` is what looks ahead alone.
+    It is `question` if it has its number, a `question` if a word names the number, and an `example`
+    otherwise; `also` and `another` ask the other sensor that may be meant. `joint` joins several,
+    and `aside` only looks ahead.
     """
     is_compared = any(token.text == "=" for token in tokens)  # `DISTANCE = NEAR`
     sign = _written_sign(tokens)
@@ -62,7 +62,7 @@ def condition_values(tokens: Sequence[Lexeme], names: Names) -> dict[str, str] |
     ):
         kinds_mentioned.add("ahead")  # `20 cm`, `less than 10`
     if any(names.is_yes_no(text) for text in own_names):
-        return None  # nothing is compared with it
+        return None  # it is never compared
     is_bare_name = len(texts) == 1 and not (
         kinds_mentioned & {"light", "ahead"} and not lexicon_meaning(texts[0], "sensor")
     )
@@ -138,7 +138,7 @@ def _joining_word_of(text: str, names: Names) -> str:
 
 
 def _split_number(tokens: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
-    """Return the words without units, and their number in centimetres or of light, "" for none."""
+    """Return the words without units, and their number in centimetres or of light, or ""."""
     texts = [token.text for token in tokens]
     is_near = bool(_mentioned_words(texts, names) & {"ahead", "none"})
     for k, text in enumerate(texts):

@@ -76,7 +76,8 @@ def tokens_of(line: str) -> list[Lexeme]:
 
 
 def in_one_line(text: str) -> str:
-    """Return the instructions of a text, laid out; nothing where they are long for a message."""
+    """Return the instructions of a text, laid out; or nothing if they are too long for a
+    message."""
     parts = (format_line(tokens_of(line)).strip("; ") for line in text.split("\n"))
     joined_text = "; ".join(part for part in parts if part)
     return joined_text if len(joined_text) <= MOST_BLOCK_CHARACTERS else ""
@@ -100,7 +101,7 @@ def instruction_at(span: Span, source: Source) -> Span:
 def with_signs(line: str) -> str:
     """Return a line that was dictated with its signs: `F open bracket 2 comma 80 close bracket`.
 
-    One whose brackets nobody opens and closes in words says something else by them.
+    Words for brackets that are not opened and closed have another meaning.
     """
     plain_line = plain(line)
     if len(plain_line) != len(line):
@@ -160,7 +161,7 @@ def spoken_signs(text: str) -> list[str]:
 
 
 def _close_brackets(sign_names: Sequence[str]) -> list[str]:
-    """Return signs in which a bracket that nobody says opens or closes does so in turn.
+    """Return signs in which brackets that the words do not mark as opening or closing alternate.
 
     One that is open at the end of its instruction is closed there.
     """

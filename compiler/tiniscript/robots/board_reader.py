@@ -1,7 +1,7 @@
-"""Turns `[board]` of a profile into a Board, and complains about what the chip cannot do.
+"""Turns `[board]` of a profile into a Board, and reports what the chip cannot do.
 
-Knows which pins and timers are in use, and by what. `boards` describes chips, and
-`drivers` what is joined to them.
+It knows which pins and timers are in use, and by which device. `boards` describes chips, and
+`drivers` the parts connected to them.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ NO_WIRING = Wiring("", {}, {})
 class PinUse(NamedTuple):
     """A use of a pin: the path of the key, and the ability that it needs, one of `NEEDS`.
 
-    `shield` is what a shield calls the pin, where it decides the pin.
+    `shield` is the shield's name of the pin, if the shield decides the pin.
     """
 
     table: Table
@@ -38,7 +38,7 @@ class PinUse(NamedTuple):
 
 
 class Pins:
-    """The pins of a chip and their uses. Without a chip nothing is checked."""
+    """The pins of a chip and their uses. Without a chip, nothing is checked."""
 
     def __init__(self, chip: Chip | None) -> None:
         self._chip = chip
@@ -93,7 +93,7 @@ class Pins:
     def take_fixed(self, table: Table, key: str, pin_key: PinKey) -> int | None:
         """Return the number of a pin that a shield decides, or None if it is not usable.
 
-        `key` is what a complaint names: the profile does not say the pin.
+        A complaint names `key`: the profile does not name the pin.
         """
         chip, pin = self._chip, pin_key.fixed_number
         if chip is None or pin is None:
@@ -112,7 +112,7 @@ class Pins:
         return pin
 
     def check_timers(self) -> None:
-        """Complain about every PWM pin whose timer is taken by servos or the buzzer."""
+        """Complain about every PWM pin whose timer is used by servos or the buzzer."""
         if self._chip is None:
             return
         if self._chip.pwm_timers:

@@ -1,7 +1,7 @@
-"""The table of chips: what each pin can do.
+"""The table of chips: the abilities of each pin.
 
-Knows pins, timers and memory. Does not read profiles: `board_reader` does, and compares their pins
-with what the drivers need.
+Knows pins, timers and memory. It does not read profiles: `board_reader` does, and compares their
+pins with the drivers' needs.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class Chip(NamedTuple):
     The link uses `link_pins`. `boot_pins` are high, or do PWM, before the firmware runs, or decide
     how the chip starts: no motor may hang on them. `reset_pin` is the one that a computer may pull
     low when it opens the port: no start button may. A timer field is None if the chip has enough
-    timers. Of `pwm_timers` each serves two pins of one frequency; 0: the timers are those of
+    timers. Each of `pwm_timers` serves two pins of one frequency; 0: the timers are those of
     `timer_of_pwm_pin`.
     """
 
@@ -70,7 +70,7 @@ class Chip(NamedTuple):
         return number if number in all_pins else None
 
     def pin_name(self, number: int) -> str:
-        """Return the name that the board prints beside a pin: `5`, `A0`."""
+        """Return the name printed next to a pin on the board: `5`, `A0`."""
         first_number = self.first_analog
         return (
             str(number)
@@ -90,14 +90,14 @@ def _pins(*parts: int | range) -> frozenset[int]:
 
 
 # Pins of an ESP32 that are free: 6 to 11 carry its flash memory, 1 and 3 the link. 34 to 39 only
-# read. Of the analog pins those of ADC1: ADC2 (0, 2, 4, 12 to 15, 25 to 27) cannot measure while
-# WiFi is on. Data sheet, "Strapping Pins": 0, 2, 5, 12 and 15 are read at a reset; 12 held high
-# keeps the chip from starting. 0, 5 and 15 are pulled up then, and 14 does PWM for a moment; 2 is
-# pulled down.
+# read. Only the analog pins of ADC1: ADC2 (0, 2, 4, 12 to 15, 25 to 27) cannot measure while WiFi
+# is on. Data sheet, "Strapping Pins": 0, 2, 5, 12 and 15 are read at a reset; 12 held high keeps
+# the chip from starting. 0, 5 and 15 are pulled up then, and 14 does PWM for a moment; 2 is pulled
+# down.
 # An ESP32-C3 has its flash on 12 to 17 (11 feeds it), its link on 20 and 21; its analog pins are
-# those of ADC1, as the chip's errata sheet tells not to use ADC2 (5). It reads 2, 8 and 9 at a
+# those of ADC1, because the chip's errata sheet advises against ADC2 (5). It reads 2, 8 and 9 at a
 # reset; 6 is pulled up then, for JTAG. 18 and 19 are its own USB: they carry the link of a board
-# without a USB chip, whose port is gone as soon as they are something else.
+# without a USB chip, whose port disappears as soon as they are used for something else.
 _ESP32 = _pins(0, 2, 4, 5, range(12, 20), 21, 22, 23, 25, 26, 27, 32, 33)
 _ESP32C3 = _pins(range(11))
 # Bits of `needs`. A Nano's bootloader leaves no room for tasks.

@@ -1,8 +1,8 @@
 """The driver of a robot's part: pins, firmware, sketch, wiring, sentences.
 
-Knows what every driver must say; the drivers themselves are the files of `drivers/`. Knows no
-robot: `board_reader` asks for a driver's pins and settings, `firmware` for its C++, the sketch for
-its lines, and the wiring page for what it looks like.
+It knows what every driver must provide; the drivers themselves are the files of `drivers/`. Knows
+no robot: `board_reader` asks for a driver's pins and settings, `firmware` for its C++, the sketch
+for its lines, and the wiring page for its looks.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class PinKey(NamedTuple):
     """A pin of a driver. `fixed_number` is its number where a shield decides it, and no profile
     says it.
 
-    A fixed pin is told to people as `name`: what the shield prints beside it.
+    People see a fixed pin as `name`: the label on the shield.
     """
 
     key: str
@@ -61,9 +61,9 @@ class Setting(NamedTuple):
 class Terminal(NamedTuple):
     """A terminal of a part: its printed name, a rail, or a key of `wiring.texts`.
 
-    It goes to the pin that `pin_key` of the profile names, or to a rail, or it stays free.
-    Between the pin and the terminal may be a resistor `series_resistor`, then one
-    `ground_resistor`, then one `far_resistor`.
+    It goes to the pin that `pin_key` of the profile names, or to a rail, or it stays free. Between
+    the pin and the terminal, there may be a resistor `series_resistor`, then `ground_resistor`,
+    then `far_resistor`.
     """
 
     name: str
@@ -78,9 +78,8 @@ class Shape(NamedTuple):
     """The form of a part: its icon, the key of its shopping entry, its terminals from the top.
 
     `need_key` is empty where resistors are all. `model` is printed in its title. `motor_terminals`
-    are the terminals of the left and the right motor; `note_keys` are keys of what to mind,
-    `check_keys` of what to look at before switching on. `power_key` is the key of which battery
-    suits it.
+    are the terminals of the left and the right motor; `note_keys` are keys of notes, `check_keys`
+    of checks before switching on. `power_key` is the key of which battery suits it.
     """
 
     icon: str
@@ -95,7 +94,7 @@ class Shape(NamedTuple):
 
 
 class PinTexts(Protocol):
-    """The pins of one robot; each text stands for an object of C++."""
+    """The pins of one robot; each text names an object of C++."""
 
     interrupt_vectors: list[str]  # names of interrupts, for the handlers
     counter_vectors: list[str]  # interrupt vectors of the discs, left and right
@@ -130,7 +129,7 @@ class HeaderPart:
         return self.robot.board.chip in ESP32S
 
     def analog_read(self, wiring: Wiring) -> str:
-        """Return the line that puts what the converter counts into `*value`."""
+        """Return the line that puts the converter's count into `*value`."""
         channel = wiring.pins["pin"] - (CHIPS[self.robot.board.chip].first_analog or 0)
         self.analog_count = max(self.analog_count, channel + 1)
         return f"      if (!analog_read({channel}, value)) return false;"
@@ -144,7 +143,7 @@ class HeaderPart:
 
 
 class DriverPlan:
-    """The drivers' additions to a sketch: lines in which `$words` stand for names."""
+    """The drivers' additions to a sketch: lines in which `$words` are replaced by names."""
 
     def __init__(self, robot: Robot, is_exact: bool) -> None:
         self.robot = robot
@@ -155,7 +154,7 @@ class DriverPlan:
         self.servo_pins: list[str] = []
 
     def pin(self, name: str, number: int, mode: str = "", comment: str = "") -> str:
-        """Add a pin, and return what it is called."""
+        """Add a pin, and return its name."""
         comment_text = f"  // {comment}" if comment else ""
         text = CHIPS[self.robot.board.chip].pin_name(number)
         self.constant_lines.append(f"const int {name} = {text};{comment_text}")
@@ -181,7 +180,7 @@ class DriverPlan:
 class Driver(ABC):
     """`used_by` is the table of [board] and the kind of the device: `sensors number`.
 
-    `profile_help` says to who writes a profile which keys it has: `tinibot.toml` lists it.
+    `profile_help` tells the author of a profile its keys: `tinibot.toml` lists them.
 
     `fixed_shape` is its shape, where that is always the same; the catalogue `wiring` has the
     sentences by the keys that its shape has.
@@ -195,7 +194,8 @@ class Driver(ABC):
     fixed_shape: ClassVar[Shape]
 
     def choosing_key(self, key: str, settings: Mapping[str, int]) -> str:
-        """Return the key of the profile that makes it take a fixed pin, or nothing: it does not."""
+        """Return the key of the profile that makes it use a fixed pin, or an empty text if none
+        does."""
         return "driver"
 
     def shape(
@@ -263,7 +263,7 @@ class SensorDriver(Driver):
     def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         """Return the lines that put a reading into `*value` and return whether there was one.
 
-        Of a number `*value` has thousandths, in between also what the converter counts.
+        For a number, `*value` holds thousandths, and meanwhile the converter's count.
         """
 
     @abstractmethod
@@ -289,7 +289,7 @@ class ActuatorDriver(Driver):
         """Return the function of a sketch that sets it."""
 
 
-# -- what several drivers share
+# -- shared by several drivers
 
 
 def limit_lines(device: Device, low: int, high: int) -> list[str]:

@@ -1,7 +1,7 @@
-"""Makes the C++ header that tells the firmware how a robot is wired.
+"""Makes the C++ header that describes the robot's wiring to the firmware.
 
 Knows the names that `vm_arduino/src/boards` uses. Opens no files. All numbers are calculated here
-(registers for pins, steps for ranges), so that the firmware looks nothing up.
+(registers for pins, steps for ranges), so that the firmware needs no lookups.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def header(board_variants: Sequence[Robot], made_by: str) -> str:
     """Return the header of a robot. `board_variants` is one robot, repeated for each board that it
     fits.
 
-    What is the same on all of these boards is there once, after the rest.
+    Lines that all of these boards share come once, after the rest.
     """
     robots_by_paragraphs: dict[tuple[str, ...], list[Robot]] = {}
     for robot in board_variants:
@@ -79,7 +79,7 @@ def _condition(robots: Sequence[Robot]) -> str:
 
 
 class Header(HeaderPart):
-    """The lines for one chip, with what drivers add to them."""
+    """The lines for one chip, with the additions of drivers."""
 
     def __init__(self, robot: Robot) -> None:
         super().__init__(robot, texts_of(robot))

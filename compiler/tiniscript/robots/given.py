@@ -1,7 +1,7 @@
 """Profiles that a robot was used with before, by the fingerprints of their kits.
 
-The user's cache holds their paths; a profile that has changed or is gone is ignored. If the cache
-is lost, nothing else is lost.
+The user's cache holds their paths; a profile that has changed or was removed is ignored. The cache
+may be lost without harm.
 """
 
 from __future__ import annotations

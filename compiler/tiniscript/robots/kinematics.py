@@ -18,7 +18,7 @@ ARC_STEP = 5.0  # degrees of an arc between two points; a straight line between 
 class Pose(NamedTuple):
     """The position of the middle between the wheels, and the robot's heading.
 
-    With `heading` 0 the robot drives along x, and y is to its left. `heading` is in degrees,
+    With `heading` 0, the robot drives along x, and y is to its left. `heading` is in degrees,
     counterclockwise, and does not wrap around after a full turn.
     """
 
@@ -91,7 +91,7 @@ class Way:
         return points(self.body, self.start_pose, self.left, self.right, now_ms - self.since_ms)
 
     def thin_out(self, most_corners: int) -> None:
-        """Drop corners too close to tell apart in a picture; if too many remain, the oldest."""
+        """Drop corners too close to distinguish in a picture; if too many remain, the oldest."""
         across_cm = max(
             max(values) - min(values) for values in list(zip(*self.corners, strict=True))[:2]
         )

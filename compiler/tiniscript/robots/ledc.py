@@ -1,7 +1,7 @@
 """Gives each PWM pin of an ESP32 a channel of LEDC.
 
 Two neighbouring channels share a timer, and so a frequency: motors, servos and the buzzer have one
-each. So each of these three begins at an even channel.
+each. So each of these three starts with an even channel.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ def channels_of(board: Board) -> dict[int, int]:
 
 
 def timers_of(pin_count: int) -> int:
-    """Return the number of timers for so many pins of one frequency."""
+    """Return the number of timers for this many pins of one frequency."""
     return -(-pin_count // CHANNELS_PER_TIMER)
 
 
 def _pin_needs(used_by: str, wiring: Wiring) -> Iterable[tuple[int, str]]:
-    """Return the pins of a device with what each needs."""
+    """Return the pins of a device with the needs of each."""
     for (use, name), driver in DRIVERS.items():
         if name == wiring.driver and use.split()[0] == used_by:
             for pin in driver.pins:

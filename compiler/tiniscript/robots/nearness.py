@@ -1,4 +1,4 @@
-"""Compares a robot with the shipped ones: which kit is nearest to it, and what tells them apart."""
+"""Compares a robot with the shipped ones: which kit is nearest to it, and how they differ."""
 
 from __future__ import annotations
 

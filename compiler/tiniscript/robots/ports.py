@@ -1,8 +1,8 @@
-"""The tables of chips: how the compiler names each, and what registers an AVR's pins have.
+"""The tables of chips: the compiler's name of each, and the registers of an AVR's pins.
 
-From the data sheets of the ATmega328P and the ATmega2560, and the pins of their Arduino boards.
-`boards` says what a pin can be used for; the registers for that are here. An ESP32 has none to
-look up: the number of a pin is that of its GPIO.
+Facts from the data sheets of the ATmega328P and the ATmega2560, and the pins of their Arduino
+boards. `boards` lists the uses of pins; this module has their registers. An ESP32 needs no table:
+the number of a pin is that of its GPIO.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ class ProfileRefused(Exception):
     `reasons` holds every complaint as (code, values): the code is a short, stable name, and the
     values fill the gaps of its sentence in `refusals`. The value `path` is the path of the key,
     such as `kit.sensors[2].range`; tables are counted from 1. `kinds` are those whose sentences
-    count before that of a profile: other files have some of their own.
+    take precedence over that of a profile: other files have their own.
     """
 
     kinds: ClassVar[tuple[str, ...]] = ()
@@ -58,9 +58,9 @@ class Board(NamedTuple):
     """The board as the firmware needs it. Sensors and actuators are in the kit's order.
 
     `program_bytes` is the largest size of a program's code. `max_run_seconds` limits how long a
-    program runs without a client. A pin that is None is not wired. `language`,
-    is that of its answers to text; empty: that of whoever makes its firmware.
-    `discs` are those on the wheels, None if it measures no ways.
+    program runs without a client. A pin that is None is not wired. `language`, is that of its
+    answers to text; empty: that of the person who builds its firmware.
+    `discs` are those on the wheels, None if it measures no distances.
     """
 
     chip: str
@@ -123,6 +123,6 @@ class Robot(NamedTuple):
     labels: Mapping[str, Mapping[str, str]]
 
     def with_language(self, language: str) -> Robot:
-        """Return the robot with a language: this one, where its profile names none."""
+        """Return the robot with a language: this one, if its profile names none."""
         board = self.board._replace(language=self.board.language or language)
         return self._replace(board=board)

@@ -41,8 +41,8 @@ def describe(refusal: ProfileRefused, language: str) -> list[str]:
 def _causes(reasons: Sequence[Reason]) -> list[Reason]:
     """Return the reasons without those that go when another one is mended.
 
-    Beside a misspelt key nothing is said of the key that it should be, nor, beside the refused
-    name of a device, of the tables that have this name.
+    A misspelt key is not also reported as missing under its right name, nor are the tables of a
+    device whose name is refused.
     """
     meant_paths, is_name_refused = set(), False
     for code, values in reasons:

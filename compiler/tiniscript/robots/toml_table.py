@@ -2,7 +2,7 @@
 
 Knows TOML's types and the precision of numbers. Does not know the keys of a profile: `reader` and
 `board_reader` ask for them. A missing or wrong key adds a complaint and gives a placeholder, so
-that reading goes on; `root_of` refuses the file at the end.
+that reading continues; `root_of` refuses the file at the end.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ _OUTCOMES_BY_MOVE = {"F": _LESS, "B": _MORE}
 
 
 class Comparison(NamedTuple):
-    """A sensor, the name of the comparator that stands after it, and a number."""
+    """A sensor, the name of the comparator after it, and a number."""
 
     device: Device
     op: str
@@ -101,7 +101,8 @@ def answer_of(comparison: Comparison) -> str:
 def answer_of_both(condition: Expression, kit: Kit) -> tuple[str, str]:
     """Return the answer that `DISTANCE < 10 AND DISTANCE > 40` always has, and what was meant.
 
-    Nothing, twice, if no two comparisons of a sensor exclude each other or leave nothing out.
+    Return two empty texts unless two comparisons of a sensor exclude each other or cover
+    everything.
     """
     op = condition[-1].op if len(condition) == 8 else ""
     first_comparison, second_comparison = (comparison_of(condition[k : k + 3], kit) for k in (0, 4))

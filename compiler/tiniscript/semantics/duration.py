@@ -1,7 +1,7 @@
 """The duration of a program, if it can be known in advance.
 
-Knows the checked program. Only moves, waits and what else takes time by the row of its word count;
-readings and other instructions take none.
+Knows the checked program. Only moves, waits and other words whose row says that they take time
+count; readings and other instructions take none.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ _UNKNOWN = Duration(0, None)
 def duration_of_program(program: ir.Program, kit: Kit) -> Duration:
     """Return the duration of `program`, preferably an optimized one.
 
-    Of several tasks it is known how long they run if no more than one moves: a move waits for
-    the motors, and S ends one.
+    The duration of several tasks is known if at most one moves: a move waits for the motors, and S
+    ends one.
     """
     calculator = _Durations(program, kit)
     bodies = (program.body, *(task.body for task in program.tasks))

@@ -65,8 +65,8 @@ class Stop(NamedTuple):
 class Act(NamedTuple):
     """An action of a robot with values, other than with its motors.
 
-    What is known of it the row of its word says. It becomes the instruction, and in a sketch the
-    helper, that is named as the role of the word.
+    The row of its word has its properties. It becomes the instruction, and in a sketch the helper,
+    that is named as the role of the word.
     """
 
     word: Word
@@ -161,7 +161,7 @@ class Procedure(NamedTuple):
 
 
 class Task(NamedTuple):
-    """TASK, or a WHEN with the check `until`, beside the main task."""
+    """TASK, or a WHEN with the check `until`, parallel to the main task."""
 
     until: Until | None
     body: Body

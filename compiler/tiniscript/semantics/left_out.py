@@ -1,6 +1,6 @@
 """The instructions that a BREAK outside a loop skips: `IF(C);S;BREAK;ENDIF;BEEP(1, 440)`.
 
-A person wants the rest of the program only where the BREAK is not reached: it goes into the other
+A person wants the rest of the program only if the BREAK is not reached: it goes into the other
 branch, `IF(C);S;ELSE;BEEP(1, 440);ENDIF`.
 """
 
@@ -68,7 +68,7 @@ def _rewrite_if(
     branch_texts[1 - ended_branch] += [
         source[instruction.span] for instruction in later_instructions
     ]
-    branch_texts[0] = branch_texts[0] or ["S"]  # the robot stands still in that branch
+    branch_texts[0] = branch_texts[0] or ["S"]  # the robot does not move in that branch
     header = f"IF({source[arm.condition.span]})"
     parts = [
         header,

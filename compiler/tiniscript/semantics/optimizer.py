@@ -1,7 +1,7 @@
 """The optimizer: IR becomes shorter IR that does the same.
 
-Folds constants, drops what is never reached and DEFs that nobody calls. Never changes a trace
-or a fault: what would fault is left to fault, and readings stay where they are.
+Folds constants, drops what is never reached and DEFs that nobody calls. Never changes a trace or a
+fault: code that would fault still does, and readings stay where they are.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Which kind the values of a DEF have: that of its first call in the text.
+"""Finds the kinds of the values of a DEF: that of its first call in the text.
 
-The body of a DEF stands before its calls, and needs to know. Only programs that have a DEF with
+The body of a DEF comes before its calls, and needs the kinds. Only programs that have a DEF with
 values load this.
 """
 

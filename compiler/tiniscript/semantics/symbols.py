@@ -28,7 +28,7 @@ class Name(NamedTuple):
 
 
 class Operand(NamedTuple):
-    """A value of an expression, where it stands, and how deep the stack gets for it."""
+    """A value of an expression, its place, and the stack depth that it needs."""
 
     type: str
     depth: int

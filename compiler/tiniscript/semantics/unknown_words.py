@@ -98,8 +98,8 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
 def _initial(word: str, text: str) -> list[str]:
     """Return the command that a letter begins in the language of the other letters of a text.
 
-    `A(2, 70)` is F beside `D(1, 50)`, which only in Spanish and Portuguese is a command: forward is
-    `adelante` there. Beside an F of its own it is none.
+    `A(2, 70)` means F if there is also `D(1, 50)`, which is a command only in Spanish and
+    Portuguese: forward is `adelante` there. It does not if the program has an F.
     """
     commands = lexicon_meaning(word, "initial")
     calls = {match.upper() for match in _LETTER.findall(text)} if commands else set()

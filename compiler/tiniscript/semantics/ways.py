@@ -34,7 +34,7 @@ def has_unknown_extent(statement: Statement) -> bool:
 def to_timed(move: Move, kit: Kit) -> Move:
     """Return a move by its time in place of one by its way, which is not open.
 
-    Where the robot would fault it never ends.
+    If the robot would fault, it never ends.
     """
     try:
         time_ms = extent_move_ms(move, kit) or 0

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from tiniscript.semantics.task_copies import Excess
 
 _MOVE_WITH_UNIT = re.compile(r"(?i)\b([FBLR])[ \t]*\([ \t]*(\w+)[ \t]*(CM|DEG)\b")  # `F(20 DEG`
-# How an instruction is ended by a condition, by the role of its word.
+# How a condition ends an instruction, by the role of its word.
 _REPEATED = "WHILE(NOT ({c}));{call};END_WHILE"
 _ENDED_MOVE = {"motors": "{call};W(FOREVER) UNTIL({c});S",
           **dict.fromkeys(("stop", "actuator"), "{call};W(FOREVER) UNTIL({c})"),
@@ -368,7 +368,8 @@ _NEAR_QUESTION = re.compile(
 def next_condition(source: Source, span: Span) -> str:
     """Return the condition of an IF after `span`.
 
-    Else what the program asks of the same sensor, after it first; else an example.
+    Otherwise return the program's question about the same sensor, first one after it, or else an
+    example.
     """
     if match := _NEXT_QUESTION.match(source.text, span.end):
         return match[1].strip()
@@ -434,7 +435,7 @@ def _count_values(
     """Return the values for a wrong number of arguments: `power` of F(80) is F(2, 80), `spare` of
     F(2, 80, 5) is F(2, 80).
 
-    `kept` is W(2) for W(2, 80): a wait has no power. With UNTIL the time may be FOREVER.
+    `kept` is W(2) for W(2, 80): a wait has no power. With UNTIL, the time may be FOREVER.
     """
     numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
     values = {"power": "", "spare": "", "kept": ""}

@@ -120,7 +120,7 @@ class WrongValues:
                          **pair_hints)  # fmt: skip
 
     def _is_compared(self, span: Span) -> bool:
-        """Return whether a name is beside `<` or `>`."""
+        """Return whether a name is next to `<` or `>`."""
         text = self.scope.source.text
         texts_around = text[: span.start].rstrip()[-2:], text[span.end :].lstrip()[:2]
         return any(it in "".join(texts_around) for it in "<>")
@@ -135,7 +135,7 @@ class WrongValues:
         return sensors[0] if len(sensors) == 1 and direction in OPPOSITE_MOVES else ""
 
     def _amount_values(self, span: Span, name: str) -> dict[str, str]:
-        """Return the call around `poco`, or around the `lento` beside it, with numbers."""
+        """Return the call around `poco`, or around the `lento` next to it, with numbers."""
         scope = self.scope
         if not is_amount(name) and not lexicon_meaning(name, "power"):
             return {}

@@ -3,7 +3,7 @@
 A page counts the times that its user presses STOP, and the count rides in every beat: a request
 that is lost, late or repeated loses no stop, and each number stops the robot once. It stops nothing
 only where a run that the page has asked for after it is accepted already. A stop without a number,
-as anybody else's is, always stops.
+such as another user's, always stops.
 
 A stop makes what was asked before it void. A teacher's STOP latches: whatever reaches the robot
 within LATCH_S after it is refused, and so is what a page had made before it heard of the stop, when

@@ -21,11 +21,11 @@ class Block(NamedTuple):
     """`word` is the word or name that it has, or the text of a comment and of a grey block;
     where a unit is after the first value, that one too: `F CM`.
 
-    `if` has a value and a body for each arm, and one body more for ELSE; `def` has the names in its
-    brackets as values. `note` is the comment after it; `is_apart`: an empty line stands before it.
+    `if` has a value and a body for each arm, and another body for ELSE; `def` has the names in its
+    brackets as values. `note` is the comment after it; `is_apart`: an empty line is before it.
     `said` is what its lines were when it was read, the end left out, and `comment` the comment of
-    it, or what it is; what is missing or empty is printed anew. `is_behind`: a comment that stands
-    after the line before it.
+    it, or what it is; what is missing or empty is printed anew. `is_behind`: a comment after the
+    line before it.
     """
 
     kind: str

@@ -1,6 +1,6 @@
 """The kinds of blocks: the page shows them and Python reads and writes them by this one table.
 
-Knows what goes into each kind; no page and no program. What it says is in the page's catalogue, as
+Knows what goes into each kind; no page and no program. Its text is in the page's catalogue, as
 `block/if` and `tip/if`: `%1` and so on are where values go. A word of the text stands in braces: on
 a block it is seen if somebody wants it, of `{IF} if %1` as `IF %1`.
 `python -m tools.builds.studio` gives the page the table.

@@ -1,7 +1,7 @@
 """Blocks become text, in the layout of the formatter, and each block gets its place there.
 
-Knows words, signs and which of them needs brackets. What hangs on nothing is kept in comments at
-the end of the text, which `block_reading` takes back.
+Knows words, signs and which of them needs brackets. Blocks that are not attached to anything are
+kept in comments at the end of the text, which `block_reading` takes back.
 """
 
 from __future__ import annotations
@@ -170,7 +170,7 @@ def _instruction(block: Block, values: list[str]) -> _Instruction:
 
 
 def _lines(form: Form, instructions: list[_Instruction]) -> list[_Line]:
-    """Return the lines of a program: comments that come first stand before its start."""
+    """Return the lines of a program: leading comments come before its start."""
     lines: list[_Line] = []
     if form.start:
         while len(lines) < len(instructions) and instructions[len(lines)].kind == "comment":
@@ -206,7 +206,7 @@ def _lines(form: Form, instructions: list[_Instruction]) -> list[_Line]:
 def _is_one_line(
     form: Form, instructions_left: list[_Instruction], code_indexes: list[int]
 ) -> bool:
-    """Return whether all instructions go on one line, as in the formatter."""
+    """Return whether all instructions belong on one line, as in the formatter."""
     if not code_indexes or (form.start and code_indexes[0] > 0):
         return False
     if not form.is_one_line and len(code_indexes) > 1:

@@ -1,7 +1,8 @@
 """Text becomes blocks: the compiler's own AST, with the comments and the lines that do not parse.
 
-Knows the AST and where comments stand. A line with a mistake of syntax becomes a grey block, and
-the others are read as if it were a comment. What the checker refuses is a block like any other.
+It knows the AST and the places of comments. A line with a mistake of syntax becomes a grey block,
+and it counts as a comment while the others are read. A statement that the checker refuses is a
+normal block.
 """
 
 from __future__ import annotations
@@ -119,7 +120,7 @@ class _Reader:
         return self._pieces[self._next_index - 1]
 
     def _comments(self) -> list[Block]:
-        """Return the comments, and grey lines, that stand before the next instruction."""
+        """Return the comments, and grey lines, before the next instruction."""
         comments = []
         while self._next_index < len(self._pieces) and not self._pieces[self._next_index].tokens:
             piece = self._next_piece()
@@ -172,7 +173,7 @@ class _Reader:
     def _arms(
         self, node: If | Loop | While | Def | Task, printed_lines: list[str]
     ) -> tuple[tuple[tuple[Block, ...], ...], tuple[Value, ...]]:
-        """Read bodies and what ends them: ELSEIF, ELSE or the end of the block."""
+        """Read bodies and their ends: ELSEIF, ELSE or the end of the block."""
         conditions: list[Argument | None] = []
         inner_bodies: list[tuple[Instruction, ...]] = []
         if isinstance(node, If):

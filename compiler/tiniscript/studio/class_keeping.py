@@ -1,10 +1,10 @@
 """The stored state of a class: the work of its pupils, as data, and the file for resuming.
 
 The file is there while a class lasts: when the teacher's computer has crashed, `tsc studio --class`
-goes on from it, with the same code and the same pupils. Only the teacher ends a class: the next one
-has the work of a class that has not ended, however long ago that was. A teacher can also keep the
-same work as a file of their own and open it again; that one has no tokens and no code. What is read
-may be damaged or somebody else's: all of it is checked, and limited. Knows no class.
+continues from it, with the same code and the same pupils. Only the teacher ends a class: if a class
+has not ended, however old it is, the next one gets its work. A teacher can also keep the same work
+as a file of their own and open it again; that one has no tokens and no code. The file may be
+damaged or foreign, so everything read is checked and limited. Knows no class.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class ClassTaken(Exception):
 
 
 class KeptClass(NamedTuple):
-    """`is_same_lesson`: seen within the last hour, or unknown if the clock is behind."""
+    """`is_same_lesson`: seen within the last hour, or unknown if the clock was set back."""
 
     state: Json
     is_same_lesson: bool
@@ -111,7 +111,8 @@ class Keeper:
         return is_ours
 
     def read(self) -> KeptClass | None:
-        """Return the class that has not ended, or None. What is no class is put aside."""
+        """Return the class that has not ended, or None. A file that is not a class is moved
+        aside."""
         try:
             state = json.loads(read_limited(path(), FILE_BYTES))
             if not isinstance(state, dict) or state.get("form") != FORM:
@@ -126,8 +127,8 @@ class Keeper:
         return KeptClass(state, type(kept_s) is int and time() - kept_s <= SAME_LESSON_S)
 
     def keep(self, state: Json | None) -> None:
-        """Keep a class if it is another than the newest that was kept. What could not be kept is
-        tried again; of one that is over, None, nothing is kept."""
+        """Keep a class if it is another than the newest that was kept. Failed writes are retried;
+        for a class that is over, None, nothing is kept."""
         if not self._is_ours():
             return
         if state is None:

@@ -9,9 +9,9 @@ Pupils of a group (`groups`) have one place in the queue and one turn: each of t
 robot over, and each may stop it, whoever drives it. Their program is asked for without the lock of
 the class.
 
-Work belongs to the token of the page that made it. Nobody else's replaces it or pushes it out: the
-teacher gives it to another pupil, and a copy stays until that page has said that it has it. Knows
-no HTTP, no file (`class_keeping`) and no clock of its own.
+Work belongs to the token of the page that made it. Another pupil's work never replaces it. If the
+teacher gives it to another pupil, a copy stays until that pupil's page confirms that it has it.
+Knows no HTTP, no file (`class_keeping`) and no clock of its own.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ class Pupil:
 
 @dataclass(eq=False)
 class KeptWork:
-    """Work of who is not here. What comes from a file has no token and no address.
+    """Work of who is not here. A pupil from a file has no token and no address.
 
     `recipient_token` is that of the pupil whose page the teacher wants to have it.
     """
@@ -183,7 +183,7 @@ SHORTEST_TURN_S, LONGEST_TURN_S = 10, 3600
 CONNECT_S = 10.0  # time for a page to take its turn
 QUEUE_S = 20.0  # a page that is silent for longer waits no more
 # A page that was heard since then may get a turn, and keeps one while others wait. It asks once a
-# second. With the time of a look the next one has waited less than 3 s.
+# second. With the time of one poll, the next one has waited less than 3 s.
 HERE_S = 2.0
 # A page silent for longer may lose its place: at a full address, or to a pupil who returns with its
 # name.
@@ -195,7 +195,7 @@ OVER_S = 6.0  # time for pages to hear that the class is over
 WRONG_CODE_RATE = (20, 1 / 3)
 # Burst and rate of a pupil's requests; a page that drives sends ten a second.
 REQUEST_RATE = (80, 40)
-# What a pupil may ask of a robot. Its name, its trim and its owner are the teacher's.
+# The robot requests that a pupil may make. Its name, its trim and its owner are the teacher's.
 ALLOWED_REQUESTS = ("hello", "upload", "live", "start", "identify", "trim", "keys", "stop")
 
 Clock = Callable[[], float]
@@ -788,8 +788,8 @@ class Classroom:
             }
 
     def resume(self, state: Json, is_same_lesson: bool = True) -> int:
-        """Go on with a class from before a crash; return how many pupils it has. What is damaged
-        of it is left out. Of another lesson's all is kept, and pupils come with another code."""
+        """Continue a class from before a crash; return how many pupils it has. Damaged parts are
+        left out. All work of another lesson is kept, and pupils join with another code."""
         with self._lock:
             now_s = self._clock()
             for row in _rows(state, "pupils")[:MOST_PUPILS]:

@@ -1,7 +1,8 @@
 """Authenticates the user of `tsc studio`: the token of the run, and single-use codes for it.
 
 An address on a command line, such as a browser's, is read by every user of the computer. So no
-address has the token. It has a code, for which a page gets the token the first time. Knows no HTTP.
+address contains the token. It has a code, for which a page gets the token the first time. Knows no
+HTTP.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Events of a group's robot during a run, for members who do not drive it.
 
-They look at it some times a second. Until then the newest place of the program waits, and values
-as far as there is room; how many were left out they can tell from the numbers of the others. What
-runs for the driver's page alone, a typed line or the readings of sensors, is not told. The robot's
-thread waits for nobody here. Knows no robot and no page.
+They look at it some times a second. Until then, the newest place of the program waits, and values
+as far as there is room; the numbers of the values show how many were left out. Runs for the
+driver's page alone, such as a typed line or sensor readings, are not reported. The robot's thread
+waits for nobody here. Knows no robot and no page.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class GroupRuns:
         self._value_count = 0  # number of values in the run
 
     def add_news(self, driver: str, news: list[Json]) -> None:
-        """The robot that a pupil drives has told this."""
+        """Add an event of the robot that a pupil drives."""
         with self._lock:
             for news_item in news:
                 for event in self._events_of(news_item):

@@ -2,9 +2,9 @@
 teacher may take part, too: as one more page, which they see, and which has no part in their robot.
 
 A page sends its changes, and where its caret is; it hears those of the others in a request that is
-held until there are any. Whoever spoils the program of a group spoils nothing else: how much a
-pupil may send is limited, and each group has a lock of its own, so nobody waits for another one.
-Knows no HTTP, no robot and no page; `together` has the program.
+held until there are any. A pupil who spoils the program of a group does not affect other groups:
+the amount that a pupil may send is limited, and each group has its own lock, so none waits for
+another. Knows no HTTP, no robot and no page; `together` has the program.
 """
 
 from __future__ import annotations
@@ -176,7 +176,7 @@ class Groups:
         return self._add_group(name, token, new_token(), _tree_of(text))
 
     def _add_group(self, name: str, founder: str, key: str, tree: Tree | None) -> Group | None:
-        """Add a group with a program, or one that goes on from its journal."""
+        """Add a group with a program, or one that continues from its journal."""
         journal = Journal(self._folder / f"{key}.journal" if self._folder is not None else None)
         epoch = new_token()
         program = journal.begin(tree, epoch) if tree is not None else journal.resume(epoch)
@@ -235,7 +235,7 @@ class Groups:
     def answer(self, token: str, request: Json) -> Json:
         """Apply changes, and return the news; if the page `waits`, once there is some.
 
-        Raises BadRequest. To be called without any lock.
+        Raises BadRequest. Call this without any lock.
         """
         group = self.group_of(token)
         if group is None:

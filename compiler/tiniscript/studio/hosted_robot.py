@@ -29,7 +29,7 @@ VERB = "studio"  # the name that other commands show for the process that holds 
 
 
 class HostedRobot:
-    """Call from any thread. It ends by itself when the page has left, or the port is gone.
+    """Call from any thread. It ends by itself when the page has left, or the port is lost.
 
     `is_unconfirmed`: the robot has not confirmed the stop at the end of what the page has started.
     """
@@ -109,7 +109,7 @@ class HostedRobot:
                 self._part_from_robot(link)
                 self._end(self._leave_reason if self._is_leaving else "unheard")
                 self.is_holding_port = client.holds_for_others
-                with suppress(RobotError):  # the port is gone, and the page knows
+                with suppress(RobotError):  # the port is lost, and the page knows
                     client.hold_for_others(lambda: not self._is_letting_go)
         except ConnectionLost as connection_lost:
             error = client.robot_error_for_loss(connection_lost)

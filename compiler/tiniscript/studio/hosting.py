@@ -2,8 +2,8 @@
 
 A page is a random name that it has given itself; it drives one robot, and a port has one page. It
 counts its connections: whatever comes late from one before reaches nothing of the next one, and the
-same connect is done once. Of a pupil, whose name here is the class's own, `tab` is the name of the
-page.
+same connect is done once. For a pupil, whose name here is given by the class, `tab` is the name of
+the page.
 Knows no HTTP: `serving` lets only the page of this computer come here.
 """
 

@@ -35,7 +35,7 @@ def are_alike(one: str, other: str) -> bool:
 
 
 def free_name(wanted_name: str, taken_names: Iterable[str]) -> str:
-    """Return a name that looks like none of those that are taken: `Ana`, or else `Ana (2)`."""
+    """Return a name that looks different from all that are taken: `Ana`, or else `Ana (2)`."""
     looks = {look for taken_name in taken_names for look in _looks(taken_name)}
     name, k = wanted_name, 1
     while not looks.isdisjoint(_looks(name)):

@@ -101,7 +101,7 @@ def needed_kinds(number: int, language: str) -> list[str]:
 def new_pieces(number: int, language: str) -> list[str]:
     """Return the blocks that a lesson speaks of and no lesson before it.
 
-    Where it has none, those that the fewest lessons before it speak of: they are the newest.
+    If it has none, return those that the fewest earlier lessons mention: they are the newest.
     """
     earlier_counts = Counter(
         piece for earlier in range(1, number) for piece in _pieces_with_use(earlier, language)
@@ -223,7 +223,7 @@ class LessonCheck:
     def go(self, most_ms: int) -> dict[str, Any]:
         """Advance the robot's time by at most `most_ms`.
 
-        `verdict` is empty while it goes on. `seed` is that of the world where it is, or where the
+        `verdict` is empty until it ends. `seed` is that of the world where it is, or where the
         program failed: 0 for none. `run` is what to see of it then: in which world, and until when.
         """
         if self._marking is None:

@@ -1,9 +1,9 @@
 """Requests of the page to a real robot and to its keys, and the session with that robot.
 
 Its bytes come and go by what a browser can open.
-The page's main thread owns the port, and calls `go`. So a page whose main thread stands still sends
-nothing, and the robot's dead-man timer ends what runs; `go` stops it where the page was away for
-longer than HEARD_MS. Knows no browser and no clock.
+The page's main thread owns the port, and calls `go`. So a page whose main thread hangs sends
+nothing, and the robot's dead-man timer ends its run; `go` stops it if the page was away for longer
+than HEARD_MS. Knows no browser and no clock.
 """
 
 from __future__ import annotations

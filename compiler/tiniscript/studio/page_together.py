@@ -1,8 +1,8 @@
 """The shared program in a pupil's page: what the editor asks, as data for JSON.
 
-The editor may go on while this answers. So it says from which of the answers it goes on: the
-newest, or the one before, where what was typed meanwhile stood in the way. Runs in Pyodide, in a
-worker, and is fetched when it is first needed; knows no editor and no network.
+The editor may change while this answers. So it says on which answer its change is based: the
+newest, or the one before, if text typed meanwhile conflicted. Runs in Pyodide, in a worker, and is
+fetched when it is first needed; knows no editor and no network.
 """
 
 from __future__ import annotations

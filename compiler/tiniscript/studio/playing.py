@@ -168,7 +168,7 @@ class PlayedRun(Simulation):
         """Ignore keys, because only the recorded person presses them."""
 
     def push(self) -> None:
-        """Nor pushes a button."""
+        """It does not push a button either."""
 
     def set_breakpoints(self, breakpoints: object) -> None:
         """A recorded run is looked at on its time line."""
@@ -340,7 +340,7 @@ class PlayedRun(Simulation):
         )
 
     def _learn_readings(self, row: Row) -> None:
-        """The virtual sensors have the readings that the robot has told."""
+        """Give the virtual sensors the robot's reported readings."""
         kind, number, value = self._reading(row)
         if kind == UNREAD:
             self._incomplete_sensors.add(number)
@@ -385,7 +385,7 @@ class PlayedRun(Simulation):
     def _until_ms(self) -> int:
         """Return the time that the virtual robot runs to be compared with the whole recording.
 
-        By its button its first row is waited for, whose time the recording does not have.
+        If it was started by the button, wait for its first row, whose time is not in the recording.
         """
         recording = self.recording
         recorded_rows = [row for row in recording.rows if _is_program_event(row)]

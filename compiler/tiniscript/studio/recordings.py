@@ -1,7 +1,7 @@
 """The file of a run, `.tsr`: all that the virtual robot needs to do it again, and what happened.
 
-docs/develop/runs.md has the form. Who reads a file checks all of it: what comes from `read` can be
-played. Knows no clock and no page.
+docs/develop/runs.md has the form. `read` checks the whole file, so every result can be played.
+Knows no clock and no page.
 """
 
 from __future__ import annotations
@@ -148,7 +148,7 @@ class Rows:
 class ReadingRows:
     """The rows of a real robot's run for what it says about its readings.
 
-    `incomplete_names` are the sensors of which it could not tell all.
+    `incomplete_names` are the sensors whose readings it could not all report.
     """
 
     def __init__(self, kit: Kit) -> None:

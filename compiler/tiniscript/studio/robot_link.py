@@ -2,7 +2,7 @@
 
 The same code is in the page, over Web Serial and Web Bluetooth, and in `tsc studio`, over the ports
 of the computer; in both places it uses the session of `tiniscript.link`. So a request, a receipt
-and a refusal mean the same whichever way a robot is reached. `tsc studio` passes requests on and no
+and a refusal mean the same for every connection to a robot. `tsc studio` passes requests on and no
 bytes: other commands share its port meanwhile, and the keys of robots stay in their file.
 
 Knows no port, no browser and no clock.
@@ -95,7 +95,7 @@ class _Run(NamedTuple):
 
 class RobotLink:
     """A page's part in a connection: one thread uses it. `has_run`: a run that the page has started
-    may still go on."""
+    may still be running."""
 
     def __init__(self, connection: LinkConnection, language: str) -> None:
         self.language = language

@@ -1,11 +1,11 @@
 """Gives the built page to a browser of this computer, or to those of a class, and to no one else.
 
 Knows which requests it answers. All of the page is read before: an update of the package does not
-change a page that is open. What a page asks of robots goes to `hosting`, if it shows the token of
-this run: a page gets it for the code that is in the address which `tsc studio` opens, after a #,
-which no browser sends (`entrances`). With `--class` the address is one of the room's network, the
-token is the teacher's, and pupils have tokens of their own (`classroom`). What the page may do in a
-browser is its Content-Security-Policy. Knows no robots.
+change a page that is open. A page's robot requests go to `hosting`, if it shows the token of this
+run: a page gets it for the code that is in the address which `tsc studio` opens, after a #, which
+no browser sends (`entrances`). With `--class` the address is one of the room's network, the token
+is the teacher's, and pupils have tokens of their own (`classroom`). The Content-Security-Policy
+limits what the page may do in a browser. Knows no robots.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from tiniscript.studio import building
 from tiniscript.studio.entrances import Entrances
 from tiniscript.studio.robot_link import BadRequest, Json
 
-# Nothing is loaded from elsewhere or sent there. Python is WebAssembly, compiled here.
+# Nothing is loaded from other sites or sent there. Python is WebAssembly, compiled here.
 _DIRECTIVES = (
     "default-src 'none'",
     "script-src 'self' 'wasm-unsafe-eval'",
@@ -185,13 +185,13 @@ class _Client(NamedTuple):
 class Server(ThreadingHTTPServer):
     """A server of the page; `port` 0 is any that is free. Raises OSError.
 
-    `robots` answers what a page asks with the token of the run; without it there are none.
-    `host` is the one address at which it listens, `pupils` who else may ask there.
+    `robots` answers what a page asks with the token of the run; without it there are none. `host`
+    is the only address at which it listens, `pupils` the others who may send requests there.
     """
 
     daemon_threads = True
-    # On Windows two studios on one port would share it. Elsewhere the port would stay taken for a
-    # minute after a studio that ended before its page.
+    # On Windows two studios on one port would share it. On other systems, the port would stay in
+    # use for a minute after a studio that ended before its page.
     allow_reuse_address = sys.platform != "win32"
     request_queue_size = 128
 
@@ -261,7 +261,7 @@ class Server(ThreadingHTTPServer):
                 del self._connections[closed_connection]
             self._connections[request] = _Client(client_address[0], False)
         if closed_connection is not None:
-            with suppress(OSError):  # the client has gone
+            with suppress(OSError):  # the client has left
                 closed_connection.shutdown(socket.SHUT_RDWR)
         super().process_request(request, client_address)
 
@@ -285,7 +285,7 @@ class Server(ThreadingHTTPServer):
         super().shutdown_request(request)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """A client that has gone is no news."""
+        """Ignore a client that has left."""
 
 
 class _HeadTooLarge(Exception):

@@ -1,6 +1,6 @@
 """A program on the virtual robot, for the page: the robot's firmware, its world and the link.
 
-Time only goes on when it is asked to. Knows no page and no clock.
+Time advances only on request. Knows no page and no clock.
 """
 
 from __future__ import annotations
@@ -44,12 +44,12 @@ class Marks(NamedTuple):
 
 
 class Simulation:
-    """A robot that stands at the start of a world and has the program.
+    """A robot at the start of a world, with the program.
 
     The program is held in front of its breakpoints, and after a step in front of the next part of
-    its text. Time does not go on while it is held, so it does nothing else than without them. For
-    the same reason what somebody does waits for the next whole millisecond, and for the robot to
-    have confirmed the program.
+    its text. Time stops while it is held, so its behaviour does not change. For the same reason
+    what somebody does waits for the next whole millisecond, and for the robot to have confirmed the
+    program.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class Simulation:
     def go(self, duration_ms: int) -> None:
         """Advance time, unless the program pauses.
 
-        After a fault a little longer, until the robot has told where it was.
+        After a fault a little longer, until the robot has reported its place.
         """
         self._advance(duration_ms)
         if not self.robot.fault:
@@ -214,8 +214,8 @@ class Simulation:
         self.go(1)
 
     def press(self, keys: int, x: int, y: int) -> None:
-        """Hold these keys of a remote control and its pad so, until something else is said; who
-        says nothing for half a second of the robot's time holds nothing."""
+        """Hold these keys of a remote control and its pad in this position until the next call, at
+        most for half a second of the robot's time."""
         remote_state, now_ms = RemoteState(keys, x, y), self.robot.now_ms
         if remote_state == self._remote_state and (
             remote_state == NOTHING_PRESSED or now_ms - self._pressed_ms < REPEAT_GAP_MS

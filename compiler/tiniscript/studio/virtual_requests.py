@@ -52,9 +52,9 @@ def _begin(fields: Json, world: World, image: bytes, marks: Marks) -> Simulation
 def _power_on(fields: Json, data: bytes) -> Json:
     """Switch the virtual robot on in `world`: a shipped one's name, a form, or one of a lesson.
 
-    With `is_held` it stands in front of the program's first part. A world of a lesson with an
-    `until_ms` brings the run that was judged there, up to then. With a `pose` it begins there, if
-    it has room there, and not at the start.
+    With `is_held`, it halts before the program's first part. A world of a lesson with an `until_ms`
+    brings the run that was judged there, up to then. With a `pose`, it starts there if there is
+    room, instead of at the usual start.
     """
     global _simulation
     if _simulation is not None:

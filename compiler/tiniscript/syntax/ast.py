@@ -1,8 +1,8 @@
 """The abstract syntax tree (AST): only what was written, and where.
 
-Blocks are nested, at most as deep as the language allows. An expression is flat: its parts in
-the order in which a stack machine meets them, so that deep brackets cannot exhaust Python's
-stack. Between the two sides of an AND or OR stands AND_LEFT or OR_LEFT.
+Blocks are nested, at most as deep as the language allows. An expression is flat: its parts in the
+order in which a stack machine meets them, so that deep brackets cannot exhaust Python's stack.
+AND_LEFT or OR_LEFT is between the two sides of an AND or OR.
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
@@ -63,7 +63,7 @@ class Arm(NamedTuple):
 
 
 class If(NamedTuple):
-    """`has_else`: an ELSE stands in it, perhaps with nothing after."""
+    """`has_else`: it contains an ELSE, perhaps with nothing after it."""
 
     arms: tuple[Arm, ...]
     else_body: "tuple[Instruction, ...]"

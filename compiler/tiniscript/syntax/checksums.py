@@ -1,6 +1,6 @@
 """The checksums of lines: `~` and eight hexadecimal digits at the end of a line of text.
 
-Knows which bytes of a line a checksum covers, and where it may stand. Knows no token.
+It knows which bytes of a line a checksum covers, and where it may be. Knows no token.
 """
 
 from __future__ import annotations

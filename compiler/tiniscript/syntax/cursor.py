@@ -1,6 +1,6 @@
 """A place among the tokens of a program.
 
-Knows how to look around and how to go on. Knows no grammar and reports nothing.
+It knows how to look around and how to continue. Knows no grammar and reports nothing.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class Cursor:
         return k
 
     def skip_instruction(self) -> None:
-        """Go to where the instruction ends: at a separator that stands in no bracket."""
+        """Go to where the instruction ends: at a separator outside brackets."""
         depth = 0
         while (kind := self.tokens[self.i].kind) is not NEWLINE and kind is not END:
             depth += (kind == "(") - (kind == ")")

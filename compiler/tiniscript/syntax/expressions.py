@@ -202,7 +202,7 @@ class ExpressionParser:
     def report_needless_plus(self, token: Token, postfix: Postfix) -> bool:
         """A plus before a value says nothing; return whether it is one.
 
-        Not that of `X = +1`: `X += 1` may be meant.
+        `X = +1` is not reported: `X += 1` may be meant.
         """
         tokens, i = self.cursor.tokens, self.cursor.i
         if tokens[i - 1].kind == "=" and not (postfix.parts or postfix.pending_operators):

@@ -121,9 +121,9 @@ def _rows(pieces: list[Piece]) -> list[Row]:
 
 
 def is_one_line(pieces: list[Piece]) -> bool:
-    """Return whether the instructions go on one line: already there, or only one.
+    """Return whether the instructions belong on one line: already there, or only one.
 
-    A comment between SETUP and the first of them stands in the way.
+    A comment between SETUP and the first of them prevents this.
     """
     indexes = [k for k, piece in enumerate(pieces) if piece.is_instruction]
     if not indexes:

@@ -26,7 +26,8 @@ def numbered_names(text: str, stem: str) -> Iterator[str]:
 
 
 def free_word_name(text: str, word: str) -> str:
-    """Return a name for what was called `word`, a word of the language: F_1, or F_2 beside F_1."""
+    """Return a new name for something named `word`, a word of the language: F_1, or F_2 if F_1
+    exists."""
     numbered_name = other_name(word)
     is_free = numbered_name not in names_in(text)
     return (
@@ -35,5 +36,5 @@ def free_word_name(text: str, word: str) -> str:
 
 
 def free_number_name(text: str) -> str:
-    """Return a name for a variable that gets a number: N, or N_2 beside an N."""
+    """Return a name for a variable that gets a number: N, or N_2 if there is an N."""
     return "N" if "N" not in names_in(text) else next(numbered_names(text, "N"))

@@ -1,7 +1,7 @@
 """The lexer: text becomes tokens.
 
-Knows characters. Knows no word of the language and no grammar. What the language does not have is
-an odd token, which no rule of the grammar takes.
+Knows characters. Knows no word of the language and no grammar. Text outside the language becomes an
+odd token, which no rule of the grammar accepts.
 """
 
 from __future__ import annotations

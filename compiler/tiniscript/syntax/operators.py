@@ -12,7 +12,7 @@ from tiniscript.base.words import COMPARATORS
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.lexer import Token
 
-# From loosest to tightest. An open bracket holds back all that waits before it.
+# From lowest to highest precedence. An open bracket holds back all that waits before it.
 OPEN, OR, AND, NOT, COMPARISON, SUM, PRODUCT, MINUS = range(8)
 
 BINARY: Final = {

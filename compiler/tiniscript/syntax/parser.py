@@ -21,8 +21,8 @@
 Each rule is a method of its name: here, and from `arguments` on in `expressions`. In brackets an
 end of line is white space. Headers, arms and block ends are matched on a stack (`blocks`), so that
 no depth of input exhausts Python's. Does not know what a name stands for, how many arguments a
-command takes or which types fit: the checker does. Where a rule cannot go on it reports what it
-expected there; the next instruction is read then. What was meant is for `recovery`.
+command takes or which types fit: the checker does. If a rule cannot continue, it reports what it
+expected, and parsing resumes at the next instruction. `recovery` finds out what was meant.
 """
 
 from __future__ import annotations
@@ -176,7 +176,8 @@ class Parser:
         self.blocks.current_body.append(Break(word.span))
 
     def own_name(self, word: Token, following: Token) -> None:
-        """A word that may stand for a device or a DEF of the program, if no other follows it."""
+        """A word that may be the name of a device or a DEF of the program, if no other follows
+        it."""
         if following.kind == "(" or following.kind in INSTRUCTION_ENDS:
             return
         if word.text in self.variables and following.kind in SUMS:
@@ -379,12 +380,12 @@ class Parser:
         return arguments[0]
 
     def reject_units(self, arguments: Sequence[Argument]) -> None:
-        """CM and DEG stand after the way of a move alone."""
+        """CM and DEG are allowed only after the distance of a move."""
         for unit in (argument.unit for argument in arguments if argument.unit is not None):
             self.expressions.report_wrong_unit(unit.op, Span(unit.start, unit.end))
 
     def reject_units_in_call(self, arguments: Sequence[Argument], word: Token) -> None:
-        """The unit of a value of a DEF stands in its body."""
+        """The unit of a DEF's value belongs in its body."""
         texts = (self.cursor.source[argument.span] for argument in arguments)
         fix = f"{word.text}({', '.join(texts)})"
         for unit in (argument.unit for argument in arguments if argument.unit is not None):

@@ -1,9 +1,9 @@
 """The operations that turn a tree into the program of a new text.
 
-An id stays where a person would say "the same instruction". First the rows of both are laid beside
-each other in their order, whatever block they are in (so a LOOP typed around lines changes none of
-them); then what is left is looked for elsewhere (cut and paste), longest runs first; then the
-operations are made from the outside in. Knows no page.
+An id stays where a person would say "the same instruction". First, the rows of both are aligned in
+order, regardless of their blocks (so a LOOP typed around lines changes none of them); then the
+remaining rows are searched elsewhere (cut and paste), longest runs first; then the operations are
+created from the outside in. Knows no page.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ from tiniscript.together.tree import (
     first_word,
 )
 
-MOST_PAIRS = 40_000  # pairs of rows; of more, only equal rows are laid beside each other
+MOST_PAIRS = 40_000  # pairs of rows; above this, only equal rows are aligned
 _BLOCK_FAMILIES = {"LOOP": "round", "WHILE": "round", "TASK": "task", "WHEN": "task"}
 _WORDS = re.compile(r"\w+|[^\w\s]")
-# How alike two rows are, from 0, where they cannot be one instruction. Equal rows go first.
+# The similarity of two rows; 0 if they cannot be the same instruction. Equal rows go first.
 EQUAL, OTHER_NOTE, OTHER_START, SAME_VALUES, OTHER_BLOCK, FEW_WORDS, NO_WORDS = (
     3.0, 2.95, 0.9, 0.6, 0.3, 0.35, 0.2)  # fmt: skip
 
@@ -149,7 +149,7 @@ def _are_equal(node: Node, other: Node) -> bool:
 def _align(
     old_tree: Tree, new_tree: Tree, old_ids: list[str], new_ids: list[str]
 ) -> list[tuple[str, str]]:
-    """Return pairs in the order of both, which together are as alike as possible."""
+    """Return pairs in the order of both, with the greatest total similarity."""
     if len(old_ids) * len(new_ids) > MOST_PAIRS:
         rows = [old_tree[x].text for x in old_ids], [new_tree[y].text for y in new_ids]
         blocks = SequenceMatcher(None, *rows, autojunk=False).get_matching_blocks()
@@ -338,7 +338,7 @@ class _Script:
                 self._arrange(child)
 
     def _wrap_or_insert(self, new_id: str, place: Place, wanted_ids: list[str]) -> None:
-        """Put a new block around what there was of it here; else put it in, empty."""
+        """Put a new block around its old content here, or insert it empty."""
         siblings = self._work[place.container].children
         inner_ids = {
             self._work_ids[child]

@@ -53,7 +53,7 @@ class Refused(Exception):
 
 
 class Place(NamedTuple):
-    """Behind which sibling, `previous`; where that has gone, what counts is where it was."""
+    """After which sibling, `previous`; if it was removed, its former place counts."""
 
     container: str
     previous: str
@@ -326,7 +326,7 @@ def _checked_marks(data: object) -> tuple[tuple[str, str], ...]:
 
 
 def _checked_value(data: object, name: str) -> Any:
-    """Return a field; `APART` is a bool. That a text is one line is seen when it is read again."""
+    """Return a field; `APART` is a bool. Reading it again checks that a text is one line."""
     value = _field(data, name, name != APART and "")
     if name == APART:
         if type(value) is not bool:

@@ -1,8 +1,8 @@
 """The journal of a shared program: a file with a snapshot, and below it all that was decided since.
 
-A row is in the file, for power cuts too, before anybody hears of it. Where the disk takes none, the
-lesson goes on, and the journal begins anew as soon as there is room. Of a row that was cut off by a
-crash nobody has heard: it is taken out.
+A row is in the file, for power cuts too, before anybody hears of it. If the disk is full, the
+lesson continues, and the journal starts again as soon as there is room. A row cut off by a crash
+was never announced, so it is removed.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ class Journal:
         return program
 
     def resume(self, epoch: str) -> SharedProgram | None:
-        """Return the program that the file has, and go on with it; None if it has none. Where a
-        crash or a full disk has kept the file from beginning anew, the one before has it."""
+        """Return the program that the file has, and go on with it; None if it has none. If a crash
+        or a full disk prevented a new file, the previous one has it."""
         for path in (self.path, self._old_path) if self.path is not None else ():
             try:
                 data = read_limited(path, 2 * MOST_BYTES)
@@ -83,7 +83,7 @@ class Journal:
         return self.path.with_name(self.path.name + OLD_ENDING)
 
     def _begin(self, program: SharedProgram) -> None:
-        """Write the current program to a new file; the old one is kept beside it."""
+        """Write the current program to a new file; the old one is kept next to it."""
         if self.path is None:
             return
         self.close()

@@ -1,8 +1,8 @@
 """The effect of an operation on a tree in which its nodes may have moved or gone.
 
 A place whose neighbour has gone is where that stood. A delete lists all that it deletes, so it
-deletes nothing that its author has not seen. What is inserted and is still there is moved, never
-doubled. Of two changes of one field the later one wins whole.
+deletes nothing that its author has not seen. Inserting a node that still exists moves it and never
+duplicates it. Of two changes to one field, the later one wins completely.
 """
 
 from __future__ import annotations
@@ -200,7 +200,7 @@ def _is_sound(subtree: Subtree) -> bool:
 
 def _insert_again(tree: Tree, operation: Insert, uid: str) -> _Effect:
     """Some of it is there: its delete was refused or taken back, or somebody has pasted it, too.
-    That is moved here, with all that is in it."""
+    Such a node is moved here, with its content."""
     operations: list[Operation] = []
     inverse: list[Operation] = []
     place = operation.place

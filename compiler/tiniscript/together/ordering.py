@@ -22,7 +22,7 @@ from tiniscript.together.operations import apply_change
 from tiniscript.together.tree import Json, Tree
 
 MOST_KEPT_CHANGES = 2000  # changes kept in memory, for returning pages
-MOST_REFUSED = 100  # most refusals that a page is told
+MOST_REFUSED = 100  # most refusals that a page is sent
 MOST_PAGES = 200  # most pages whose last change is remembered
 
 
@@ -121,12 +121,13 @@ class SharedProgram:
     # -- what is kept -----------------------------------------------------------------------------
 
     def snapshot(self) -> Json:
-        """Return all that one goes on with; the history is not in it."""
+        """Return everything needed to continue, without the history."""
         return {"epoch": self.epoch, "n": self.number, "whole": self.tree.snapshot(),
                 "counts": self.last_count_by_page}  # fmt: skip
 
     def replay(self, rows: list[Json]) -> None:
-        """Decide again as it was decided before. What does not fit is left out, with all after."""
+        """Decide again as it was decided before. Leave out the first operation that does not fit,
+        and all after it."""
         for row in rows:
             if "refused" in row and is_uid(row.get("uid")):
                 self._note_refused(row["uid"], str(row["refused"]))

@@ -54,8 +54,8 @@ MOST_STEPS = 1000  # most steps from a removed node to an existing one
 class Draft:
     """`rows` that replace the lines of `covered_keys`, or follow that of `key_above`.
 
-    `stays`: it waits until its pupil goes on with it: somebody has deleted the instruction, or the
-    page was loaded again.
+    `stays`: it waits until its pupil continues it: another pupil has deleted the instruction, or
+    the page was reloaded.
     """
 
     rows: list[str]
@@ -155,7 +155,7 @@ class Page:
         copied_page._cut_ids_by_text = {text: ids[:] for text, ids in self._cut_ids_by_text.items()}
         return copied_page
 
-    # -- the storage of the browser: a reload goes on from it -------------------------------------
+    # -- the storage of the browser: a reload continues from it ------------------------------------
 
     def store_data(self) -> Json:
         return {
@@ -278,7 +278,7 @@ class Page:
     # -- typing -----------------------------------------------------------------------------------
 
     def type(self, lines: list[str], caret: int, is_line_edited: bool = False) -> None:
-        """The editor has this text now. Nothing is made of it before `flush`."""
+        """The editor has this text now. Nothing happens with it before `flush`."""
         self.lines, self.is_line_edited = lines, is_line_edited
         self.caret = min(caret, max(0, len(lines) - 1))
 
@@ -510,7 +510,7 @@ class Page:
     # -- what arrives -----------------------------------------------------------------------------
 
     def receive(self, news: Json) -> None:
-        """Take what the computer tells. What was typed meanwhile is made a change or a draft first.
+        """Take what the computer tells. Text typed meanwhile first becomes a change or a draft.
 
         Raises Refused, KeyError or TypeError if it is no news.
         """

@@ -23,7 +23,7 @@ ROOT, START = "root", "start"
 ARMS = frozenset(("ELSE", "ELSEIF"))
 INSTRUCTION, BLOCK, ARM, NOTE = "do", "block", "arm", "note"
 TEXT, COMMENT, APART, END = FIELDS = ("text", "note", "apart", "end")
-PLACE = "place"  # kind of mark beside those of fields
+PLACE = "place"  # kind of mark besides those of fields
 MOST_FORMER_PLACES = 2000  # ids with known former places; the oldest are forgotten
 
 

@@ -49,5 +49,5 @@ class Announcement:
             raise
 
     def close(self) -> None:
-        """Say that the robot has gone."""
+        """Announce that the robot is gone."""
         self._network.close()

@@ -33,7 +33,7 @@ TICK_MS = 1.0
 CORNER_INTERVAL_MS = 20.0  # between two corners of the way
 MOST_SWEEPS = 4  # rounds over all contacts, until no bodies come nearer to each other
 GRIP = 0.7  # share of a push that acts as friction between touching bodies
-SLIP_RATIO = 0.5  # motion from a sideways push, as a share of that from behind
+SLIP_RATIO = 0.5  # motion from a push at the side, as a share of that from a push at the back
 DECISION_INTERVAL_MS = 10.0  # time between two decisions of a rival
 # Range of a rival's sight, and its angle to each side.
 SIGHT_CM, SIGHT_RADIANS = 100.0, math.radians(25)
@@ -197,7 +197,7 @@ class Opponent(Mover):
 
 
 class Bout(Driving):
-    """A robot and its rivals. What it touches, and its `bumps`, is what stands still."""
+    """A robot and its rivals. Contacts, and its `bumps`, are those with things that do not move."""
 
     def __init__(self, body: Body, world: World) -> None:
         self._rings = world.rings
@@ -307,7 +307,7 @@ class Bout(Driving):
     def _part_all(self, old_poses: Sequence[Pose]) -> None:
         """Move bodies apart that have come into each other, or into an obstacle.
 
-        Where that cannot be done they stay where they were.
+        If that is impossible, they stay where they were.
         """
         for _ in range(MOST_PUSHES):
             if self._is_parted():

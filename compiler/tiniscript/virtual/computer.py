@@ -26,8 +26,8 @@ class Computer:
     def wait(self, milliseconds: int) -> None:
         """Advance the robot's time.
 
-        A millisecond that a held program has cut goes on where it was, once the program does:
-        the session hears and says as much as if nothing had been held.
+        A millisecond that a held program interrupted continues once the program does: the session
+        receives and sends exactly as without the hold.
         """
         for _ in range(milliseconds):
             firmware = self.robot.firmware

@@ -1,4 +1,4 @@
-"""Which virtual robots of this user are running: a small file for each, in the user's cache.
+"""Lists the running virtual robots of this user: a small file for each, in the user's cache.
 
 The file of a robot that has crashed is ignored, because nothing listens on its port.
 """

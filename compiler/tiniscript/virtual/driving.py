@@ -1,8 +1,8 @@
 """The path of a robot among obstacles: it turns along what it touches, and passes through nothing.
 
-What it touches pushes against the body, and so slows its motors down, one more than the other.
-Knows the geometry of bodies and walls. Knows no clock, no sensors and no friction. The results
-depend on when the motors were set, not on how many times they are queried.
+An obstacle pushes against the body and so slows its motors down, one more than the other. Knows the
+geometry of bodies and walls. Knows no clock, no sensors and no friction. The results depend on when
+the motors were set, not on how many times they are queried.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ class Driving:
         self._near_obstacles: Sequence[Segment] = obstacles  # everything that may come near
         self._near_pose: Pose | None = None  # last pose near an obstacle of a robot that is present
         self._kept_ms = 0.0  # time of that pose
-        self._free_cm = 0.0  # no point of the body touches anything before it has gone so far
+        self._free_cm = 0.0  # no point of the body touches anything before this distance
         self._is_touching = self.touch_point(start) is not None
 
     @property
@@ -240,8 +240,8 @@ class Driving:
     def _pushed_wheel_speeds(self, pose: Pose) -> tuple[float, float]:
         """Return the wheel speeds in percent while an obstacle pushes against the body.
 
-        It pushes as much as keeps the body out. Each motor is slower by what pushes against it,
-        and no wheel slips aside: so the side that has touched something stays behind.
+        It pushes as much as keeps the body out. Each motor is slowed by the force against it, and
+        no wheel slips sideways, so the side that has touched something lags.
         """
         left, right = self.left, self.right
         contact = self._contact(pose)

@@ -68,7 +68,7 @@ def crosses(segment: Segment, other: Segment) -> bool:
 def gap_between(segment: Segment, other: Segment) -> tuple[float, Point, Point]:
     """Return the distance between two segments, and their nearest points.
 
-    Where they cross, the distance is 0 and the points are any.
+    If they cross, the distance is 0 and the points are arbitrary.
     """
     if crosses(segment, other):
         return 0.0, segment.a, segment.a

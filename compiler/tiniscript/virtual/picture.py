@@ -1,4 +1,4 @@
-"""A picture of a world and of the way that a robot has gone in it, as a PNG.
+"""A picture of a world and of a robot's path in it, as a PNG.
 
 Knows Pillow and colours. Importing this fails where Pillow is not installed.
 """

@@ -31,7 +31,7 @@ def sniff_robot_client(data: bytes) -> bool | None:
     a line of text has ended, and `is_at_stop` finds the typed stop that silence ends.
     """
     if data[:2] == b"\0\0":
-        return True  # the stop sequence: zeros alone do nothing else
+        return True  # the stop sequence: zeros alone have no other effect
     if data[:1] < b" ":
         if 0 in data[1:3] or data[:2] in (b"\0\1", b"\x16\x03"):
             return False  # STUN, which may begin with its length, and TLS

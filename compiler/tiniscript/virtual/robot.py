@@ -70,7 +70,7 @@ FLASH_US = 10  # an ESP32's NVS writes a whole program at once
 
 
 class VirtualRobot:
-    """A robot that is switched on, and stands at the start of its world.
+    """A robot that is switched on, at the start of its world.
 
     Raises WorldRefused if it does not fit there, and NoWebAssembly.
     """
@@ -129,7 +129,7 @@ class VirtualRobot:
     def step(self, now_ms: int, data: bytes = b"") -> bytes:
         """Go on up to a time; bytes arrive from now on. Return what the robot sends meanwhile.
 
-        Where the program is held, time goes on no further.
+        Time stops where the program is held.
         """
         sent_bytes = self._firmware.run((now_ms - self._power_on_ms) * 1000, data)
         self.now_ms = now_ms
@@ -166,7 +166,7 @@ class VirtualRobot:
         self._event_count_at_rest = len(self._traced.events)
 
     def switch_off(self) -> None:
-        """Switch it off. Its clock must not go on until it is switched on again."""
+        """Switch it off. Its clock must not advance until it is switched on again."""
         self._halt("OFF")
         self.actuators.clear()
 
@@ -334,7 +334,7 @@ class VirtualRobot:
 
     def _halt(self, event_name: str) -> None:
         """Its motors have no power from now on, and a program that runs has ended, as is
-        `event_name`. Its time need not go on."""
+        `event_name`. Its time need not advance."""
         if self.wheels:
             self.wheels.go_on(self.now_ms)
             self.wheels.brake()

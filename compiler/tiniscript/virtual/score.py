@@ -18,7 +18,7 @@ LOOK_INTERVAL_MS = 5  # between two looks
 class Score:
     """The results of a robot with the flags and rivals since the start of its program.
 
-    Where it stands once the program has ended counts, too.
+    Its position after the end of the program counts, too.
     """
 
     def __init__(self, world: World) -> None:

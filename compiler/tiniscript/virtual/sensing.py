@@ -1,8 +1,7 @@
 """The readings of a robot's sensors, calculated from its pose in a world.
 
 Knows how sensors measure light, distance, a line, a white edge and a touch. Readings are
-thousandths, as in the machine. A sensor without a place in the robot's body gives the readings
-that it is told.
+thousandths, as in the machine. A sensor without a place in the robot's body returns given readings.
 """
 
 from __future__ import annotations

@@ -65,7 +65,7 @@ HOLD_MS = 2300  # duration of a long press, which confirms a claim
 class Simulator:
     """`hurry` is how many times as fast a running program goes; 0 is as fast as possible.
 
-    Of 1000 bytes of the line, about `faults` meet a fault, both ways.
+    About `faults` of 1000 bytes are damaged, in both directions.
     """
 
     def __init__(
@@ -239,7 +239,7 @@ class SimulatorThread:
         self._is_pushed = True
 
     def on_turn(self) -> None:
-        """The thread calls this when the robot has gone on, and when it is switched off."""
+        """The thread calls this when the robot's time has advanced, and when it is switched off."""
 
     def close(self) -> None:
         """Switch it off. Raises what the thread has raised."""

@@ -188,7 +188,7 @@ class Transports:
                 peer = self._server.accept()[0]
             except BlockingIOError:
                 return
-            except ConnectionError:  # the client has gone
+            except ConnectionError:  # the client has left
                 continue
             except OSError:  # this process has too many files open
                 self._drop_oldest()
@@ -227,7 +227,7 @@ class _Caller:
 
     def __init__(self, peer: socket.socket, arrival_s: float) -> None:
         peer.setblocking(False)
-        with contextlib.suppress(OSError):  # the client has gone
+        with contextlib.suppress(OSError):  # the client has left
             peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.peer = peer
         self.arrival_s = arrival_s
@@ -243,7 +243,7 @@ class _Caller:
         return self.may_enter and not self.is_refused
 
     def check_left(self, now_s: float) -> bool:
-        """Hear it; return whether it is gone, or has to go."""
+        """Read from it; return whether it has left, or must be disconnected."""
         try:
             if self.may_enter and not self.is_refused:
                 is_over = not self.peer.recv(1, socket.MSG_PEEK)
@@ -283,7 +283,7 @@ class _Caller:
             return
         self.is_refused = True
         self._limit_s = now_s + FAREWELL_S
-        with contextlib.suppress(OSError):  # the client has gone
+        with contextlib.suppress(OSError):  # the client has left
             self.peer.send(PORT_TAKEN)
             self.peer.shutdown(socket.SHUT_WR)
 

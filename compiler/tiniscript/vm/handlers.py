@@ -2,7 +2,7 @@
 
 A handler is called once for each instruction of a program, with the machine, the offset after the
 instruction and the operands; it returns the step that runs it, with these values bound. So the
-running program looks nothing up. Knows no instruction.
+running program needs no lookups. Knows no instruction.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ HANDLERS: dict[str, Handler] = {}
 
 
 def mark_stop(pc: int) -> int:
-    """Mark an offset: the machine stops for now and goes on at `pc`. Applied twice it is undone."""
+    """Mark an offset: the machine stops for now and continues at `pc`. Applied twice it is
+    undone."""
     return ~pc
 
 

@@ -1,7 +1,7 @@
 """The machine, in Python.
 
-Runs verified code. Time comes in as `now_ms`, which does not wrap around here; the world is behind
-`state.Robot`. `tick` does a little and returns: nothing here waits. In C++ it is
+Runs verified code. Time comes in as `now_ms`, which does not wrap around here; the world is
+accessed through `state.Robot`. `tick` does a little and returns: nothing here waits. In C++ it is
 `vm_arduino/src/vm/machine.h`, whose `tick` counts jumps back and calls instead of instructions;
 `tests/project/test_twins.py` lists what has another name there.
 
@@ -33,7 +33,7 @@ assert not _ops_without_handler, f"no handler for {_ops_without_handler}"
 def bind_steps(machine: Drive, code: bytes) -> list[Step]:
     """Return the step of the instruction at each offset, for this machine. Jumps are offsets.
 
-    After the code stands END.
+    END follows the code.
     """
     steps = [HANDLERS["END"](machine, 0)] * (len(code) + 1)
     offset = 0

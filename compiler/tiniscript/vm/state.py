@@ -78,7 +78,7 @@ class Task:
         self.wait = NOTHING
         self.wake_ms = now_ms
         # the move that an UNTIL watches
-        self.powers: Powers | None = None  # None: a wait, the motors stay as they are
+        self.powers: Powers | None = None  # None: a wait; the motors keep their state
         self.move_ms = 0  # remaining time of the move by the clock, or FOREVER
         self.check_pc = 0  # start of the check
         self.is_watching = False  # whether the watch has begun
@@ -104,14 +104,14 @@ class Drive:
         return self.task.wake_ms
 
     def motors(self, left: int, right: int) -> None:
-        """Set the motors, and go on at once."""
+        """Set the motors, and continue at once."""
         self.robot.motors(left, right)
 
     def stop_motors(self) -> None:
         self.robot.motors(0, 0)
 
     def drive(self, move_ms: int, powers: Powers, next_pc: int) -> int:
-        """Begin a move, and return where the program goes on, like a step."""
+        """Begin a move, and return where the program continues, like a step."""
         self.robot.motors(*powers)
         return self.wait(move_ms, MOVE, next_pc)
 
@@ -143,7 +143,7 @@ class Drive:
     def wait(self, duration_ms: int, wait_kind: str, next_pc: int) -> int:
         """Begin a wait at the end of the previous one, or now if that is too long ago.
 
-        Like a step, this and `until` return where the program goes on.
+        Like a step, this and `until` return where the program continues.
         """
         task = self.task
         self.begin()
@@ -159,7 +159,7 @@ class Drive:
             self.task.clock_ms = self.now_ms
 
     def until(self, is_met: bool, next_pc: int) -> int:
-        """End the watched move or go on with it, and check again."""
+        """End the watched move or continue it, and check again."""
         task = self.task
         if is_met:
             if task.is_watching:

@@ -1,8 +1,8 @@
 """The machine with a scheduler, for programs with TASK and WHEN.
 
-Knows when each task has its turn, and which one has the motors. What an instruction does is where
-it is for all programs: here is what it does in a task. `bytecode_spec.md` has the same in words;
-`vm_arduino/src/vm/scheduler.h` and `drive.h` have the same names, but for those that
+Knows when each task has its turn, and which one has the motors. Instructions are implemented in the
+same place for all programs; this module has their effects in a task. `bytecode_spec.md` has the
+same in words; `vm_arduino/src/vm/scheduler.h` and `drive.h` have the same names, but for those that
 `tests/project/test_twins.py` lists.
 """
 
@@ -36,8 +36,8 @@ MOTORS_OFF = 0, 0
 class TaskRecord:
     """The state of one task.
 
-    A move of its own **drives**, or it is **blocked**: it waits for the motors, or stands still
-    since a higher task has taken them.
+    A move of its own **drives**, or it is **blocked**: it waits for the motors, or does not move
+    because a higher task has taken them.
     """
 
     __slots__ = ("calls", "check_pc", "clock_ms", "counters", "drives", "ends_at_clock",
@@ -57,7 +57,7 @@ class TaskRecord:
         self.has_waited = False  # whether it has waited since its loop last restarted
         self.unsent_value: tuple[int, bool] | None = None  # the value of a SHOW that found no room
         # The task's move, or the wait that an UNTIL watches.
-        self.powers: Powers | None = None  # None: a wait, the motors stay as they are
+        self.powers: Powers | None = None  # None: a wait; the motors keep their state
         self.move_ms = 0  # remaining time of the move by its clock, or FOREVER
         self.has_begun = True  # whether it drives, waits or is over
         self.check_pc = 0  # start of its UNTIL's check, or of the code after it
@@ -76,7 +76,7 @@ class TaskRecord:
         return self.is_moving or self.has_own_powers or self.keeps_motors
 
     def leave_move(self) -> None:
-        """Its move is over, and so is its M. It goes on after the move."""
+        """Its move is over, and so is its M. It continues after the move."""
         self.is_moving = self.is_blocked = self.drives = self.ends_at_clock = False
         self.forget_set()
         self.pc = self.pc_after_move
@@ -291,7 +291,7 @@ class TaskMachine(Machine):
                 task.clock_ms = self.now_ms
             if task.drives:
                 self._end_move()
-            elif task.is_moving:  # the task waited for the motors, or stood still
+            elif task.is_moving:  # the task waited for the motors, or did not move
                 task.leave_move()
             task.has_begun = True
             return next_pc
@@ -319,7 +319,7 @@ class TaskMachine(Machine):
         self.begin()
 
     def _drive_on(self, pc: int, due_ms: int, is_last: bool) -> int:
-        """Wait so long, and go on at `pc`; `is_last`: that is the end of the move."""
+        """Wait this long, and continue at `pc`; `is_last`: that is the end of the move."""
         task = self.current_task
         task.ends_at_clock = is_last and task.drives
         if due_ms == 0:

@@ -29,7 +29,7 @@ _REFUSAL_NAMES = {number: name for name, (number, _) in REFUSALS.items()}
 _HALF_CLOCK_MS = CLOCK_MS // 2
 _MOST_STEPS = 65_535  # instructions, the most of one tick
 
-# Where numbers are in `Exchange` of `main.cpp`
+# Positions of numbers in `Exchange` of `main.cpp`
 _NOW_MS, _LEFT, _WAKE_MS, _STATUS, _FIRST, _SECOND, _ANSWER, _IS_ANSWERED = range(8)
 _NUMBERS = 8
 

@@ -81,7 +81,7 @@ def _bound_function(store: Store, function: Func) -> Callable[..., Any]:
     """Return a function of a module, of whole numbers, to call without its store.
 
     `wasmtime` looks at the types of all numbers at each call, which takes ten times as long as the
-    call itself. Where it is built otherwise inside, it is called its way.
+    call itself. If its internals differ, it is called in its own way.
     """
     try:
         from wasmtime import _ffi as ffi

@@ -3,7 +3,8 @@
     python install.py [FOLDER]
 
 makes a virtual environment in FOLDER (TiniScript in the home folder if none is given), where `tsc`
-then is, and copies pages and examples into it. Asks for no administrator and writes nowhere else.
+then is, and copies pages and examples into it. It asks for no administrator and writes nowhere
+else.
 """
 
 from __future__ import annotations

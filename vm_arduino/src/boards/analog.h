@@ -15,12 +15,12 @@ void analog_begin();
 // Otherwise starts the measurement, unless one is under way, and returns false.
 bool analog_read(uint8_t channel, int32_t* value);
 
-// Discards what has been measured, and the measurement that is under way.
+// Discards the results so far, and the measurement under way.
 void analog_forget();
 
 // The same for the supply: an AVR measures its voltage against the chip's band gap. This takes some
 // 3 ms, and channels wait meanwhile. Call it in every turn of the main loop: `analog_tick`, called
-// once a millisecond, gives up a measurement that nobody asked for, and forgets what is old.
+// once a millisecond, drops a measurement that is not requested, and forgets old values.
 Supply analog_supply();
 void analog_tick();
 

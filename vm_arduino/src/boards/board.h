@@ -18,7 +18,7 @@ uint32_t board_now_ms();
 // Whether the clock has advanced since the last call, or the button has moved since it was read.
 bool board_has_news();
 
-// Does the work that is due; call it where there is news: about once a millisecond.
+// Does the work that is due; call it after an event: about once a millisecond.
 void board_tick(uint32_t now_ms);
 
 Press board_button(uint32_t now_ms);
@@ -27,7 +27,7 @@ Press board_button(uint32_t now_ms);
 // disconnected. Call it at least every 10 ms. An undriven pin stays high.
 bool board_has_disconnected();
 
-// What the firmware begins with.
+// The data with which the firmware begins.
 BootInfo board_boot_info();
 
 }  // namespace tiniscript

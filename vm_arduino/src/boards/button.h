@@ -18,8 +18,8 @@ enum class Press : uint8_t {
 // Whether the button has changed since the last call.
 bool button_has_moved(bool is_down);
 
-// What has happened since the last call. A button that is down after a reset is reported as down,
-// not as pressed.
+// The events since the last call. A button that is down after a reset is reported as down, not as
+// pressed.
 Press button_read(bool is_down, uint32_t now_ms);
 
 }  // namespace tiniscript

@@ -25,20 +25,20 @@ constexpr bool kHasTwo = kDiscs.has_two;
 constexpr uint16_t kGlitchUs = 300;   // no wheel is so fast that two edges are nearer
 constexpr uint16_t kOldUs = 30000;    // so that the time since an edge does not wrap around
 
-// What the interrupt of a disc notes. Two changes that are nearer than kGlitchUs were a glitch, and
-// neither counts. The interrupt is then off until the next tick: whatever a line does, the chip has
-// time for the rest.
+// The data that the interrupt of a disc records. Two changes that are closer than kGlitchUs were a
+// glitch, and neither counts. The interrupt is then off until the next tick: whatever the line
+// does, the chip has time for the rest.
 struct Counter {
   uint16_t edges;
   uint16_t edge_us;  // when the last change came
-  int8_t step;       // what it counted
+  int8_t step;       // its count
   bool is_high;
   bool is_old;       // it was long ago, or a glitch
 };
 
 volatile Counter counters[2];
 
-// Returns whether it was a glitch. Only while the interrupt is off.
+// Returns whether it was a glitch. Call this only while the interrupt is off.
 tini_always_inline bool on_change(volatile Counter* it, Disc disc) {
   const bool is_now = is_high(disc.pin);
   cli();
@@ -81,7 +81,7 @@ tini_always_inline void interrupt(Disc disc, void (*function)()) {
                [bit] "I"(__builtin_ctz(disc.interrupt)), [function] "i"(function));
 }
 
-// Turns it on again, and sees what has changed while it was off.
+// Turns it on again, and notices the changes since it was off.
 tini_always_inline void tick(volatile Counter* it, Disc disc) {
   const bool is_on = (register8(kExternal) & disc.interrupt) != 0;
   if (is_on && is_high(disc.pin) == it->is_high) return;

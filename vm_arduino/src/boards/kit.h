@@ -1,4 +1,4 @@
-// Selects the robot: kits/own.h if that file exists, else the TiniBot of the chip. `pio run -e
+// Selects the robot: kits/own.h if that file exists, otherwise the TiniBot of the chip. `pio run -e
 // nano_liner` selects another one; in the Arduino IDE, write a line here such as #define
 // tiniscript_liner
 

@@ -30,7 +30,7 @@ uint8_t size_of(int16_t level) {
 
 #ifdef __AVR__
 // Pulls the motor pins low before memory is set up. It is naked because there is no stack frame
-// yet; `main` follows it in flash, so nothing calls it.
+// yet; `main` follows it in flash, so it is never called.
 extern "C" void tiniscript_motors_low() __attribute__((naked, used, section(".init3")));
 void tiniscript_motors_low() { begin_motors(); }
 #else

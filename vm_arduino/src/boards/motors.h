@@ -24,7 +24,7 @@ struct TwoWire {
   Pwm backward;
 };
 
-// The motors of a side behind a shield with a shift register: their PWM pins, and the bits of the
+// The motors of a side on a shield with a shift register: their PWM pins, and the bits of the
 // register that turn them forward and backward. The second PWM pin may be missing.
 struct ShieldMotors {
   Pwm pwm;

@@ -1,4 +1,4 @@
-// Motors behind an L298N, an L293D or a TB6612. Off: no PWM, both direction pins low.
+// Motors driven by an L298N, an L293D or a TB6612. Off: no PWM, both direction pins low.
 //
 // A motor without a pin for backward has a board that makes it of the one for forward.
 

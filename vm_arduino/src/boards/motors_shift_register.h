@@ -1,4 +1,4 @@
-// Motors behind L293Ds whose directions are in a 74HC595, as on the shield HW-130. Off: no PWM.
+// Motors driven by L293Ds whose directions are in a 74HC595, as on the shield HW-130. Off: no PWM.
 //
 // A stop turns only the PWM off, so it is as quick as with other drivers; the directions stay.
 
@@ -10,7 +10,7 @@ namespace tiniscript {
 
 namespace {
 
-uint8_t directions;  // what the register has; 0 until a motor has been turned on
+uint8_t directions;  // content of the register; 0 until a motor has been turned on
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Motors behind a driver with two inputs each, such as a DRV8833 or an L9110. Off: both low.
+// Motors driven by a chip with two inputs for each, such as a DRV8833 or an L9110. Off: both low.
 
 #pragma once
 

@@ -25,7 +25,7 @@ inline void servo_tick(uint32_t) {}
 void servo_tick(uint32_t now_ms);
 #endif
 
-// Whether a servo gets pulses without end.
+// Whether a servo gets pulses endlessly.
 bool servo_is_held(uint8_t number);
 
 }  // namespace tiniscript

@@ -1,4 +1,4 @@
-// A robot without a buzzer: a sound takes its time, and nothing is heard.
+// A robot without a buzzer: a sound takes its time, but is silent.
 
 #include "kit.h"
 #include "sound.h"

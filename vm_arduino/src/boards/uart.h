@@ -17,7 +17,7 @@ void uart_begin(uint32_t baud);
 // Checks the line; call it once a millisecond.
 void uart_tick();
 
-// Starts to send what the firmware has to send, unless that is under way.
+// Starts to send the firmware's bytes, unless that is under way.
 void uart_send();
 
 LineErrors uart_errors();

@@ -32,7 +32,7 @@ constexpr bool kTrustsSamples = false;
 
 enum class Ping : uint8_t { kNone, kTriggered, kListening };
 
-// Lengths of echoes; kLimitUs: it heard none; or kNothing.
+// Lengths of echoes; kLimitUs: there was no echo; or kNothing.
 struct Reading {
   uint16_t echo_us;    // the value
   uint16_t sample_us;  // a sample that is not yet confirmed
@@ -49,7 +49,7 @@ enum class EchoState : uint8_t {
 
 Flag<Bit::kSpaced> is_spaced;  // kSpacingUs have passed since `ping_us`
 
-// Everything else lies together, as `near` makes access short.
+// The rest lies together, as `near` makes access short.
 struct Sonar {
   volatile EchoState heard;
   volatile uint16_t rose_us;
@@ -66,7 +66,7 @@ struct Sonar {
 
 Sonar sonar;
 
-// Where there is only one sensor, the compiler knows.
+// With only one sensor, the compiler knows which one.
 tini_always_inline uint8_t asked() { return kUltrasonics == 1 ? 0 : sonar.last_asked; }
 
 tini_always_inline uint16_t elapsed_us(uint16_t now_us, uint16_t then_us) {
@@ -112,8 +112,9 @@ tini_always_inline bool is_far(uint16_t more, uint16_t value) {
   return more > kNearUs && static_cast<uint16_t>(5 * more) > value;
 }
 
-// One wrong sample changes nothing: one that is far from the value counts only with a second, and
-// the value is the middle one of the three. So is the first value of a run, of three samples.
+// One wrong sample has no effect: one that is far from the value counts only with a second, and the
+// value is the middle one of the three. The same holds for the first value of a run, of three
+// samples.
 void take(Reading& mine, uint16_t us) {
   if (kTrustsSamples) {
     mine.echo_us = us;
@@ -213,7 +214,7 @@ bool measure(uint8_t number) {
   if (it->ping != Ping::kNone) {
     whose = asked();
     if (!end_ping(&us)) return whose != number && mine.age <= kFresh;
-    is_awaited = !is_spaced && whose == number;  // nobody has waited for an echo found so late
+    is_awaited = !is_spaced && whose == number;  // an echo found so late was not awaited
   } else {
     if (release(ultrasonic_at(number).echo)) return false;
     // A sensor without an echo holds its line high for longer and ignores triggers meanwhile.

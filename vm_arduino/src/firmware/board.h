@@ -1,4 +1,4 @@
-// What the firmware needs of the board besides `robot.h` and `nvm.h`.
+// The functions that the firmware needs of the board besides `robot.h` and `nvm.h`.
 //
 // Plain functions: each build links one definition of them (a board, a test, a simulation). None of
 // them blocks.
@@ -25,7 +25,7 @@ uint8_t board_actuators();
 int32_t* board_readings();
 uint32_t board_max_run_ms();
 
-// How fast the kit is at 100 %, or turns: thousandths in a second; 0: it does not say.
+// The speed, or turning speed, of the kit at 100 %: thousandths in a second; 0: unknown.
 uint32_t board_speed(bool is_turn);
 
 // A place in a program: the checksum of the image and the offset of an instruction.
@@ -60,7 +60,8 @@ struct Discs {
   bool has_two;      // channels: it counts back while the wheel turns backward
 };
 
-// Only a machine that `tiniscript_has_discs` asks. Edges are counted since the start, modulo 2^16.
+// Only a machine with `tiniscript_has_discs` calls it. Edges are counted since the start, modulo
+// 2^16.
 Discs board_discs();
 uint16_t board_edges(bool is_right);
 
@@ -69,12 +70,12 @@ LineErrors board_line_errors();
 // Whether the watchdog caused this reset, and what ran then: zeros if nothing did. Reported once.
 bool board_take_hang(Place* place);
 
-// A program begins: discards readings that nobody has fetched.
+// A program begins: discards readings that were not fetched.
 void board_forget();
 
 // Whether the voltage is high enough to write data that must not be corrupted. Starts a measurement
 // if none is under way, and reports each result once. Call it in every tick until then: a
-// measurement that nobody asks for is given up.
+// measurement without a request is dropped.
 enum class Supply : uint8_t { kMeasuring, kLow, kEnough };
 Supply board_supply();
 

@@ -50,7 +50,8 @@ bool Breakpoints::is_place(uint16_t at) const {
   return false;
 }
 
-// Puts a trap in, or takes it out. Where there is one already, another one keeps what belongs there.
+// Puts a trap in, or takes it out. If a trap is already there, another one keeps the original
+// instruction.
 void Breakpoints::exchange_at(uint16_t place, uint16_t length, uint8_t* byte) {
   if (!are_in_) {
     *byte = kTrap;
@@ -62,7 +63,7 @@ void Breakpoints::exchange_at(uint16_t place, uint16_t length, uint8_t* byte) {
   }
 }
 
-// The same places come in both directions: nothing of them changes while the traps are in.
+// The same places work in both directions: they do not change while the traps are in.
 void Breakpoints::exchange(uint16_t length) {
   uint8_t* byte = bytes_;
   for (uint8_t k = 0; k < count_; k++) exchange_at(places_[k], length, byte++);
@@ -77,7 +78,7 @@ void Breakpoints::exchange(uint16_t length) {
   are_in_ = !are_in_;
 }
 
-// The task whose turn it is is in the statement before which it halts.
+// The current task is in the statement before which it halts.
 void Breakpoints::enter(const Machine& machine) {
   FoundStatement found;
   find_statement(code_, machine.length(), machine.at(), &found);
@@ -86,8 +87,8 @@ void Breakpoints::enter(const Machine& machine) {
   is_in_some_ = true;
 }
 
-// Finds out after a tick which tasks have left what they were in. One that steps waits before what
-// comes next, or in a check, after which that is.
+// Finds out after a tick which tasks have left their statement. A stepping task halts before its
+// next statement, or in a check, after which that is.
 void Breakpoints::note_left(const Machine& machine) {
   is_in_some_ = false;
   for (uint8_t task = 0; task < kAllTasks; task++) {

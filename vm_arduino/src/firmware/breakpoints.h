@@ -1,7 +1,7 @@
 // The places where a program halts, and the steps of one that has halted.
 //
-// There is a kTrap in the code only while the machine runs: it is put in before each tick and taken out
-// after it. So all that reads or keeps a program finds it as it was verified.
+// There is a kTrap in the code only while the machine runs: it is put in before each tick and taken
+// out after it. So all code that reads or saves a program finds it as it was verified.
 //
 // A task halts once before a statement, however often it tries it: a reading that is late, a SHOW
 // without room, the check of an UNTIL or a WHEN. It is in that statement until it is found elsewhere:
@@ -20,8 +20,8 @@ constexpr uint8_t kMostPlaces = 4;
 
 class Breakpoints {
  public:
-  // Sets all places of a program: offsets of 16 bits. False: one of them begins no statement, and
-  // nothing has changed.
+  // Sets all places of a program: offsets of 16 bits. False: no statement begins at one of them,
+  // and nothing has changed.
   bool set(const uint8_t* code, uint16_t length, const uint8_t* places, uint8_t count);
   void forget_places() { count_ = 0; }
   bool has_places() const { return count_ != 0; }
@@ -30,7 +30,7 @@ class Breakpoints {
   void begin(uint8_t* code, uint16_t length);
   void end();
 
-  // Whether there is something to do before and after a tick.
+  // Whether `before` and `after` a tick have work to do.
   bool are_on() const { return count_ != 0 || is_stepping_ || passed_ != kNoPlace || is_in_some_; }
 
   // Whether traps are in the code.
@@ -39,7 +39,7 @@ class Breakpoints {
   void put_in(const Machine& machine) { exchange(machine.length()); }
 
   // Takes them out after the tick. Returns whether the program halts; it does only where it may.
-  // Else a machine that has halted goes on.
+  // Otherwise a halted machine continues.
   bool take_out(Machine* machine, Status status, bool may_halt);
 
   bool is_halted() const { return is_halted_; }
@@ -68,8 +68,8 @@ class Breakpoints {
   uint16_t step_end_;  // where that ends, if the task is in no statement
   uint16_t passed_;    // where there is no trap in the next tick
   Statement in_statement_[kAllTasks];  // where each task has halted; its begin may be kNoPlace
-  // What belongs where the traps are: of each place, of the step's end, and of both ways on from each
-  // statement. It is kTrap where there is none.
+  // The original instructions where the traps are: of each place, of the step's end, and of both
+  // ways on from each statement. It is kTrap if there is none.
   uint8_t bytes_[kMostPlaces + 1 + 2 * kAllTasks];
 };
 

@@ -1,7 +1,7 @@
 // How long the start button is down, and what a long press means.
 //
-// 1 s or more starts nothing; 2 s confirm a claim, or let text drive a robot with an owner; 10 s
-// from the reset on take the robot's keys away. A spike on the wire is no press.
+// 1 s or more starts no program; 2 s confirm a claim, or let text drive a robot with an owner; 10 s
+// since the reset delete the robot's keys. A spike on the wire is no press.
 
 #pragma once
 

@@ -13,10 +13,10 @@ namespace {
 constexpr uint8_t kTurnMs = 10;      // of the controller
 constexpr uint16_t kStuckMs = 500;   // a wheel that drives and shows no edge for so long
 constexpr uint8_t kStandsMs = 250;   // the other one, for so long, does not turn either
-constexpr uint8_t kStillMs = 150;    // one that shows none for so long stands
+constexpr uint8_t kStillMs = 150;    // one without an edge for so long has stopped
 constexpr uint16_t kRestMs = 1000;   // and any does so long after its motor was turned off
-constexpr uint8_t kSlowMs = 150;     // one that shows none for so long gets more power
-constexpr uint16_t kGivesUpMs = 300;  // a correction that does nothing
+constexpr uint8_t kSlowMs = 150;     // one without an edge for so long gets more power
+constexpr uint16_t kGivesUpMs = 300;  // a correction without effect
 constexpr uint16_t kLongestMs = 1000;  // one at most
 constexpr int32_t kEdge = 64;        // positions are in 64ths of the way between two edges
 constexpr int32_t kFar = 5 * kEdge;  // so far ahead a wheel gets as little power as may be
@@ -32,8 +32,8 @@ enum class Phase : uint8_t {
   kDrives,
   kRolls,
   kCorrects,
-  kTaken,   // the motors are off, by something else, and the wheels roll
-  kDriven,  // something else drives
+  kTaken,   // the motors were turned off by other code, and the wheels roll
+  kDriven,  // other code drives
 };
 
 struct Wheel {
@@ -61,12 +61,12 @@ struct Guide {
   uint8_t roll_ms;     // a wheel rolls on as far as it would go in this time
   uint16_t turn_ms;    // when the controller last did something
   uint16_t begun_ms;   // when the move began
-  uint16_t off_ms;     // when both motors were turned off, or something else or a correction began
+  uint16_t off_ms;     // when both motors were turned off, or other driving or a correction began
   uint16_t off_at;     // where both wheels were then, together, modulo 2^16,
   uint16_t off_roll;   // and how far they were to roll
-  int16_t uneven;      // sum of what the left wheel was ahead
+  int16_t uneven;      // sum of the left wheel's leads
   int32_t target;
-  uint32_t edge;       // what a wheel, or the robot, goes between two edges
+  uint32_t edge;       // distance of a wheel, or of the robot, between two edges
   Wheel wheels[kWheels];
 };
 
@@ -80,19 +80,19 @@ int32_t limited(int32_t value, int32_t most) {
   return value > most ? most : value < -most ? -most : value;
 }
 
-// Where a wheel is when it stands: in the middle between two edges, as far as is known.
+// The position of a wheel at rest: in the middle between two edges, as far as is known.
 int32_t place(const Wheel& wheel) {
   return (wheel.edges - 1) * kEdge + wheel.first + kEdge / 2;
 }
 
-// Changes what `place` returns.
+// Changes the result of `place`.
 void put(Wheel* wheel, int32_t at) {
   at -= kEdge / 2;
   wheel->first = static_cast<uint8_t>(at & (kEdge - 1));
   wheel->edges = (at >> 6) + 1;
 }
 
-// Where it is while it turns: after its last edge as far as the time since then tells.
+// The position of a turning wheel: after its last edge, as far as the time since then shows.
 int32_t position(const Wheel& wheel) {
   int32_t more = kEdge / 2;
   if (wheel.two_ms != 0 && wheel.power > 0) {
@@ -102,13 +102,13 @@ int32_t position(const Wheel& wheel) {
   return place(wheel) + more - kEdge / 2;
 }
 
-// How far something has come that speeds up to 1: t less about what it lost meanwhile.
+// How far a wheel that speeds up to 1 has come: t minus the loss meanwhile.
 uint16_t gone(uint16_t time_ms) {
   return static_cast<uint16_t>(uint32_t{time_ms} * time_ms / (time_ms + 2 * guide.roll_ms));
 }
 
-// A disc stands anywhere between two edges. How far the first one was is seen from when it came,
-// beside when the third did: wheels speed up as they roll on.
+// A disc stands anywhere between two edges. The length of the first one follows from its time,
+// compared with that of the third: wheels speed up as they roll on.
 void find_first(Wheel* wheel) {
   const uint16_t first = gone(static_cast<uint16_t>(wheel->before_ms - guide.begun_ms));
   const uint16_t more = static_cast<uint16_t>(gone(elapsed_ms(guide.begun_ms)) - first);
@@ -219,7 +219,7 @@ void turn_off() {
   guide.phase = Phase::kRolls;
 }
 
-// What else has the motors: how far may a wheel roll on that is as fast as this one?
+// Other code has the motors: how far may a wheel as fast as this one roll on?
 void let_roll(Wheel* wheel) {
   const uint16_t least_ms = static_cast<uint16_t>(2 * elapsed_ms(wheel->edge_ms));
   if (wheel->is_returning || wheel->stands) wheel->two_ms = 0;
@@ -230,7 +230,7 @@ void let_roll(Wheel* wheel) {
   wheel->power = 0;
 }
 
-// What the wheels would have rolled by now if nothing else drove them is a part of the move.
+// The distance that the wheels would have rolled by now without other driving is part of the move.
 void coast() {
   uint16_t rolled_ms = elapsed_ms(guide.off_ms);
   if (rolled_ms > 2 * guide.roll_ms) rolled_ms = static_cast<uint16_t>(2 * guide.roll_ms);
@@ -423,7 +423,7 @@ void guide_tick() {
   drive();
 }
 
-// -- what the link and a program ask --------------------------------------------------------------
+// -- requests of the link and of a program --------------------------------------------------------
 
 bool port_noise(uint16_t* edges) {
   if (board_discs().cm == 0) return false;

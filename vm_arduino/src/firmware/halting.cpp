@@ -30,7 +30,7 @@ uint8_t* code_of(const uint8_t* image) {
   return const_cast<uint8_t*>(image) + image[kHeaderLengthAt];
 }
 
-// Whether the machine runs now: time stands for one that is halted.
+// Whether the machine runs now: time stops for a halted one.
 bool runs_on() {
   if (!breakpoints.is_halted()) return true;
   const uint16_t now = static_cast<uint16_t>(now_ms);
@@ -78,7 +78,8 @@ void end_tick(Status status) {
 
 bool are_traps_in() { return breakpoints.are_in(); }
 
-// -- what the link asks ---------------------------------------------------------------------------
+// -- requests of the link
+// ---------------------------------------------------------------------------
 
 Answer port_set_breakpoints(const uint8_t* places, uint8_t count) {
   if (!is_running() && (!has_booted() || !load_program())) return not_now();

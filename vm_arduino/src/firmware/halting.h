@@ -1,4 +1,5 @@
-// Halts the program that runs at its breakpoints, and lets it go on: what `run` does about them.
+// Halts the running program at its breakpoints, and resumes it: the part of `run` that handles
+// them.
 
 #pragma once
 
@@ -8,7 +9,7 @@
 
 namespace tiniscript {
 
-// The machine of what runs, or ran last: `run.cpp`.
+// The machine of the current or last run: `run.cpp`.
 typedef Machine MachineOfRun;
 MachineOfRun& machine_of_run();
 

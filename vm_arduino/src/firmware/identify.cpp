@@ -8,7 +8,7 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kSteps = 13;  // the light changes in each but the last, which shows what it says
+constexpr uint8_t kSteps = 13;  // the light changes in each but the last, which shows the message
 constexpr uint16_t kStepMs = 250;
 constexpr uint8_t kNoteMs = 200;
 constexpr uint8_t kNotes = 3;

@@ -16,7 +16,7 @@ Receiver receiver;
 void begin_link(uint8_t epoch) { link.begin(&receiver, epoch); }
 
 void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {
-  // Nothing is kept beside the call, so that no register must be saved before it.
+  // The call keeps no values, so that no register must be saved before it.
   if (near(&receiver)->count_zeros(byte, time_ms)) {
     board_stop();
     return near(&receiver)->keep_last_zero();

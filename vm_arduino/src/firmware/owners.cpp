@@ -1,4 +1,4 @@
-// The robot's keys: implements what `port.h` says of them.
+// The robot's keys: implements their part of `port.h`.
 
 #include "../link/port.h"
 #include "../store/layout.h"
@@ -11,8 +11,8 @@ namespace tiniscript {
 
 static_assert(kKeyRoom == kKeyBytes, "a key fills its place");
 
-// Reads the keys byte by byte, so that they are nowhere in RAM. A robot that cannot read them may have
-// an owner: nobody drives it.
+// Reads the keys byte by byte, so that they are nowhere in RAM. A robot that cannot read them may
+// have an owner: no one can drive it.
 void read_owner() {
   if (!kHasOwners) return;
   uint8_t key[kKeyBytes];

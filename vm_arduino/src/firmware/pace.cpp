@@ -12,7 +12,7 @@ bool is_sound(const Pace& pace) {
   return true;
 }
 
-// The line through what was measured at 40 and at 80 %, times 1000.
+// The line through the speeds measured at 40 and at 80 %, times 1000.
 int32_t robot_speed(bool is_turn, uint8_t power) {
   const Pace& pace = port_tuning().pace;
   const Pace::Line& line = is_turn ? pace.lines[1] : pace.lines[0];

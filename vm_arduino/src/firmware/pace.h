@@ -1,4 +1,4 @@
-// How fast the robot was measured to be: what the numbers in its memory mean for a move.
+// The measured speed of the robot: what the numbers in its memory mean for a move.
 //
 // Does only arithmetic: no storage. `pace.cpp` implements `robot_speed`.
 
@@ -9,7 +9,7 @@
 
 namespace tiniscript {
 
-// Whether each line rises, or is not there.
+// Whether each line rises, or is missing.
 bool is_sound(const Pace& pace);
 
 }  // namespace tiniscript

@@ -14,10 +14,10 @@ namespace {
 
 constexpr uint16_t kLowMs = 500;  // between two checks of a supply that is too low
 
-// What is read from the store after a reset, in this order.
+// The data read from the store after a reset, in this order.
 enum class Boot : uint8_t { kSettling, kIdentity, kFault, kProgram, kOver };
 
-// What is to be saved when the store is free: one bit each.
+// The data to save when the store is free: one bit each.
 constexpr uint8_t kProgramBit = 1;
 constexpr uint8_t kFaultBit = 2;
 constexpr uint8_t kIdentityBit = 4;
@@ -29,7 +29,7 @@ QuickByte<kToKeepAt> to_keep;
 QuickByte<kKeepingAt> keeping;  // the bits that the store is writing
 Flag<Bit::kLow> is_low;         // saving waits for more voltage
 uint16_t low_ms;                // when that wait began
-uint8_t worn;                   // what it has failed to save since that was asked for: bits
+uint8_t worn;                   // data that it has failed to save since the request: bits
 
 // -- after a reset ------------------------------------------------------------------------------
 
@@ -39,7 +39,7 @@ void load_identity() {
   keep_identity();
 }
 
-// The record of a fault: what, where, in which image. A hang that the watchdog ended is newer.
+// The record of a fault: its kind, its place, its image. A hang that the watchdog ended is newer.
 void load_fault() {
   const bool is_there = store.fetch_first(Area::kFault, record, kRecordBytes);
   if (is_there) read_pace(record);
@@ -105,7 +105,7 @@ bool may_commit() {
 
 void tell_saving() { robot_status.saved = is_low ? Saved::kLowSupply : Saved::kSaving; }
 
-// Begins to save what is next, a program first.
+// Begins the next save, a program first.
 void keep_next() {
   keeping = static_cast<uint8_t>(to_keep & -to_keep);
   bool has_begun;
@@ -119,7 +119,7 @@ void keep_next() {
   if (!has_begun) keeping = 0;  // too large: no such program exists
 }
 
-// The record stays in memory until it is saved, so nothing else may wait to be.
+// The record stays in memory until it is saved, so no other record may wait to be saved.
 bool may_keep_keys() { return has_booted() && !store.is_busy() && (to_keep | keeping) == 0; }
 
 void keep_keys() {
@@ -131,7 +131,7 @@ void keep_keys() {
 }  // namespace
 
 void tick_persistence() {
-  if (boot == Boot::kOver && (to_keep | keeping) == 0) return;  // nothing to save
+  if (boot == Boot::kOver && (to_keep | keeping) == 0) return;  // no data to save
   if (link.has_due_live()) return;
   store.tick(may_commit());
   const bool is_busy = store.is_busy();

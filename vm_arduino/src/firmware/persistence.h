@@ -14,7 +14,7 @@ namespace tiniscript {
 // Continues reading or saving: at most one byte.
 void tick_persistence();
 
-// Whether everything has been read since the reset. Until then nothing may be changed.
+// Whether all records have been read since the reset. Until then, none may be changed.
 bool has_booted();
 
 // Has it saved as soon as the store is free. The program must not change until then.
@@ -22,11 +22,11 @@ void keep_program();
 void keep_fault();
 void keep_identity();
 
-// Whether the identity is saved, and the pace, which is beside the fault. kOk: yes; kSaving and
-// kLowSupply: not yet; kNotKept: the memory is worn out, and it is tried again.
+// Whether the identity is saved, and the pace, which is stored with the fault. kOk: yes; kSaving
+// and kLowSupply: not yet; kNotKept: the memory is worn out, and it is tried again.
 Answer identity_kept();
 
-// Puts a key of the robot into `key`: zeros if it has none. False: not available now.
+// Copies a key of the robot into `key`: zeros if it has none. False: not available now.
 bool fetch_key(uint8_t which, uint8_t* key);
 
 // kSaving or kLowSupply while a key is being saved.

@@ -37,7 +37,8 @@ bool port_may_prepare_upload(bool is_live) {
 bool port_may_write_ahead() {
   if (!link.is_driving()) return false;
   const bool is_text = kTextIsInProgram && is_image_running(program) && !is_in_memory();
-  // None is loaded: its memory may be that of an upload, which goes on beside a frame that is none.
+  // No program is loaded: its memory may be that of an upload, which continues despite a frame that
+  // is not one.
   return has_booted() && !is_image_running(live) && !is_text && has_program();
 }
 

@@ -1,6 +1,7 @@
-// The images in memory: the program that the robot holds, and the one beside it that runs once.
+// The images in memory: the program that the robot holds, and the other one that runs once.
 //
-// Loads the stored program into memory and knows which one the robot holds. Knows nothing of runs.
+// Loads the stored program into memory and knows which one the robot holds. It knows nothing of
+// runs.
 
 #pragma once
 
@@ -14,7 +15,7 @@
 namespace tiniscript {
 
 // A program that is read as text: at most so many bytes of code, as its jumps are short. Its code
-// and what the reader keeps beside it have this room.
+// and the reader's other data have this room.
 constexpr uint8_t kTextCodeBytes = 255;
 constexpr uint16_t kTextRoom = kRobotTextLevel == TextLevel::kMega    ? 1900
                                : kRobotTextLevel == TextLevel::kEsp32 ? 8192
@@ -43,13 +44,13 @@ void hold_memory();
 
 // The robot now holds, in memory, the program before the one that it holds: where that is stored,
 // the one in the other slot; where it is not, the stored one. False: there is none that it can run,
-// and it holds what it held. The store must be ready.
+// and the program stays. The store must be ready.
 bool hold_previous();
 
 // Tells the board whether a press of the button would start a program.
 void show_light();
 
-// Whether there is nothing to load.
+// Whether there is no program to load.
 bool has_program();
 
 // Loads the program that the robot holds into memory, if there is one. False: it is not available

@@ -1,8 +1,8 @@
-// What programs read, noted for a computer that wants to know it.
+// Records the readings of programs for a computer that wants them.
 //
-// A reading is noted where it differs from the one before of the same sensor, or is the first of a run.
-// None is dropped unnoticed: where there is no room, nothing more is noted of that sensor until all others
-// have been told; then its last reading is told, and that some before it were not.
+// A reading is noted where it differs from the one before of the same sensor, or is the first of a
+// run. No reading is dropped unnoticed: if there is no room, that sensor records no more until all
+// others have been reported; then its last reading is reported, and that some before it were not.
 
 #pragma once
 

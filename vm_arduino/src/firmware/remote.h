@@ -1,7 +1,7 @@
-// What a program reads of a remote control, after the sensors of its kit.
+// The readings of a remote control that programs get, after the sensors of their kit.
 //
-// The newest word counts: of the session that drives or, where none does, of any that may. All is let
-// go 0.5 s after it, and at a start.
+// The newest word counts: that of the driving session or, without one, of any that may press keys.
+// All is let go 0.5 s after it, and at a start.
 
 #pragma once
 

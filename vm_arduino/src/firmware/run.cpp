@@ -24,7 +24,7 @@ namespace {
 Machine machine;
 const uint8_t* run_image;  // of the current or last run
 Flag<Bit::kMayStart>
-    may_start;  // the button is down and nothing ran or was stopped since: its release starts
+    may_start;  // the button is down and no program ran or was stopped since: its release starts
 Flag<Bit::kStartDue> is_start_due;  // the button was released, but the program was not available
 bool has_motors_on;
 bool reads_keys;  // the program that runs has read some, where kReadsKeys
@@ -68,7 +68,7 @@ void go_on() {
   }
 }
 
-// The part of starting a run that does not depend on the program: done while nothing runs.
+// The part of starting a run that does not depend on the program: done while no program runs.
 void prepare() {
   for (uint8_t k = 0; k < readings_of(board_sensors()); k++) board_readings()[k] = 0;
   board_forget();
@@ -202,7 +202,7 @@ bool firmware_runs(Place* place) {
   return true;
 }
 
-// -- what a program asks ------------------------------------------------------------------------
+// -- requests of a program -----------------------------------------------------------------------
 
 bool port_reads_keys() { return kReadsKeys && reads_keys && is_running(); }
 

@@ -15,14 +15,14 @@ namespace tiniscript {
 // Starts an image: `live`, or `program`, which must be in memory.
 void begin_run(const uint8_t* image);
 
-// Starts what the button has requested, and continues what runs.
+// Starts the program that the button has requested, and continues the current run.
 void tick_run();
 
 // Turns the motors off first, then the actuators unless the program has reached its own end. Sets
 // the robot's `state` and cancels a start by the button.
 void end_run(State state, bool is_done = false);
 
-// Ends what runs and allows no start until the link does. Records `fault` if it is not 0.
+// Ends the run and allows no start until the link does. Records `fault` if it is not 0.
 void stop_run(uint8_t fault);
 
 // Cancels a start by the button that has not happened yet.

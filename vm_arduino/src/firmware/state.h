@@ -15,7 +15,7 @@ namespace tiniscript {
 // One for each transport, or one.
 typedef Choice<kHasTransports, Links, Link>::Type RobotLink;
 
-extern RobotStatus robot_status;  // what the robot does and holds, and its last fault
+extern RobotStatus robot_status;  // the robot's state and program, and its last fault
 extern uint32_t now_ms;           // of this tick
 extern RobotLink link;
 extern Store store;

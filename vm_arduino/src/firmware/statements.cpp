@@ -29,7 +29,7 @@ bool jumps(ControlRole role) {
   }
 }
 
-// Where an instruction leads whose last operand, one byte or two, ends before `after`.
+// The target of an instruction whose last operand, one byte or two, ends before `after`.
 uint16_t target_of(const uint8_t* code, uint16_t after, const DecodeForm& form) {
   const uint8_t* last = code + after - 1;
   uint16_t distance = *last;

@@ -1,5 +1,5 @@
-// A robot that is reached over several transports: their bytes, what parts with one, and the names by
-// which a radio calls it.
+// A robot that is reached over several transports: their bytes, the end of a connection, and the
+// robot's radio names.
 
 #include "../vm/build.h"
 #include "../vm/small.h"
@@ -47,7 +47,7 @@ bool port_may_press() { return link.may_press(); }
 bool firmware_has_key(Transport transport) { return link.has_key(transport); }
 
 void firmware_on_part(Transport transport) {
-  is_awaited[static_cast<uint8_t>(transport)] = false;  // the mark goes with what has waited
+  is_awaited[static_cast<uint8_t>(transport)] = false;  // the mark goes with the waiting bytes
   if (!link.part(transport) || !is_running()) return;
   end_run(State::kStopped);
   link.stopped(Cause::kCable);

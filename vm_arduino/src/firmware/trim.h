@@ -20,8 +20,8 @@ struct Levels {
 // Whether all bits and numbers of a trim are valid.
 bool is_sound(const Trim& trim);
 
-// The levels for `left` and `right` percent, -100 to 100. `trim` must be sound; one of zeros
-// changes nothing.
+// The levels for `left` and `right` percent, -100 to 100. `trim` must be valid; one of zeros has no
+// effect.
 Levels trimmed(const Trim& trim, int8_t left, int8_t right);
 
 }  // namespace tiniscript

@@ -13,18 +13,19 @@ namespace tiniscript {
 namespace {
 
 constexpr uint8_t kBytesATurn = 8;
-constexpr Remark kWhole = Remark::kOk;  // in the place of what is told: a whole program has come
-// So many mistakes are answered without a pause of this length between two bytes: then something that
-// echoes or answers each line is on the other side. The next one is told that.
+constexpr Remark kWhole = Remark::kOk;  // instead of a report: a whole program has come
+// After so many mistakes, answers stop until there is a pause of this length between two bytes: the
+// other side echoes or answers each line. The next one is told that.
 constexpr uint8_t kMostMistakes = 16;
 constexpr uint16_t kPauseMs = 5000;
-// Of silence after bytes that no line end follows: it is told, or they are a line where none ends.
+// Silence after bytes without a line end: it is reported, or it ends the line if they lack line
+// ends.
 constexpr uint16_t kTailMs = 2000;
 constexpr uint16_t kUnendedMs = 3000;
 constexpr uint16_t kBriefMs = 150;  // of silence before a line counts again
 constexpr uint8_t kCapital = 0xdf;  // bits of a letter
 
-// What radio modules say, and words that ask for all others; 0x80 in the last letter of each.
+// Messages of radio modules, and words that ask for all others; 0x80 in the last letter of each.
 const uint8_t kSpoken[] tini_progmem = {'O', 'K' | 0x80, 'A', 'T' | 0x80,
                                         'E', 'R', 'R', 'O', 'R' | 0x80,
                                         'H', 'E', 'L', 'P' | 0x80,
@@ -56,7 +57,7 @@ void Console::begin_silence() {
   is_silent_ = false;
 }
 
-// What is left of a lost program is not run alone.
+// The rest of a lost program does not run alone.
 bool Console::drop() {
   const bool is_lost = is_open_ && (is_waiting_ || reader_.has_setup());
   if (is_lost) {
@@ -89,7 +90,7 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool
       return is_in_block() ? Act::kEnd : Act::kStop;
     }
     if (byte == kLineCut) {
-      // Of a 0x00 it is told a moment later, unless a client comes.
+      // A 0x00 is reported a moment later, unless a client comes.
       tail_ = is_chatter() ? Remark::kNone : Remark::kNoZero;
       drop();
       if (receiver->take_lost()) {
@@ -128,8 +129,8 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool
   return Act::kNone;
 }
 
-// No line end has followed, and none may come: some apps end no line. Where no line has ended for a
-// minute, a whole program is taken all the same, but later. Otherwise it is told.
+// No line end has followed, and none may come: some apps send no line ends. If no line has ended
+// for a minute, a whole program is accepted all the same, but later. Otherwise it is told.
 inline void Console::end_tail(bool is_heard) {
   const Remark tail = tail_;
   tail_ = Remark::kNone;
@@ -162,8 +163,8 @@ void Console::tell(Remark remark, bool is_heard) {
 }
 
 // Takes a byte of a line. A start begins a program anew where an unfinished one would go on, and
-// after a radio module's message, which has no line end of its own. Of its SETUP word only the length
-// and a letter are looked at: the reader knows the others.
+// after a radio module's message, which has no line end of its own. Of its SETUP word, only the
+// length and a letter are compared: the reader knows the others.
 inline void Console::take(uint8_t byte, bool is_heard) {
   if (kReadsKeys) key_line_.put(byte);
   tail_ = Remark::kEnter;
@@ -191,7 +192,7 @@ inline void Console::take(uint8_t byte, bool is_heard) {
   read(byte);
 }
 
-// Whether the line begins with what a radio module says.
+// Whether the line begins with a message of a radio module.
 bool Console::is_chatter() {
   return is_open_ && (first_ == '+' || reader_.begins_like('O', 'K'));
 }
@@ -202,7 +203,7 @@ void Console::read(uint8_t byte) {
   if (!has_moved_ && !is_ignored() && reader_.wants_room()) find_room();
 }
 
-// Begins a program in memory that nobody uses.
+// Begins a program in unused memory.
 bool Console::begin(uint8_t byte) {
   uint16_t room;
   image_ = port_text_memory(&room, &has_moved_);
@@ -253,7 +254,7 @@ inline Console::Act Console::end_line(bool is_heard) {
   const uint8_t before = length_;
   length_ = reader_.length();
   is_waiting_ = is_open_ = text == Text::kMore;
-  // With a comment after it S is no typed stop, and stops all the same.
+  // With a comment after it, S is no typed stop, but stops all the same.
   if (text == Text::kProgram && reader_.is_stop()) return has_mark_ ? Act::kNone : Act::kStop;
   if (is_ignored()) {
     is_open_ = is_waiting_ = false;
@@ -300,7 +301,7 @@ inline Console::Act Console::end_line(bool is_heard) {
   return Act::kNone;
 }
 
-// Whether the line is read, and nothing but S does anything.
+// Whether the line is read, and no command but S has an effect.
 tini_noinline bool Console::is_ignored() const {
   return is_discarding_ || (is_ignoring_ && !reader_.has_setup());
 }

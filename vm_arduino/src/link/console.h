@@ -1,8 +1,8 @@
-// The robot's half of a conversation in text: feeds the reader, and decides what a line does and
-// which answer is due.
+// The robot's half of a conversation in text: feeds the reader, and decides the effect of a line
+// and the answer to it.
 //
-// Knows how long a line may take, and which lines are ignored. What a line asks for is done by the
-// link. `docs/develop/link.md` is the contract.
+// Knows how long a line may take, and which lines are ignored. The link carries out the requests of
+// a line. `docs/develop/link.md` is the contract.
 
 #pragma once
 
@@ -17,48 +17,48 @@ namespace tiniscript {
 
 class Console {
  public:
-  // What a line asks of the link: to stop the robot, to end what runs, to start the program that
-  // was read, to hold keys.
+  // A line's request to the link: to stop the robot, to end the run, to start the program that was
+  // read, to hold keys.
   enum class Act : uint8_t { kNone, kStop, kEnd, kStart, kHold };
 
   // Passes the time. `silence_left_ms`: until a second has passed without a byte of any kind, or 0.
   void pass(uint16_t passed_ms, uint16_t silence_left_ms);
 
-  // Whether time has passed since the last turn: without that and without text none is needed.
+  // Whether time has passed since the last turn: without that and without text, no turn is needed.
   bool is_due() const { return is_due_; }
 
   // Takes text that has arrived. `is_heard`: a client's frames arrive, so mistakes get no answer.
   // `may_say`: an answer would be said soon.
   Act turn(Receiver* receiver, bool is_heard, bool may_say);
 
-  // The robot was stopped: what arrives before a second of silence is ignored, and no answer is due
-  // any more. Where the stop was typed here, lines count again after a second, and a short silence.
+  // The robot was stopped: bytes before a second of silence are ignored, and no answer is due any
+  // more. If the stop was typed here, lines count again after a second, and a short silence.
   void discard();
   void discard_briefly() { is_brief_ = true; }
 
-  // Whether a typed stop would belong to the program that is read.
+  // Whether a typed stop would belong to the program being read.
   bool is_in_block() const { return is_open_ && is_waiting_ && awaited_ != ')'; }
 
   // Whether a line or a program has begun, and whether it may take its time.
   bool is_open() const { return is_open_; }
 
-  // The open line and its program are lost: somebody else uses the memory. Returns whether further
+  // The open line and its program are lost: another part uses the memory. Returns whether further
   // lines of that program may come; they are ignored.
   bool drop();
 
-  // Whether the last one who spoke to the robot was a person.
+  // Whether the last sender to the robot was a person.
   bool is_talking() const { return is_talking_; }
   void pick_up() { is_talking_ = true; }
   void hang_up() { is_talking_ = false; }
 
-  // Nobody is connected any more: whoever comes next begins anew.
+  // The client has left: the next one begins anew.
   void forget_client() { *this = Console(); }
 
   // The program that was read: its image, without a header.
   const Reader& reader() const { return reader_; }
   uint8_t* image() const { return image_; }
 
-  // The keys to hold. Who presses some is told once that no program `reads` them.
+  // The keys to hold. A person who presses some is told once that no program `reads` them.
   const RemoteKeys& keys() const { return keys_; }
   void note_keys(bool reads, bool is_heard);
 
@@ -66,7 +66,7 @@ class Console {
   void say(Remark remark) { remark_ = remark; }
   bool has_answer() const { return remark_ != Remark::kNone; }
 
-  // The same, unless a client is heard: what no program came of is told to people alone.
+  // The same, unless a client is heard: bytes without a program are reported only to people.
   void tell(Remark remark, bool is_heard);
   uint8_t write(uint8_t* out);
 
@@ -112,18 +112,18 @@ class Console {
   uint8_t mistakes_;   // answered since the last pause
   bool is_open_;       // the reader has begun a line or a program
   bool has_moved_;     // it lies where there is room for a whole program
-  Remark refused_;     // there is none: the line is not read, and this is the reason
+  Remark refused_;     // there is none: the line is not read, for this reason
   bool has_lost_;      // the program that the robot held: it is told after the next answer
   bool is_waiting_;    // for the end of a block that an earlier line has opened
   bool is_talking_;
   bool is_discarding_;
   bool is_brief_;      // the wait: a stop was typed here
   bool has_told_;      // that lines do not count yet
-  Remark tail_;        // what is told of bytes that no line end follows
+  Remark tail_;        // the report on bytes without a line end
   bool is_ignoring_;   // lines without a SETUP word: their program is lost
   bool is_silent_;     // a second has passed
   bool is_due_;
-  bool has_mark_;      // a typed stop waits behind
+  bool has_mark_;      // a typed stop waits after them
   tini_with_keys KeyLine key_line_;
   tini_with_keys RemoteKeys keys_;
   tini_with_keys uint16_t before_ms_;  // the patience that was left when this line began

@@ -9,7 +9,7 @@
 namespace tiniscript {
 
 // Whether the line that has ended holds keys. In a block it belongs to the program. It counts as
-// silence, or who holds a key would never be silent.
+// silence; otherwise a person who holds a key would never be silent.
 bool Console::take_keys() {
   if (is_waiting_ || !key_line_.read(&keys_) || !text_may_drive()) return false;
   is_open_ = false;

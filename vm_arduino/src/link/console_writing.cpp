@@ -22,17 +22,17 @@ namespace {
 constexpr uint8_t kLineEndBytes = 2;
 constexpr uint8_t kLongestWord = 24;
 
-// From here on words are not said: END_DEF where there are no DEFs, and other spellings.
+// The words from here on are not listed: END_DEF on robots without DEFs, and other spellings.
 constexpr uint8_t kSkippedAt = kReadsDefs ? kAliasesAt : kAliasesAt - kEndDefBytes;
 
-// Nor those of tasks and ways where there are none, and of later versions.
+// Nor are those of tasks and moves by distance on robots without them, and of later versions.
 constexpr uint8_t kSaidTo = kReadsDefs ? kLaterWordsAt : kTaskWordsAt;
 
-// The line that is written, and its bytes so far. Only while it is written.
+// The line that is written, and its bytes so far. Valid only while it is written.
 uint8_t* line;
 uint8_t size;
 
-// What does not fit is left out.
+// Text that does not fit is left out.
 tini_noinline void put(uint8_t byte) {
   if (size < kWireBytes - kLineEndBytes) line[size++] = byte;
 }
@@ -52,7 +52,7 @@ tini_noinline uint8_t ended_line() {
   return static_cast<uint8_t>(size + kLineEndBytes);
 }
 
-// Puts a word in flash whose last letter is marked. Returns what is after it.
+// Sends a word in flash whose last letter is marked. Returns the address after it.
 const uint8_t* put_word(const uint8_t* word) {
   uint8_t letter;
   do {
@@ -77,7 +77,7 @@ tini_noinline void put_digit(uint8_t digit) {
   put(static_cast<uint8_t>(digit < 10 ? '0' + digit : 'a' + digit - 10));
 }
 
-// Puts what lies in memory as a hexadecimal number.
+// Sends data in memory as a hexadecimal number.
 tini_noinline void put_hex(const void* bytes, uint8_t count) {
   do {
     const uint8_t byte = static_cast<const uint8_t*>(bytes)[--count];
@@ -164,7 +164,7 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
       break;
     case Remark::kHello: {
       const DeviceInfo& info = port_device_info();
-      // A byte that somebody else has chosen: it may be no sign that a terminal obeys.
+      // A byte from another user: it may not be a control character for a terminal.
       for (uint8_t k = 0; k < info.name_length; k++) {
         const uint8_t byte = info.name[k];
         put(byte < ' ' || byte == 0x7f ? uint8_t{'?'} : byte);
@@ -177,7 +177,7 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
       break;
     }
     case Remark::kLatched:
-      // Nobody has stopped it.
+      // No client has stopped it.
       if (port_status().state == State::kFaulted) text = text_of(Remark::kFailed);
       break;
     default:
@@ -186,7 +186,7 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
   put_text<put>(text);
   if (text == text_of(Problem::kRange)) put_number(reader_.limit(4));
   if (remark == Remark::kWaiting) put_token(awaited_);
-  // Of a program for the button that another one replaces nobody needs to be told.
+  // A program for the button that another one replaces is not reported.
   if (remark == Remark::kLost || remark == Remark::kOkButton) has_lost_ = false;
   if (remark_ == Remark::kNone && has_lost_) remark_ = Remark::kLost;
   if (remark == Remark::kFault) put_text<put>(name_of_fault(port_status().fault));

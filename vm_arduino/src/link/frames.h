@@ -1,8 +1,8 @@
 // Encodes and decodes frames in place: COBS and a checksum.
 //
-// Knows nothing of messages. Matches `frames.py`. In a buffer the frame follows its first byte,
-// which exists only on the wire: type, sequence number, epoch, payload, checksum. A large frame has a
-// 0 before its payload.
+// It knows nothing of messages. Matches `frames.py`. In a buffer the frame follows its first byte,
+// which exists only on the wire: type, sequence number, epoch, payload, checksum. A large frame has
+// a 0 before its payload.
 
 #pragma once
 
@@ -24,7 +24,7 @@ inline bool is_large(uint8_t end) {
   return kHasLargeFrames && end > kSmallFrame + kTypeAt - kCrcBytes;
 }
 
-// Where the payload begins of a frame that is not sealed.
+// The beginning of the payload of an unsealed frame.
 inline uint8_t payload_at(uint8_t end) { return is_large(end) ? kPayloadAt + 1 : kPayloadAt; }
 
 // Numbers are little-endian on the wire and in the memory of every supported chip.
@@ -45,7 +45,7 @@ class FrameCheck {
   uint8_t taken() const { return taken_; }
 
   // Takes the bytes that have arrived since the last call, up to `length` (at most kPacketBytes).
-  // If `length` is less than before, another packet has begun meanwhile, and it takes none.
+  // If `length` is less than before, another packet has begun meanwhile, and no zero is taken.
   void take(const uint8_t* bytes, uint8_t length);
 
   // The number of bytes up to the next zero or the end; more than any frame has if that position

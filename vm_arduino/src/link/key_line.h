@@ -16,7 +16,7 @@ class KeyLine {
   void begin() { length_ = 0; }
   bool is_empty() const { return length_ == 0; }
 
-  // Of several blanks one is kept, so that no count of them makes a line too long.
+  // Several blanks are kept as one, so that no number of them makes a line too long.
   void put(uint8_t byte) {
     if (byte == '\t') byte = ' ';
     if (byte == ' ' && length_ != 0 && bytes_[length_ - 1] == ' ') return;
@@ -24,7 +24,7 @@ class KeyLine {
     if (length_ <= kMost) length_++;
   }
 
-  // Whether the line is such a word; what it says.
+  // Whether the line is such a word; returns its meaning.
   bool read(RemoteKeys* remote_keys);
 
  private:

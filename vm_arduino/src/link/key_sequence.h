@@ -15,7 +15,7 @@ class KeySequence {
     if (byte == 0x1b) {
       place_ = kEscape;
     } else if (before == kEscape) {
-      if (byte != '[' && byte != 'O') return false;  // an ESC alone is nothing
+      if (byte != '[' && byte != 'O') return false;  // an ESC alone has no effect
       place_ = kInside;
     } else if (before == kInside) {
       if (byte < ' ' || byte > '~') return false;

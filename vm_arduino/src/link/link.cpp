@@ -38,8 +38,8 @@ void Link::pass_time(uint16_t now_ms) { near(this)->pass(now_ms); }
 void Link::pass(uint16_t now_ms) {
   const uint16_t passed = static_cast<uint16_t>(now_ms - now_ms_);
   now_ms_ = now_ms;
-  // Of a byte that arrives from here on nothing is known but that it was heard, at the latest in the
-  // next call.
+  // All that is known of a byte that arrives from here on is that it was heard, at the latest in
+  // the next call.
   const bool is_held = receiver_->is_held();
   const bool is_at_stop = receiver_->is_at_stop();
   const bool is_line = receiver_->has_open_line();
@@ -57,8 +57,8 @@ void Link::pass(uint16_t now_ms) {
   console_.pass(passed, left_ms_[kSilence]);
 }
 
-// What the silence after a typed stop does: that of kHeldMs in what began as a frame, that of
-// kSilenceMs where its line has not ended.
+// The effect of silence after a typed stop: after kHeldMs if the bytes began as a frame, after
+// kSilenceMs if its line has not ended.
 inline void Link::end_silence(bool is_held, bool is_at_stop, uint16_t before_ms) {
   constexpr uint16_t kHeldLeftMs = kSilenceMs - kHeldMs;
   const uint16_t left_ms = left_ms_[kSilence];
@@ -126,8 +126,8 @@ bool Link::next_tx_byte(uint8_t* byte) {
   return true;
 }
 
-// Stops the robot. Of one that stands already the epoch stays, or a line that is held low would
-// exhaust it. A waiting packet is from before the stop and therefore stale.
+// Stops the robot. If it was stopped already, the epoch stays; otherwise a line that is held low
+// would exhaust it. A waiting packet is from before the stop and therefore stale.
 tini_noinline void Link::stop(Cause cause) {
   const bool was_stopped = port_status().state == State::kStopped;
   port_stop(0);
@@ -217,7 +217,7 @@ tini_noinline void Link::handle(uint8_t end) {
   if ((type & kSealed) != 0) {
     refusal = Answer::kNotSealed;
   } else if (is_marked && (is_hello || type == static_cast<uint8_t>(Message::kAuthenticate))) {
-    refusal = Answer::kNotSealed;  // they begin what a seal is made of
+    refusal = Answer::kNotSealed;  // a seal begins with them
   } else if (is_marked && !is_sealed()) {
     if (type == static_cast<uint8_t>(Message::kStop)) stop(Cause::kMessage);
     refusal = Answer::kNotOwner;
@@ -380,7 +380,7 @@ Answer Link::hold(const RemoteKeys& remote_keys) {
 
 uint8_t Link::hello(const uint8_t* payload) {
   const bool is_new = !is_open_ || !same_bytes(&nonce_, payload + kHelloNonceAt);
-  left_ms_[kFrameSent] = 0;  // who says it may have heard no frame before
+  left_ms_[kFrameSent] = 0;  // this client may not have heard a frame before
   if (is_new) {
     renew();
     if (kHasBreakpoints) forget_breakpoints();

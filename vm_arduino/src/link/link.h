@@ -1,8 +1,9 @@
 // The robot's half of the link: answers a client.
 //
-// Maps messages to `port.h`, and knows what a client must be told. Bytes come in through a Receiver
-// and go out through `next_tx_byte`; time comes in as `now_ms`. Nothing here blocks. A repeated
-// request is answered again but not executed again. `docs/develop/link.md` is the contract.
+// Maps messages to `port.h`, and knows which events a client must be told. Bytes come in through a
+// Receiver and go out through `next_tx_byte`; time comes in as `now_ms`. No function here blocks. A
+// repeated request is answered again but not executed again. `docs/develop/link.md` is the
+// contract.
 
 #pragma once
 
@@ -36,17 +37,17 @@ class Link {
   // Passes the time, at least once a minute, as only the lower bits of a time are kept.
   void pass_time(uint16_t now_ms);
 
-  // Handles what has arrived.
+  // Handles the received frames and text.
   void tick();
 
-  // Whether `tick` would start a LIVE now: everything else may wait for that.
+  // Whether `tick` would start a LIVE now: all other work may wait for that.
   bool has_due_live() const { return is_ready_ && receiver_->has_frame(); }
 
-  // The memory of the image that was made ahead goes to somebody else: it must not start.
+  // The memory of the image that was prepared is needed elsewhere: it must not start.
   void drop_ahead() { is_ready_ = false; }
 
-  // Call it after the motors are served: writes the checksum of a program that came in one frame, and
-  // starts to send what is due.
+  // Call it after the motors are served: writes the checksum of a program that came in one frame,
+  // and starts to send due messages.
   void send_due();
 
   // Writes that checksum now, because it is needed.
@@ -58,7 +59,8 @@ class Link {
   // The next byte to send, or false if there is none. May be called from an interrupt.
   bool next_tx_byte(uint8_t* byte);
 
-  // Where what `next_tx_byte` uses lies: an AVR's interrupt does it in assembly (`link_avr.h`).
+  // The address of the data of `next_tx_byte`: an AVR's interrupt does it in assembly
+  // (`link_avr.h`).
   struct Layout;
 
   // Whether a stop has arrived that `tick` has not handled yet: until then the motors must stay
@@ -73,7 +75,7 @@ class Link {
   void faulted();  // port_status() has the record
   void stopped(Cause cause);
   void halted();
-  // Whether a program may halt: somebody is there who lets it go on.
+  // Whether a program may halt: a client is there to continue it.
   bool may_halt() const { return is_listened_to() && !is_dead_man_over(); }
   bool show(int32_t value, bool is_yes_no);
 
@@ -83,14 +85,14 @@ class Link {
     image_ = nullptr;
     is_attached_ = false;
     console_.drop();
-    rights_ = 0;  // also what only the teacher may release
+    rights_ = 0;  // including one that only the teacher may release
   }
 
   // Whether the run ends when no frame arrives.
   bool is_attached() const { return is_attached_; }
 
-  // What the remote control of this session says, or nullptr: nothing that still counts. It lets all
-  // go, and for how long it counts.
+  // The state of this session's remote control, or nullptr if it no longer counts. It lets all go,
+  // and for how long it counts.
   const RemoteKeys* remote() const {
     return kHasRemote && left_ms_[kHold] != 0 ? &remote_ : nullptr;
   }
@@ -110,7 +112,7 @@ class Link {
   // Has this link make other challenges than those that begin with another number.
   void begin_challenges(uint8_t number) { challenge_[0] = number; }
 
-  // Whether a client is heard, and whether anybody takes what a program shows.
+  // Whether a client is heard, and whether anyone receives what a program shows.
   bool is_heard() const { return left_ms_[kListen] > kListenMs - kAuthorityMs; }
   bool takes_values() const { return is_listened_to() || talks(); }
 
@@ -124,13 +126,13 @@ class Link {
 
   Cause cause() const { return cause_; }
 
-  // Whether this session is told what programs read.
+  // Whether this session is told the readings of programs.
   bool tells_readings() const { return kTellsReadings && tells_readings_; }
 
-  // Whether the last request was done.
+  // Whether the last request was carried out.
   bool has_done() const { return reply_.status == static_cast<uint8_t>(Answer::kOk); }
 
-  // Another session drives: what this one has begun is over.
+  // Another session drives: an upload or line that this one has begun is over.
   void give_way() {
     image_ = nullptr;
     is_attached_ = is_ready_ = false;
@@ -139,7 +141,7 @@ class Link {
     if (kTellsReadings) forget_readings();
   }
 
-  // Nobody is connected any more: whoever comes next begins a session.
+  // The client has left: the next one begins a session.
   void forget_client() {
     if (kHasBreakpoints) forget_breakpoints();
     if (kTellsReadings) forget_readings();
@@ -150,8 +152,8 @@ class Link {
     console_.forget_client();
   }
 
-  // Whether it was told to stop since this was asked last, also where the robot stood already: what
-  // was typed before, at any session, is over.
+  // Whether a stop came since the last call, even if the robot was stopped already: text typed
+  // before that, in any session, is discarded.
   bool take_stopped() {
     const bool was_stopped = was_stopped_;
     was_stopped_ = false;
@@ -162,13 +164,13 @@ class Link {
   bool has_open_text() const { return console_.is_open(); }
   void drop_text() { console_.drop(); }
 
-  // What the firmware asks of `Links`, where it has several.
+  // The firmware's functions of `Links`, for a robot with several.
   static void expire_others() {}
   static constexpr bool is_driving() { return true; }
   static constexpr bool take_text_memory() { return true; }
 
  private:
-  // What is due to be sent, one bit each: the lowest one first.
+  // The messages due to be sent, one bit each: the lowest one first.
   static constexpr uint8_t kDueStopped = 1;
   static constexpr uint8_t kDueReply = 2;
   static constexpr uint8_t kDueFault = 4;
@@ -196,7 +198,7 @@ class Link {
   static constexpr uint8_t kIsConfirmed = 4;
   static constexpr uint8_t kHeldBack = 8;
 
-  // What SHOW sends.
+  // The value that SHOW sends.
   struct tini_packed ShownValue {
     int32_t value;
     bool is_yes_no;
@@ -301,7 +303,7 @@ class Link {
   Remark start_text(const Console& console);
   void send_text();
   void show_text(int32_t value, bool is_yes_no);
-  // Whether the image that was taken last was typed: no receipt tells its checksum.
+  // Whether the image that was taken last was typed: no receipt reports its checksum.
   bool is_typed() const { return kHasText && is_typed_; }
   void note_typed(bool is_so) {
     if (kHasText) is_typed_ = is_so;
@@ -358,7 +360,7 @@ class Link {
   uint16_t left_ms_[kTimes];
   uint8_t epoch_;
   uint8_t damaged_;    // number of damaged frames
-  uint8_t due_;        // what is due to be sent
+  uint8_t due_;        // due messages
   uint8_t isa_[2];     // of the client's programs, major and minor
   bool is_open_;       // there is a session
   bool is_other_kit_;  // the client's programs are for another kit
@@ -385,7 +387,7 @@ class Link {
   uint8_t sent_;           // bytes already sent
   volatile uint8_t left_;  // bytes left to send
   tini_with_text bool is_typed_;
-  // Large members come last: what lies near to the begin takes less code.
+  // Large members come last: members near the beginning take less code.
   Console console_;
   tini_with_seals bool is_sealed_;  // the current request
   tini_with_seals bool is_reply_sealed_;
@@ -398,11 +400,11 @@ class Link {
   tini_with_breakpoints bool owns_halt_;  // it was told about the last halt: that ends with it
   tini_with_readings bool tells_readings_;  // to this session
   tini_with_readings bool has_late_value_;
-  tini_with_readings uint8_t behind_;  // by how many bytes readings delay what is sent
+  tini_with_readings uint8_t behind_;  // the number of bytes by which readings delay the line
   tini_with_readings uint8_t late_epoch_;
   tini_with_readings uint8_t reply_bytes_;  // of the last one
   tini_with_readings ShownValue late_value_;
-  tini_with_remote RemoteKeys remote_;  // what the remote control has said last
+  tini_with_remote RemoteKeys remote_;  // the last state of the remote control
   uint32_t nonce_;  // of the session
   uint8_t challenge_[kChallengeBytes];
   uint8_t out_[kWireBytes];

@@ -1,4 +1,4 @@
-// Where in a link the interrupt of `boards/avr/uart.cpp` finds what it sends.
+// The offsets in a link at which the interrupt of `boards/avr/uart.cpp` finds the data to send.
 
 #pragma once
 

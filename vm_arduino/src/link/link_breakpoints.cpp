@@ -1,4 +1,4 @@
-// Breakpoints: where a program halts, how it goes on, and what is told of one that runs.
+// Breakpoints: where a program halts, how it continues, and reports on a running one.
 
 #include "../vm/build.h"
 #include "../vm/bytecode.h"
@@ -34,7 +34,7 @@ Answer Link::resume(uint8_t how) {
   return Answer::kOk;
 }
 
-// Of a session that is over: what is halted for it ends.
+// The session is over: a halt for it ends.
 void Link::forget_breakpoints() {
   if (owns_halt()) port_end();
   if (has_breakpoints_) port_forget_breakpoints();

@@ -1,4 +1,4 @@
-// The link of a robot that reads no text: does only what a typed stop asks for.
+// The link of a robot that reads no text: only obeys typed stops.
 
 #include "link.h"
 

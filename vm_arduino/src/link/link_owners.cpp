@@ -42,7 +42,7 @@ bool Link::is_forbidden(uint8_t type) const {
          type > static_cast<uint8_t>(Message::kIdentify);
 }
 
-// Whether who has sent the current frame has a right: with a seal only what is sealed has it.
+// Whether the sender of the current frame has a right: under a seal, only sealed frames have it.
 bool Link::may(bool has_right) const { return has_right && (!has_seal() || is_sealed()); }
 
 tini_noinline void Link::expire() {
@@ -53,7 +53,7 @@ tini_noinline void Link::expire() {
   its.more_features = kStays != 0 ? its.more_features & kStays : 0;
   drop_seal();
   rights_ &= kHeldBack;
-  is_ready_ = false;  // what was made ahead was made with that authority
+  is_ready_ = false;  // the image was prepared with that authority
 }
 
 bool Link::confirm_claim() {
@@ -114,7 +114,7 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
   text[kTagText - 2] = epoch_;
   text[kTagText - 1] = which;
   siphash(key, text, kTagText, text);
-  // Nobody guesses 64 bits, and a pause for strangers would be one for the owner.
+  // 64 bits cannot be guessed, and a pause for strangers would also delay the owner.
   if (!are_equal(text, tag, kTagBytes)) return number_of(Answer::kWrongKey);
   port_identity().features |= kYours;
   if (which == static_cast<uint8_t>(Key::kTeacher)) {

@@ -22,7 +22,7 @@ bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !p
 }  // namespace
 
 // Called when the payload of a frame has arrived, assuming that the frame ends at the next zero.
-// Makes and verifies the image of LIVE. Nothing is reported or started yet, because the frame may
+// Makes and verifies the image of LIVE. No report and no start happens yet, because the frame may
 // turn out to be damaged or longer.
 tini_noinline void Link::make_ahead() {
   uint8_t* const bytes = receiver_->bytes();

@@ -1,8 +1,10 @@
-// What programs read, told to a session that wants it, and values that a program shows meanwhile.
+// Readings of programs, reported to a session that wants them, and values that a program shows
+// meanwhile.
 //
-// A reading delays no program. While it is being sent, a SHOW finds room where it would without: its value
-// waits here instead. `behind_` is by how many bytes the line is behind one without readings: what is
-// left of a reading, and what the port holds of it, as it was when something else began to wait for it.
+// A reading delays no program. While it is being sent, a SHOW finds room where it would without:
+// its value waits here instead. `behind_` is the number of bytes by which the line lags one without
+// readings: the rest of a reading and the port's share of it, at the moment when another message
+// began to wait for it.
 
 #include "../vm/build.h"
 #include "link.h"
@@ -17,8 +19,8 @@ void Link::tell_readings(bool is_on) {
   port_tell_readings(is_on);
 }
 
-// Whether the line would be free without readings. A reply that is due takes as long as the last one: who
-// watches a run asks the same again and again.
+// Whether the line would be free without readings. A due reply is assumed to take as long as the
+// last one: a client that watches a run repeats the same request.
 bool Link::would_be_free() const {
   const uint8_t due = due_ & ~kDueText;
   if ((due & ~kDueReply) != 0) return false;
@@ -31,13 +33,13 @@ void Link::catch_up() {
   if (!waits && most < behind_) behind_ = most;
 }
 
-// What the port holds goes out in the next milliseconds.
+// The bytes in the port are sent in the next milliseconds.
 void Link::pass_readings(uint16_t passed) {
   if (left_ != 0 || due_ != 0 || has_late_value_) return;
   behind_ = behind_ > passed ? static_cast<uint8_t>(behind_ - passed) : 0;
 }
 
-// Whether a value that would have room waits for a reading. Nothing else waits now.
+// Whether a value that would have room waits for a reading. No other message waits now.
 bool Link::keep_value(int32_t value, bool is_yes_no) {
   catch_up();
   if (behind_ == 0) return false;

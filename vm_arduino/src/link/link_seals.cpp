@@ -14,8 +14,8 @@ uint8_t number_of(Message message) { return static_cast<uint8_t>(message); }
 
 }  // namespace
 
-// Returns where the payload ends of the request in a frame that ends at `end`, or 0: a frame whose seal
-// is wrong is not answered. STOP is taken from anybody.
+// Returns the end of the payload of the request in a frame that ends at `end`, or 0: a frame with a
+// wrong seal is not answered. STOP is taken from anybody.
 uint8_t Link::open_seal(uint8_t end) {
   const uint8_t* const bytes = receiver_->bytes();
   const uint8_t type = bytes[kTypeAt];
@@ -34,7 +34,7 @@ void Link::close_seal() {
   const bool is_tag = reply_.number == number_of(Message::kAuthenticate) &&
                       reply_.status == kIsFine && (rights_ & kHasChallenge) == 0;
   is_reply_sealed_ = is_sealed_ || is_tag;
-  if (is_sealed_) {  // what is not sealed comes after it, and repeats nothing
+  if (is_sealed_) {  // an unsealed frame comes after it, and repeats nothing
     last_.seq = reply_.seq;
     last_.number = 0;
   }
@@ -48,13 +48,13 @@ void Link::begin_seal(const uint8_t* key, uint8_t which) {
   seal_.begin(key, origin);
 }
 
-// While there is a seal no stranger changes what the robot remembers of its last request.
+// While there is a seal, a stranger cannot change the robot's memory of its last request.
 bool Link::keeps_answer(uint8_t type) const {
   if (!seal_.is_set() || is_sealed_) return true;
   return type == number_of(Message::kAuthenticate) && reply_.status == kIsFine;
 }
 
-// The mark in the type of a frame to the computer. Where the counter is at its end, authority is, too.
+// The mark in the type of a frame to the computer. When the counter ends, authority ends, too.
 uint8_t Link::seal_mark() {
   if (seal_.may_close()) return kSealed;
   expire();

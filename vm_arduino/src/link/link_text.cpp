@@ -1,4 +1,4 @@
-// The link of a robot that reads text: does what a line asks for, and answers with lines.
+// The link of a robot that reads text: carries out the requests of a line, and answers with lines.
 
 #include "../vm/bytecode.h"
 #include "../vm/small.h"
@@ -9,7 +9,7 @@
 
 namespace tiniscript {
 
-// Does what a line asks for.
+// Carries out the requests of a line.
 void Link::talk() {
   Console* const console = near(&console_);
   const bool may_say = left_ms_[kFrameSent] == 0;
@@ -25,13 +25,13 @@ void Link::talk() {
   if (console->has_answer()) due_ |= kDueText;
 }
 
-// A stop has ended what was typed, and what was to be said of it.
+// A stop has ended typed text, and the answers to it.
 void Link::drop_answer() {
   console_.discard();
   due_ &= static_cast<uint8_t>(~kDueText);
 }
 
-// Starts the program that was read. Returns what to say.
+// Starts the program that was read. Returns the answer.
 Remark Link::start_text(const Console& console) {
   if (!text_may_drive()) return Remark::kNotOwner;
   if (may_drive(0) != Answer::kOk) return Remark::kRefused;
@@ -46,7 +46,7 @@ Remark Link::start_text(const Console& console) {
   const bool is_beside = port_text_is_beside(start != 0);
   if (!port_may_prepare_upload(is_beside)) return Remark::kSaving;
   image_ = nullptr;
-  write_checksum();  // a frame's image of this turn, whose receipt is due
+  write_checksum();  // an image from a frame in this turn, whose receipt is due
   if (make(is_beside ? Use::kLive : Use::kStored, start, console.image() + kHeaderBytes,
            reader->length(), false) != static_cast<uint8_t>(Answer::kOk)) {
     return Remark::kRefused;
@@ -59,8 +59,8 @@ Remark Link::start_text(const Console& console) {
   return start != 0 ? Remark::kOkButton : Remark::kOk;
 }
 
-// Sends a line of an answer; to a person, what has happened as well.
-// Where frames have come, it waits until they are over for whoever listens.
+// Sends a line of an answer; to a person, also recent events.
+// If frames have arrived, it waits for listeners until they are over.
 void Link::send_text() {
   if (left_ms_[kFrameSent] != 0) return;
   if (!console_.has_answer()) {

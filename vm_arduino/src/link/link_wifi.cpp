@@ -1,5 +1,5 @@
-// WIFI: a network and a broker for the robot, or none. Its name and password come covered by the
-// seal.
+// WIFI: sets or removes a network and a broker for the robot. Its name and password come covered by
+// the seal.
 
 #include "../vm/small.h"
 #include "link.h"
@@ -25,7 +25,7 @@ uint8_t Link::set_wifi(const uint8_t* payload, uint8_t length) {
   seal_.cover(receiver_->bytes() + kCounterAt, text, text_bytes);
   const Answer answer = port_set_wifi(static_cast<WifiStep>(step), text, text_bytes);
   for (uint8_t& byte : text) byte = 0;
-  if (answer == Answer::kOk) reply_.detail = step;  // what the reply is about
+  if (answer == Answer::kOk) reply_.detail = step;  // the subject of the reply
   return static_cast<uint8_t>(answer);
 }
 

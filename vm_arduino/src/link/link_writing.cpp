@@ -18,7 +18,7 @@ const uint8_t kVersions[] tini_progmem = {kLinkMajor, kLinkMinor,    kIsaMajor,
 constexpr uint8_t kPulseBytes = 2;  // state and run of a RobotStatus
 constexpr uint8_t kPlaceBytes = 2;  // its slot and `saved`
 
-// Bytes of the image in a small reply to FETCH: beside them it has a status and a length.
+// Bytes of the image in a small reply to FETCH, which also has a status and a length.
 constexpr uint8_t kSmallFetch = kSmallFrame - kHeadBytes - kCrcBytes - 3;
 
 static_assert(sizeof(Identity) == 13 && sizeof(RobotStatus) == 17, "they are as they are sent");
@@ -45,7 +45,8 @@ void Link::faulted() {
   note_end(kDueFault);
 }
 
-// Of two ends that wait for the line the last one is told: an end is never told of another run.
+// If two ends wait for the line, the last one is reported: an end is never reported for another
+// run.
 void Link::note_end(uint8_t due) {
   ended_run_ = port_status().run;
   due_ = static_cast<uint8_t>((due_ & ~(kDueFault | kDueDone)) | due);
@@ -58,7 +59,7 @@ void Link::stopped(Cause cause) {
   confirm(cause);
 }
 
-// What was typed before a stop is over. It is reported at a limited rate, to a client as a frame.
+// Text typed before a stop is discarded. It is reported at a limited rate, to a client as a frame.
 tini_noinline void Link::confirm(Cause cause) {
   if (kHasText) drop_answer();
   if (cause <= Cause::kMessage) console_.hang_up();  // one that is for computers
@@ -268,7 +269,7 @@ void Link::hand_over_frame() {
   hand_over();
 }
 
-// From here on the interrupt may send the message: it is complete.
+// From here on, the interrupt may send the message: it is complete.
 void Link::hand_over() {
   sent_ = 0;
   asm volatile("" ::: "memory");

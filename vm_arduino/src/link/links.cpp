@@ -28,7 +28,7 @@ void Links::pass_time(uint16_t now_ms) {
   if (!is_driven()) driver_ = kNobody;
 }
 
-// Has the identity say of the session of a link what it may.
+// Asks the identity for the rights of a link's session.
 void Links::enter(uint8_t place) {
   current_ = place;
   Identity& its = port_identity();
@@ -55,7 +55,7 @@ void Links::tick() {
   }
 }
 
-// Tells all other sessions what the turn of the current one has changed for them.
+// Tells all other sessions how the turn of the current one affects them.
 void Links::spread(State before) {
   const State state = port_status().state;
   Link& its = links_[current_];
@@ -155,7 +155,7 @@ bool Links::confirm_claim() {
   Link* found = nullptr;
   for (Link& link : links_) {
     if (!link.has_asked_for_claim()) continue;
-    if (found != nullptr) return false;  // whose press it is cannot be told
+    if (found != nullptr) return false;  // the presser is unknown
     found = &link;
   }
   return found != nullptr && found->confirm_claim();
@@ -173,7 +173,7 @@ const RemoteKeys* Links::remote() const {
   return found->remote();
 }
 
-// The place of who drives; if nobody does, of the first that takes values; or kNobody.
+// The place of the driver; without one, of the first that receives values; or kNobody.
 uint8_t Links::listener() const {
   uint8_t place = driver_;
   for (uint8_t each = 0; place == kNobody && each < kTransports; each++) {
@@ -214,18 +214,18 @@ bool Links::part(Transport transport) {
   return ends_run;
 }
 
-// Whether who has driven last is still heard.
+// Whether the last driver is still heard.
 bool Links::is_driven() const {
   return driver_ != kNobody && (drives_ms_ != 0 || links_[driver_].is_heard());
 }
 
-// Whether who has driven last keeps the others away: who runs nothing and changes nothing gives way,
-// however long an open page is heard.
+// Whether the last driver keeps the others away: one that runs nothing and changes nothing gives
+// way, even if its open page is heard.
 bool Links::keeps_wheel() const {
   return driver_ != kNobody && (drives_ms_ != 0 || port_status().state == State::kRunning);
 }
 
-// The current session drives from now on: what others have begun is over.
+// The current session drives from now on: uploads and lines of others are over.
 void Links::drive() {
   drives_ms_ = kAuthorityMs;
   if (driver_ == current_) return;
@@ -267,7 +267,7 @@ bool Links::take_text_memory() {
   for (uint8_t place = 0; place < kTransports; place++) {
     if (place == current_ || !links_[place].has_open_text()) continue;
     if (is_remote || !is_network(static_cast<Transport>(place))) return false;
-    links_[place].drop_text();  // nothing that is typed in a network drives
+    links_[place].drop_text();  // text typed in a network drives nothing
   }
   return true;
 }

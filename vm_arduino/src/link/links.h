@@ -1,10 +1,10 @@
 // The links of a robot that is reached over several transports at once: one for each, and the one
 // that drives.
 //
-// Each transport has a receiver, a session and a seal of its own, so nobody's HELLO ends the
-// session of another. A session drives from its first request that acts on; for 2 s after each, and
-// while it is heard and its program runs, those of others are refused. What is for all (HELLO, PING,
-// STATUS, STOP, IDENTIFY) is answered on each, and a stop on one is a stop. Knows no bytes of a
+// Each transport has its own receiver, session and seal, so a client's HELLO does not end another
+// session. A session drives from its first request that acts on; for 2 s after each, and while it
+// is heard and its program runs, those of others are refused. Messages for all (HELLO, PING,
+// STATUS, STOP, IDENTIFY) are answered on each, and a stop on one is a stop. Knows no bytes of a
 // transport. All calls are the main loop's.
 
 #pragma once
@@ -19,7 +19,7 @@ namespace tiniscript {
 
 class Links {
  public:
-  // As those of Link, for all of them.
+  // The same as in Link, for all of them.
   void begin(uint8_t epoch);
   void pass_time(uint16_t now_ms);
   void tick();
@@ -42,7 +42,7 @@ class Links {
   // The newest word of a remote control, or nullptr.
   const RemoteKeys* remote() const;
 
-  // To who drives; if nobody does, to the first that listens.
+  // To the driver; without one, to the first listener.
   bool show(int32_t value, bool is_yes_no);
 
   // The receiver and the bytes of a transport.
@@ -51,15 +51,14 @@ class Links {
     return links_[place_of(transport)].next_tx_byte(byte);
   }
 
-  // Nobody is connected any more: the authority of that session ends. Returns whether a run ends
-  // with it.
+  // The client has left: the authority of that session ends. Returns whether a run ends with it.
   bool part(Transport transport);
 
   // The keys have changed: ends the authority of all sessions but the one that has asked.
   void expire_others();
 
-  // Whether the current request (its type, or 0 for a line of text) may be done; else why not. Its
-  // session drives from now on, if it is a request of who drives and is not refused.
+  // Whether the current request (its type, or 0 for a line of text) may be carried out, or why not.
+  // Its session drives from now on, if it is a driver's request and is not refused.
   Answer may_drive(uint8_t type);
 
   // Whether a line of text may press keys now.
@@ -74,7 +73,7 @@ class Links {
   // A line of text of the current session begins. False: another one has the memory for it now.
   bool take_text_memory();
 
-  // Text has memory of its own: what is made ahead stays.
+  // Text has its own memory: a prepared image stays.
   static void drop_ahead() {}
 
  private:
@@ -93,10 +92,10 @@ class Links {
   Receiver receivers_[kTransports];
   uint8_t yours_[kTransports];       // kYours of each session
   uint8_t by_teacher_[kTransports];  // kMoreByTeacher of each
-  uint8_t current_;                  // whose turn it is
+  uint8_t current_;                  // the current one
   uint8_t driver_;                   // or kNobody
   uint16_t now_ms_;
-  uint16_t drives_ms_;  // how long its last request counts, whatever is heard
+  uint16_t drives_ms_;  // how long its last request counts, whatever is received
   bool is_held_back_;
   bool is_asking_;  // the current session, to drive
   bool is_asking_by_text_;

@@ -1,4 +1,4 @@
-// What the link needs of the robot.
+// The functions that the link needs of the robot.
 //
 // Plain functions: each build links one definition of them (a board, a test). None of them blocks.
 // `port_defaults.cpp` defines what a robot without discs or breakpoints leaves out.
@@ -27,7 +27,7 @@ struct tini_packed Identity {
   Reset reset;
 };
 
-// What the robot does and holds.
+// The robot's state and program.
 struct tini_packed RobotStatus {
   State state;
   uint8_t run;       // counts started programs
@@ -56,8 +56,8 @@ struct tini_packed Trim {
   uint8_t least;
 };
 
-// How fast the robot was measured to be at 40 and 80 %: hundredths of a centimetre, or of a degree,
-// in a second. Zeros: not measured, and the kit's numbers hold.
+// The measured speed of the robot at 40 and 80 %: hundredths of a centimetre, or of a degree, in a
+// second. Zeros: not measured, and the kit's numbers hold.
 struct tini_packed Pace {
   struct tini_packed Line {
     uint16_t at40;
@@ -71,8 +71,8 @@ struct tini_packed Tuning {
   Pace pace;
 };
 
-// What a remote control says, as KEYS has it: a bit for each key that is held, and its pad, in percent
-// to the right and up.
+// The state of a remote control, as in KEYS: a bit for each key that is held, and its pad, in
+// percent to the right and up.
 constexpr uint8_t kRemoteKeys = 6;
 struct tini_packed RemoteKeys {
   uint8_t keys;
@@ -95,7 +95,7 @@ struct DeviceInfo {
 
 const DeviceInfo& port_device_info();
 
-// How many readings and actuators programs have.
+// The number of readings and actuators that programs have.
 uint8_t port_readings();
 uint8_t port_actuators();
 
@@ -113,14 +113,14 @@ uint16_t port_room();
 
 // Ends the running program, and has the one in memory saved if that was requested. kBusy if that is
 // not finished: the link reports this, and the client tries again. kLowSupply: it waits for enough
-// voltage. An image with is_live goes beside the program in memory.
+// voltage. An image with is_live is kept in memory in addition to the program.
 Answer port_prepare_upload(bool is_live);
 
 // Returns room for an image of this length and kEndBytes after it, or nullptr if there is none. Its
 // old contents stay intact until port_prepare_upload is called.
 uint8_t* port_memory(uint16_t length, bool is_live);
 
-// Whether the image beside the program may be written ahead: the old one does not run, and
+// Whether the second image may be written ahead: the old one does not run, and
 // `port_prepare_upload` will not have to wait.
 bool port_may_write_ahead();
 
@@ -138,7 +138,7 @@ void port_take_checksum(const uint8_t* image);
 void port_start(bool is_live);
 
 // Memory for the image of a program that is read as text, with `*room` bytes after its header;
-// nullptr if there is none now. Without `has_room` that is enough for its begin only.
+// nullptr if there is none now. Without `has_room`, that is enough only for its beginning.
 uint8_t* port_text_memory(uint16_t* room, bool* has_room);
 
 // Memory with enough room, where the program is that the robot holds. Ends what runs; the robot
@@ -146,7 +146,7 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room);
 // on.
 uint8_t* port_text_room(uint16_t* room);
 
-// Whether the image of a program that was read goes beside the program in memory.
+// Whether the image of a program that was read is kept in addition to the program in memory.
 bool port_text_is_beside(bool is_for_button);
 
 // Whether port_prepare_upload would be done at once.
@@ -171,11 +171,11 @@ void port_release();
 // Whether a stop keeps the robot from starting, until port_release.
 inline bool port_is_latched() { return port_status().state >= State::kStopped; }
 
-// What runs: where it is, the byte of its code with which the instruction begins that runs or
-// waits, and its image. Only while something runs.
+// The running program: the offset of the byte of its code with which the instruction begins that
+// runs or waits, and its image. Valid only while a program runs.
 uint16_t port_run_at();
 
-// Where the SHOW is whose value is shown now. Only while something is.
+// The offset of the SHOW whose value is shown now. Valid only while there is one.
 uint16_t port_shown_at();
 const uint8_t* port_run_image();
 
@@ -186,9 +186,9 @@ struct tini_packed TaskReport {
   uint32_t left_ms;
 };
 
-// Sets the places where what runs halts, or else the program that the robot holds: offsets of 16 bits.
-// kBadValue: no statement begins at one of them, and nothing has changed; kBusy: the link reports this,
-// and the client tries again.
+// Sets the breakpoints of the running program, or otherwise of the program that the robot holds:
+// offsets of 16 bits. kBadValue: no statement begins at one of them, and nothing has changed;
+// kBusy: the link reports this, and the client tries again.
 Answer port_set_breakpoints(const uint8_t* places, uint8_t count);
 void port_forget_breakpoints();
 
@@ -205,7 +205,7 @@ const int32_t* port_variables();
 // Reports a task of what runs, from 0 on. False: there are no more.
 bool port_report_task(uint8_t task, TaskReport* report);
 
-// What a program has read, as READING sends it.
+// The readings of a program, as READING sends them.
 struct tini_packed ToldReading {
   uint8_t run;
   uint8_t sensor;  // with kUntold
@@ -213,7 +213,8 @@ struct tini_packed ToldReading {
   uint16_t ms;
 };
 
-// As many bytes a port has taken and still sends: a UART of an AVR that one, and the one after it.
+// The number of bytes that a port has taken and still sends: for a UART of an AVR, that one and the
+// one after it.
 constexpr uint8_t kPortHolds = kIsAvr ? 2 : 1;
 
 // Whether a session is told of readings from now on, and whether there is one that has not been told.
@@ -237,21 +238,21 @@ inline bool text_may_drive() {
   return (port_identity().features & (kOwned | kTextAllowed)) != kOwned;
 }
 
-// Whether the session whose request of this type is handled, or whose line of text (0), may drive
-// the robot now; otherwise the reason. A robot with one transport has one session.
+// Whether the session of this request type, or of this line of text (0), may drive the robot now;
+// otherwise the reason. A robot with one transport has one session.
 Answer port_may_drive(uint8_t type);
 inline Answer may_drive(uint8_t type) {
   return kHasTransports ? port_may_drive(type) : Answer::kOk;
 }
 
-// Whether a line of text may press keys now, which asks for nothing else.
+// Whether a line of text that only presses keys may do so now.
 bool port_may_press();
 inline bool may_press() { return !kHasTransports || port_may_press(); }
 
-// Whether the program that runs has read what a remote control says.
+// Whether the running program has read a remote control.
 bool port_reads_keys();
 
-// What the robot says of its WiFi, or of its broker. `address` is as four bytes in their order.
+// The robot's report on its WiFi, or on its broker. `address` is as four bytes in their order.
 struct WifiReport {
   WifiMode mode;
   WifiState state;
@@ -260,7 +261,7 @@ struct WifiReport {
   uint8_t network[kNetworkBytes];
 };
 
-// What was asked with a step.
+// The kind of step requested.
 WifiReport port_wifi_report(WifiStep step);
 
 // Does a step of setting WiFi. kSaving: it is kept as soon as the motors stand.

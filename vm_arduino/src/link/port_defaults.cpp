@@ -1,4 +1,4 @@
-// What a robot without discs, breakpoints or readings answers, unless it defines these itself.
+// The answers of a robot without discs, breakpoints or readings, unless it defines these itself.
 
 #include "port.h"
 

@@ -10,7 +10,7 @@ constexpr uint8_t kControlC = 3;
 constexpr uint8_t kEscape = 0x1b;
 constexpr uint8_t kDelete = 0x7f;
 
-// What every byte of a line is that a frame never looks like.
+// Properties that every byte of a line has and a frame never has.
 bool is_printable(uint8_t byte) { return byte >= ' ' && byte < kDelete; }
 
 bool is_running() { return port_status().state == State::kRunning; }
@@ -38,8 +38,8 @@ inline void Receiver::end_silence() {
   typed_.begin();
 }
 
-// Frames come from here on. What a 0x00 ends is a frame, or a line that is cut: a typed stop counts
-// all the same. In frames it waits, or comes a second time: it may be what is left of one.
+// Frames come from here on. A 0x00 ends a frame, or a line that is cut: a typed stop counts all the
+// same. In frames it waits, or comes a second time: it may be what is left of one.
 inline bool Receiver::put_zero() {
   bool is_stop = false;
   Line next = Line::kNothing;
@@ -224,7 +224,7 @@ void Receiver::lose_line() {
   text_.put_last(kLineCut);
 }
 
-// What waits is nobody's any more, but a stop.
+// Waiting input no longer belongs to anyone, except a stop.
 void Receiver::disconnect() {
   bool is_stop = has_mark();
   for (uint8_t k = 0; k < kWindow; k++) is_stop |= waiting_[k] == Waiting::kFrame && may_stop_[k];

@@ -4,11 +4,12 @@
 // Everything is text until a 0x00. After it everything is frames, until a second passes without a
 // byte or the connection is lost; there CR or LF after nothing but printable ASCII ends a line of
 // text, because no whole frame looks so, and text goes on.
-// Knows where a packet begins and ends; `frames.h` checks whether a frame is whole. Asks `port.h` only
-// whether a program runs, for what is typed in a hurry. Holds frames until they are released, kWindow
-// of them; a frame that finds no place is dropped. Text is passed on as it arrives. Finds the same
-// packets as `receiver.py`, in the same modes and in kStopInFrame, as typed stops are a class of their
-// own there. `put` may be called from an interrupt, everything else from the main loop.
+// Knows where a packet begins and ends; `frames.h` checks whether a frame is whole. Asks `port.h`
+// only whether a program runs, for what is typed in a hurry. Holds frames until they are released,
+// kWindow of them; a frame that finds no place is dropped. Text is passed on as it arrives. Finds
+// the same packets as `receiver.py`, in the same modes and in kStopInFrame, as typed stops are a
+// class of their own there. `put` may be called from an interrupt, all other functions from the
+// main loop.
 
 #pragma once
 
@@ -24,11 +25,11 @@
 
 namespace tiniscript {
 
-// What waits in a place.
+// The kind of input waiting in a place.
 enum class Waiting : uint8_t { kNone, kFrame, kText };
 
-// What `take_text` returns beside the bytes of a line. A kLineCut is in the place of a line's end
-// that never came, or of bytes that found no room; a kLineStop is after what was a typed stop.
+// The results of `take_text` other than the bytes of a line. A kLineCut is in the place of a line's
+// end that never came, or of bytes that found no room; a kLineStop is after what was a typed stop.
 constexpr uint8_t kLineEnd = '\n';
 constexpr uint8_t kLineCut = 0;
 constexpr uint8_t kLineStop = '\r';
@@ -70,7 +71,7 @@ class Receiver : private PacketPlaces<kWindow> {
     kStopInFrame,  // in a frame with a typed stop in it
   };
 
-  // What has come of a line of text: nothing, a stop that waits for silence, bytes that are skipped,
+  // The state of a line of text: nothing, a stop that waits for silence, bytes that are skipped,
   // some of it, or some before a second of silence and nothing since.
   enum class Line : uint8_t { kNothing, kHeld, kSkipped, kSome, kPaused };
 
@@ -90,7 +91,8 @@ class Receiver : private PacketPlaces<kWindow> {
   }
   bool keep_and_find_stop(uint8_t byte, uint16_t now_ms);
 
-  // Where the count of zeros lies: an AVR's interrupt does `count_zeros` in assembly (`receiver_avr.h`).
+  // The address of the count of zeros: an AVR's interrupt does `count_zeros` in assembly
+  // (`receiver_avr.h`).
   struct Layout;
 
   // Keeps the byte that completes a stop.
@@ -108,21 +110,21 @@ class Receiver : private PacketPlaces<kWindow> {
   bool frame_may_stop() const { return may_stop_[looked_at()]; }
   void let_frame() { may_stop_[looked_at()] = false; }
 
-  // Whether a typed stop is in the unfinished frame or was all between two 0x00, or Ctrl-C is all that
-  // has come of a line: it stops when no byte has come for kHeldMs.
+  // Whether the unfinished frame has a typed stop, or one was all between two 0x00, or Ctrl-C is
+  // all of the line so far: it stops when no byte has come for kHeldMs.
   bool is_held() const { return mode() == Mode::kStopInFrame || line() == Line::kHeld; }
 
-  // Whether what has come of a line would be a typed stop if it ended here.
+  // Whether the line so far would be a typed stop if it ended here.
   bool is_at_stop() const { return mode() < Mode::kFrame && typed_.found() != TypedStop::kNone; }
 
-  // Whether what a second of silence ends may be a person's line: all of it is printable, or CR or LF
-  // is in it.
+  // Whether a second of silence may end a person's line: all of it is printable, or CR or LF is in
+  // it.
   bool has_open_line() const {
     return mode() >= Mode::kLine && *const_cast<const volatile bool*>(&may_be_line_);
   }
 
-  // Whether a typed stop waits among the text: whether it belongs to an open block is decided where
-  // text is read, and nothing starts before.
+  // Whether a typed stop waits among the text: the reader of text decides whether it belongs to an
+  // open block, and nothing starts before.
   bool has_mark() const { return marks_ != marks_taken_; }
   void put_mark() { marks_ = static_cast<uint8_t>(marks_ + 1); }
   void take_mark() { marks_taken_ = static_cast<uint8_t>(marks_taken_ + 1); }
@@ -234,7 +236,7 @@ class Receiver : private PacketPlaces<kWindow> {
   uint8_t bytes_[kWindow][kPacketBytes];
 };
 
-// Where a link has its receiver.
+// The address of a link's receiver.
 class OnlyReceiver;
 typedef Choice<kIsAvr, OnlyReceiver, Receiver*>::Type ReceiverOfLink;
 

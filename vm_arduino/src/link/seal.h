@@ -18,7 +18,7 @@ constexpr uint8_t kCounterAt = kSealZeroAt + 1;
 constexpr uint8_t kSealedPayloadAt = kCounterAt + sizeof(uint32_t);
 constexpr uint32_t kLastCounter = 0xffffffff;
 
-// What a key is derived from, besides the key of the robot.
+// The data that a key is derived from, besides the key of the robot.
 struct SealOrigin {
   const uint8_t* challenge;
   uint32_t nonce;        // the computer's
@@ -32,7 +32,7 @@ class Seal {
  public:
   bool is_set() const { return is_set_; }
 
-  // Whether another frame may be sealed: a counter is never used twice.
+  // Whether another frame may be sealed: a counter value is never used twice.
   bool may_close() const { return is_set_ && sent_ != kLastCounter; }
 
   void begin(const uint8_t* key, const SealOrigin& origin);
@@ -44,7 +44,7 @@ class Seal {
   // newer than all before. Then its payload ends kTagBytes before.
   bool open(const uint8_t* bytes, uint8_t end);
 
-  // Covers or uncovers bytes of the frame with this counter: nobody else can read them.
+  // Encrypts or decrypts bytes of the frame with this counter: no one else can read them.
   void cover(const uint8_t* counter, uint8_t* bytes, uint8_t length) const;
 
   // Seals a frame whose payload ends at `end`: writes 0, counter and MAC. Returns where that ends.
@@ -59,7 +59,7 @@ class Seal {
   uint8_t key_[kKeyBytes];
 };
 
-// Whether bytes are equal, in constant time: how long it takes says nothing about them.
+// Whether bytes are equal, in constant time, so that timing reveals nothing about them.
 bool are_equal(const uint8_t* first, const uint8_t* second, uint8_t length);
 
 }  // namespace tiniscript

@@ -13,7 +13,7 @@ namespace tiniscript {
 constexpr bool kHasLargeFrames = kRobotSize == RobotSize::kEsp32;
 constexpr uint8_t kLargestFrame = kHasLargeFrames ? kLargeFrame : kSmallFrame;
 constexpr uint8_t kWindow = kHasLargeFrames ? kLargeWindow : 1;
-// Of text that nobody has taken yet, and one more.
+// The number of text bytes not yet taken, and one more.
 constexpr uint16_t kTextBytes = kHasLargeFrames ? 256 : 64;
 
 // Payload bytes of an unsealed frame. In a large frame, a 0 precedes the payload.

@@ -19,7 +19,8 @@ class TextRing {
   // Puts a byte. False: there is no room. The last place is for `put_last`.
   bool put(uint8_t byte) { return put(byte, 2); }
 
-  // Puts a byte that tells of lost ones. Where another one has the last place it tells of these, too.
+  // Puts a byte that tells of lost ones. If another line has the last place, that mark covers
+  // these, too.
   void put_last(uint8_t byte) { put(byte, 1); }
 
   bool take(uint8_t* byte) {

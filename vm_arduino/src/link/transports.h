@@ -21,7 +21,7 @@ enum class Transport : uint8_t {
 
 constexpr uint8_t kTransports = 6;
 
-// Whether whoever is in a network could reach it: what needs no key there moves nothing.
+// Whether anyone in a network could reach it: without a key, a client there moves nothing.
 inline bool is_network(Transport transport) { return transport >= Transport::kNetwork; }
 
 }  // namespace tiniscript

@@ -8,7 +8,7 @@ namespace tiniscript {
 
 namespace {
 
-// What a line is that stops. The second word begins at kStopAt.
+// Lines that stop the robot. The second word begins at kStopAt.
 // clang-format off
 constexpr uint8_t kWords[] tini_progmem = {
     's' | kLastLetter,

@@ -22,13 +22,13 @@ class TypedStop {
   // Takes a byte that does not end a line.
   void put(uint8_t byte);
 
-  // What the line would be if it ended here. kLoose: S and STOP as often as one likes, STOP NOW, or a
-  // word of people who speak Spanish, Portuguese or English. kStrict: one S or STOP, blanks and `;`.
+  // The kind of stop if the line ended here. kLoose: any number of S and STOP, STOP NOW, or a word
+  // of people who speak Spanish, Portuguese or English. kStrict: one S or STOP, blanks and `;`.
   enum Found : uint8_t { kNone, kLoose, kStrict };
   Found found() const;
 
-  // Whether the byte was the last of three S in a row, or of a second STOP, wherever in a line: these
-  // do not wait for its end.
+  // Whether the byte was the last of three S in a row, or of a second STOP, anywhere in a line:
+  // these do not wait for its end.
   bool is_urgent() const { return hurry_ == kUrgent; }
 
  private:
@@ -38,7 +38,7 @@ class TypedStop {
   static constexpr uint8_t kStop = 1;  // S and STOP
   static constexpr uint8_t kNoWord = 9;  // so many there are
 
-  // How far the line ends like STOP STOP: letters of it, or two S. Or it ends with a slash, or has a
+  // How far the line ends like STOP STOP: its letters, or two S. Or it ends with a slash, or has a
   // comment.
   static constexpr uint8_t kUrgent = 8;
   static constexpr uint8_t kTwoS = 9;

@@ -53,8 +53,8 @@ constexpr uint8_t kKeyRoom = 16;
 constexpr uint8_t kKeysAt = kCheckBytes;
 constexpr uint8_t kOwnerBytes = kKeysAt + kOwnerKeys * kKeyRoom;
 
-// Where the slots begin. During a brown-out some chips write to address 0 by mistake, so nothing is
-// stored there.
+// The offsets at which the slots begin. During a brown-out some chips write to address 0 by
+// mistake, so nothing is stored there.
 constexpr uint16_t kRecordsAt = 4;
 constexpr uint16_t kRecordSlot = kBodyAt + kRecordBytes;
 constexpr uint8_t kSmallRecords = 4;  // slots of kRecordSlot

@@ -1,4 +1,4 @@
-// What the store needs of its non-volatile memory.
+// The functions that the store needs of its non-volatile memory.
 //
 // Plain functions, as in `robot.h`: each build links one definition of them (the EEPROM of a board,
 // a model in a test). A place is an address from 0. None of them blocks: a write continues on its
@@ -20,7 +20,7 @@ bool nvm_is_ready();
 
 uint8_t nvm_read(uint16_t place);
 
-// Whether the memory has refused no read: only then is what was not found not there.
+// Whether the memory has refused no read: only then does "not found" mean missing.
 bool nvm_has_refused();
 inline bool nvm_is_readable() { return !kWritesStopTheChip || !nvm_has_refused(); }
 

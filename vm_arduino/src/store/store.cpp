@@ -82,7 +82,7 @@ static_assert(kSteps[kKeeping] == step(WriteStep::kGeneration), "keeping begins 
 static_assert(kSteps[kKeepingMarks] == step(WriteStep::kMark, 2), "the first mark stays as it is");
 static_assert(kSteps[kKeepingEnd] == step(WriteStep::kEnd), "keeping ends here");
 
-// Where each slot begins: the table is shorter than its calculation.
+// The beginning of each slot: the table is shorter than its calculation.
 constexpr uint16_t kStarts[] tini_progmem = {place_of(0), place_of(1), place_of(2), place_of(3),
                                              place_of(4), place_of(5), place_of(6), place_of(7)};
 static_assert(sizeof kStarts == kSlots * sizeof(uint16_t), "each slot begins somewhere");
@@ -330,7 +330,7 @@ void Store::finish() {
   uint8_t slot = slot_;
   const StoreState state = state_;
   if (state == StoreState::kSaving) {
-    // Without generation and first mark a slot does not count, however worn the memory is.
+    // Without generation and first mark, a slot does not count, however worn the memory is.
     if (nvm_read(place_) != generation_ ||
         nvm_read(plus(place_, kLastNeeded)) != (generation_ ^ kMarkOf)) {
       state_ = StoreState::kFailed;

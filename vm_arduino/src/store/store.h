@@ -35,7 +35,7 @@ class Store {
 
   StoreState state() const { return state_; }
 
-  // Whether `tick` has work to do. Until it is done, nothing else may begin.
+  // Whether `tick` has work to do. Until it is done, no other operation may begin.
   bool is_busy() const { return is_busy_; }
 
   // Whether the next byte, if any, waits for `may_commit` and the memory is ready for it.

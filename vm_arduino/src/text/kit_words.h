@@ -1,4 +1,5 @@
-// What the reader of text asks of the robot: the words of its kit, and the language of its answers.
+// The functions that the reader of text needs of the robot: the words of its kit, and the language
+// of its answers.
 //
 // Each build links one definition, as of `robot.h`.
 
@@ -27,8 +28,8 @@ constexpr uint8_t kKitTurns = 2;
 // turns.
 const uint8_t* robot_words();
 
-// The language in which a person is answered: both letters of its code, as 0x6573 for es. Of one
-// that texts.cpp does not have, English.
+// The language in which a person is answered: both letters of its code, as 0x6573 for es. For a
+// robot that texts.cpp does not have, English.
 uint16_t robot_language();
 
 // Returns what is after a device, from what it is on.

@@ -14,7 +14,7 @@ constexpr uint8_t kOdd = 0x81;         // a character that means nothing
 constexpr uint8_t kBroken = 0x82;      // no UTF-8
 tini_of_defs(constexpr uint8_t kDegree = 0x83;)  // a sign for DEG
 
-// Of a checksum: nothing has come, all digits have come, what came was a comment.
+// The state of a checksum: nothing has come, all digits have come, or it was a comment.
 constexpr uint8_t kNoCheck = 0;
 constexpr uint8_t kTilde = 1;
 constexpr uint8_t kAllDigits = kTilde + 8;

@@ -1,10 +1,10 @@
 // The reader of text: compiles a program while its bytes arrive.
 //
 // One pass: bytes become tokens, a token drives the parser, and the parser emits code, which lies
-// in the buffer from its beginning. What must be remembered (names, open blocks, operators that
-// wait) grows from the end of the buffer towards the code. Knows no link, no clock and no robot but
-// the words of its kit. Accepts what the compiler accepts; its code is plain: nothing is folded,
-// and each operator is one instruction.
+// in the buffer from its beginning. Data to remember (names, open blocks, operators that wait)
+// grows from the end of the buffer towards the code. Knows no link, no clock and no robot but the
+// words of its kit. Accepts what the compiler accepts; its code is plain: nothing is folded, and
+// each operator is one instruction.
 
 #pragma once
 
@@ -36,23 +36,23 @@ class Reader {
   // most 255 bytes, and lies elsewhere.
   void move(uint8_t* buffer, uint16_t room);
 
-  // Whether the buffer may be too small for what comes next.
+  // Whether the buffer may be too small for the next token.
   bool wants_room() const;
 
   // Whether the program begins with a SETUP word.
   bool has_setup() const { return has_setup_; }
 
-  // Whether nothing is open: no bracket, no block.
+  // Whether there is no open bracket and no open block.
   bool may_end() const { return brackets_ == 0 && stack_ == names_; }
 
-  // Whether all that was added to so many bytes of code is S.
+  // Whether the code after this number of bytes consists only of S.
   bool is_stop_after(uint8_t before) const;
 
   // Whether the program so far is S.
   bool is_stop() const { return !has_setup_ && is_stop_after(0); }
 
   // After kProblem: the number of the first word in a table of words in flash, if that is what is
-  // wrong. Else the number of words there, or 255.
+  // wrong. Otherwise the number of words there, or 255.
   uint8_t find_unknown(const uint8_t* table);
 
   // Whether an unknown word with these letters first begins the program. (Some code may look so, too.)
@@ -180,7 +180,7 @@ class Reader {
   uint32_t value_;  // of the number's digits so far; after the number its thousandths
   uint8_t first_;   // where the code of this instruction begins, after its readings
 
-  // What the console asks for, near to the begin: that takes less code.
+  // The members that the console uses, near the beginning: that takes less code.
   uint8_t setup_;
   bool has_setup_;
   uint8_t brackets_;  // that are open

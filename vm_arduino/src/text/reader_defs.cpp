@@ -1,5 +1,5 @@
-// What a reader of robots with more flash reads besides: DEFs and their calls, tasks, and ways by CM and
-// DEG.
+// Additional parts of the reader for robots with more flash: DEFs and their calls, tasks, and moves
+// by CM and DEG.
 
 #include "reader_parts.h"
 
@@ -7,14 +7,15 @@
 
 namespace tiniscript {
 
-// Opens a DEF or a task, which stands beside the main task. The depths of that wait in its block.
+// Opens a DEF or a task, which runs in parallel with the main task. The depths of that wait in its
+// block.
 void Reader::open_routine(uint8_t type, uint8_t ends) {
   open(type, ends);
   if (problem_ != Problem::kNone) return;
   Block* const block = top();
   block->after = static_cast<SensorBits>(deepest_ | calls_ << 8);
   block->taken = static_cast<SensorBits>(beside_blocks_ | beside_calls_ << 8);
-  // What a DEF needs counts where it is called.
+  // The needs of a DEF count where it is called.
   const bool is_def = type == kDefBlock;
   beside_blocks_ = is_def ? uint8_t{0} : static_cast<uint8_t>(beside_blocks_ + deepest_);
   beside_calls_ = is_def ? uint8_t{0} : static_cast<uint8_t>(beside_calls_ + calls_);
@@ -80,7 +81,7 @@ Problem Reader::head_of_def(uint8_t token) {
   return Problem::kNone;
 }
 
-// What is in the brackets of a DEF: the names of its values.
+// The content of the brackets of a DEF: the names of its values.
 Problem Reader::name_value_of_def(uint8_t token) {
   const uint8_t state = state_;
   if (token == ')' && state != kNextOfDef) {
@@ -138,7 +139,7 @@ bool Reader::reach(uint16_t defs) {
   return (defs & others) == 0;
 }
 
-// What follows the name of a DEF: its values, or the end of a call without any.
+// The part after the name of a DEF: its values, or the end of a call without any.
 Problem Reader::begin_call(uint8_t token) {
   const Def* const def = reinterpret_cast<const Def*>(entry_);
   if (def == def_) return before(Problem::kUnknownWord);

@@ -68,8 +68,8 @@ SensorBits Reader::ask() {
   return bit;
 }
 
-// Takes the word as a name of the program, if it may be one. What a remote control has of this name
-// counts as asked from then on. False: it is taken.
+// Takes the word as a name of the program, if it may be one. From then on, the remote control's
+// reading of this name counts as asked. False: it is taken.
 bool Reader::take_word() {
   const SensorBits before = asked_;
   return found_ == 0 || (kHasRemote && (found_ & kGivesWay) != 0 && (ask() & before) == 0);

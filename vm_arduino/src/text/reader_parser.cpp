@@ -6,7 +6,8 @@ namespace tiniscript {
 
 namespace {
 
-// From a move or a wait to the one with a check, and half as far from there to the endless one.
+// The distance from a move or a wait to the one with a check; half as far from there is the endless
+// one.
 constexpr uint8_t kWatchMove = byte_of(Op::kWatchF) - byte_of(Op::kMoveF);
 constexpr uint8_t kWatchWait = byte_of(Op::kWatchWait) - byte_of(Op::kWait);
 static_assert(byte_of(Op::kWatchForeverF) - byte_of(Op::kWatchF) == kWatchMove / 2, "");
@@ -137,7 +138,7 @@ Problem Reader::instruction(uint8_t token) {
   return Problem::kNone;
 }
 
-// What follows a name at the begin of an instruction.
+// The part after a name at the beginning of an instruction.
 Problem Reader::after_name(uint8_t token) {
   const uint8_t found = found_;
   state_ = kInstruction;
@@ -209,7 +210,7 @@ void Reader::end_arguments() {
   }
 }
 
-// What follows the brackets of a move or a wait: its UNTIL, or its end.
+// The part after the brackets of a move or a wait: its UNTIL, or its end.
 Problem Reader::end_move(uint8_t token) {
   uint8_t op = op_;
   if (kReadsDefs && is_way_) emit(byte_of(Op::kEscape));
@@ -235,7 +236,7 @@ Problem Reader::end_move(uint8_t token) {
       token_column_ = forever_column_;
       return Problem::kForeverHere;
     }
-    // beside other tasks: whether there are any is known at the end of the program
+    // parallel to other tasks: only the end of the program shows whether there are any
     if (lasting_column_ == 0) lasting_column_ = forever_column_;
     emit(byte_of(Op::kPushFalse));
     op = byte_of(Op::kUntil);

@@ -1,4 +1,4 @@
-// What the files of the reader share: tokens, states, and what lies in its buffer.
+// Definitions shared by the files of the reader: tokens, states, and the contents of its buffer.
 
 #pragma once
 
@@ -21,10 +21,10 @@ inline bool ends(uint8_t token) { return token == ';'; }
 constexpr uint8_t byte_of(Op op) { return static_cast<uint8_t>(op); }
 constexpr uint8_t token_of(Op op) { return static_cast<uint8_t>(kBinary | byte_of(op)); }
 
-// Where a byte stands. The signs that may be the first half of another stand for themselves.
+// The addresses of its bytes. The signs that may be the first half of another stand for themselves.
 enum Place : uint8_t { kBetween, kWord, kComment, kWhole, kPoint, kPlaces };
 
-// What the parser wants next.
+// What the parser expects next.
 enum ParseState : uint8_t {
   kBegin,
   kBar,              // after SI, SB or PING
@@ -52,12 +52,12 @@ enum ParseState : uint8_t {
 // Whether an argument is just a number.
 enum Shape : uint8_t { kNoPlain, kFresh, kMinusFirst, kPlain };
 
-// What a name is that is no device.
+// The kind of a name that is no device.
 constexpr uint8_t kIsVariable = 16;
 constexpr uint8_t kIsDef = 32;
 constexpr uint8_t kIsGone = 64;  // a value of another DEF
 
-// Among the operators that wait: open brackets, with the opcode of their function. The second
+// Among the waiting operators: open brackets, with the opcode of their function. The second
 // argument of a function has kSecond, and kBase is after all.
 constexpr uint8_t kBracket = 0x80;
 constexpr uint8_t kSecond = 0x40;
@@ -68,8 +68,8 @@ enum BlockType : uint8_t { kIfBlock, kLoopBlock, kWhileBlock, kDefBlock, kTaskBl
 constexpr uint8_t kBlockType = 7;
 constexpr uint8_t kForeverBlock = 8 | kLoopBlock;  // one that does not count
 
-// A block whose end has not come yet. In a DEF or a task `after` and `taken` are depths, blocks in
-// the low byte and calls above: of the main task, and those beside it.
+// A block whose end has not come yet. In a DEF or a task, `after` and `taken` are depths, blocks in
+// the low byte and calls in the high one: of the main task, and of the others.
 struct __attribute__((packed)) Reader::Block {
   uint8_t type;
   uint8_t ends;       // the last of the operands that want its end; each holds the one before

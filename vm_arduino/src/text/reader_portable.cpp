@@ -1,4 +1,4 @@
-// What `reader_avr.S` does on an AVR: the reader's memory, its numbers, and its comparison of words.
+// The C++ version of `reader_avr.S`: the reader's memory, its numbers, and its comparison of words.
 
 #include "../vm/find_word.h"
 #include "reader_parts.h"
@@ -105,7 +105,7 @@ void Reader::emit_number(bool is_minus) {
   }
 }
 
-// Whether the word is the one at `entry`, which goes after it.
+// Whether the word is the one at `entry`, which then moves past it.
 bool Reader::matches(const uint8_t** entry, bool in_flash) {
   const uint8_t* word = buffer_ + length_;
   const uint8_t* at = *entry;

@@ -7,7 +7,7 @@ namespace tiniscript {
 
 namespace {
 
-// How tightly an operator binds, from OR to a minus before its operand; 0 for brackets.
+// The precedence of an operator, from OR to a minus before its operand; 0 for brackets.
 enum Binding : uint8_t { kNone, kOrs, kAnds, kNots, kComparisons, kSums, kProducts, kMinuses };
 
 tini_noinline uint8_t binding_of(uint8_t op) {

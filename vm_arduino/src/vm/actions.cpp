@@ -1,4 +1,4 @@
-// What an instruction asks of the robot, of the clock or of chance: the same on every chip.
+// Instructions that involve the robot, the clock or chance: the same on every chip.
 
 #include "../robot.h"
 #include "decode_form.h"
@@ -34,7 +34,7 @@ tini_noinline int8_t percent(int32_t power) {
   return static_cast<int8_t>(limited(whole(power), -100, 100));
 }
 
-// That of a move is not below 0.
+// The time of a move is not below 0.
 int8_t of_move(int8_t power) { return power < 0 ? 0 : power; }
 
 }  // namespace
@@ -50,8 +50,8 @@ bool Machine::sense(uint8_t number) {
   return robot_read(number, readings_ + number);
 }
 
-// Shows a value. Where there is no room a task keeps it and ends its turn, so that nothing stays on
-// the stack; a program without tasks waits for room, and so does the main task before all others.
+// Shows a value. Without room, a task keeps it and ends its turn, so that nothing stays on the
+// stack; a program without tasks waits for room, and so does the main task before all others.
 inline bool Machine::show(int32_t value) {
   if (!kHasTasks) return robot_show(value, task_.me->shows_yes_no()) || stay();
   task_.me->rest_ms = static_cast<uint32_t>(value);

@@ -11,7 +11,8 @@
 
 namespace tiniscript {
 
-// How two numbers are compared: the last three bits of EQ to GE, of IF8, IF_VAR8, UNTIL8 and so on.
+// The comparison of two numbers: the last three bits of EQ to GE, of IF8, IF_VAR8, UNTIL8 and so
+// on.
 enum class Comparator : uint8_t { kEq, kNe, kLt, kLe, kGt, kGe };
 
 tini_always_inline Comparator comparator_of(Op op) {

@@ -1,14 +1,14 @@
-// What this build has, in one place for C++ and assembly. All that is conditional in `vm/` is here, in
-// `cpu.h`, in `layout_avr.h`, or encloses a whole file, or chooses a file; and so in the other
-// folders, but for `boards/`. In one file of assembly a part is conditional: `bytecode_avr.S` says what a
-// machine without tasks does about theirs.
+// The features of this build, in one place for C++ and assembly. All that is conditional in `vm/`
+// is here, in `cpu.h`, in `layout_avr.h`, or encloses a whole file, or chooses a file; and so in
+// the other folders, but for `boards/`. In one file of assembly a part is conditional:
+// `bytecode_avr.S` says what a machine without tasks does about theirs.
 //
-// The machine of an AVR is in assembly. With `tiniscript_portable` it is the C++ of all other chips,
-// which tests compare with that.
+// The machine of an AVR is in assembly. With `tiniscript_portable`, it has the C++ of all other
+// chips, which tests compare with the assembly.
 //
 // Tasks take about 1,200 bytes of flash and 88 of RAM. An Uno has them with the compiler's options
-// of platformio.ini (`tiniscript_with_tasks`). With those of the Arduino IDE it has none, nor has a
-// Nano, whose bootloader leaves 30,720 bytes.
+// of platformio.ini (`tiniscript_with_tasks`). With those of the Arduino IDE it has none, and
+// neither has a Nano, whose bootloader leaves 30,720 bytes.
 //
 // An ATmega328P has discs, which measure a way (`tiniscript_with_discs`), or breakpoints
 // (`tiniscript_with_breakpoints`) in the place of the reader of text.
@@ -63,7 +63,7 @@
 #define tiniscript_has_breakpoints
 #endif
 
-// What a program reads, told to a computer that wants to know: an ATmega328P lacks the RAM.
+// Readings of a program, reported to a computer that wants them: an ATmega328P lacks the RAM.
 #if defined(tiniscript_has_breakpoints) && !defined(__AVR_ATmega328P__)
 #define tiniscript_tells_readings
 #endif
@@ -86,7 +86,7 @@
 #define tiniscript_transports
 #endif
 
-// What only a machine with tasks has.
+// Members that only a machine with tasks has.
 #ifdef tiniscript_has_tasks
 #define tini_of_tasks(...) __VA_ARGS__
 #else
@@ -143,9 +143,9 @@ struct Choice<false, First, Second> {
   typedef Second Type;
 };
 
-// A member of a class that only some robots have: `tini_with_remote` is before it. Where a robot lacks
-// what it is for, it is a static member that nothing defines, and takes no memory. What uses it comes
-// after the constant, `kHasRemote`, and is left out there.
+// A member of a class that only some robots have: `tini_with_remote` is before it. On a robot
+// without the feature, it is a static member that nothing defines, and takes no memory. Its uses
+// come after the constant, `kHasRemote`, and are left out there.
 
 #ifdef tiniscript_without_text
 constexpr bool kHasText = false;
@@ -234,7 +234,8 @@ constexpr bool kMaySeal = false;
 
 constexpr bool kHasSeals = kMaySeal && kHasOwners;
 
-// As large as which board it is; tiniscript_like_mega and tiniscript_like_esp32 are for robots on a computer.
+// The board whose size it has; tiniscript_like_mega and tiniscript_like_esp32 are for robots on a
+// computer.
 enum class RobotSize : uint8_t { kUno, kMega, kEsp32 };
 
 #if defined(__AVR_ATmega2560__) || defined(tiniscript_like_mega)
@@ -245,8 +246,8 @@ constexpr RobotSize kRobotSize = RobotSize::kEsp32;
 constexpr RobotSize kRobotSize = RobotSize::kUno;
 #endif
 
-// Whether a write of what it stores stops the chip for long, so that nothing may be written while motors
-// are on; such a memory may also refuse the last bytes of a save, as it is full.
+// Whether writing its memory stops the chip for long, so that writes must wait while motors are on;
+// such a memory may also refuse the last bytes of a save, because it is full.
 #ifdef ARDUINO_ARCH_ESP32
 constexpr bool kWritesStopTheChip = true;
 #else
@@ -270,7 +271,7 @@ constexpr bool kCountsInstructions = false;
 // The budget of a tick in a main loop. An AVR leaves it where an interrupt has an event.
 constexpr uint8_t kTickBudget = kIsAvr ? 255 : 32;
 
-// What the CPU calculates at once, where the arithmetic is in C++.
+// Operations that the CPU does at once, if the arithmetic is in C++.
 #if defined(__x86_64__) || defined(__aarch64__) || defined(__wasm__)
 constexpr bool kHasQuotient64 = true;
 #else

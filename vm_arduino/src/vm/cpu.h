@@ -1,4 +1,5 @@
-// What the code of all chips asks of the CPU: attributes, tables in flash, quick flags.
+// The services that the code of all chips needs of the CPU: attributes, tables in flash, quick
+// flags.
 //
 //   tini_progmem             a table that stays in flash, which `flash_byte` and `flash_word` read
 //   tini_noinline            a function that is not copied into each of its callers

@@ -11,7 +11,8 @@ namespace tiniscript {
 
 namespace {
 
-// Whose way the robot measures, or measured last, unless its move is over: the robot knows one way.
+// The task whose move the robot measures, or measured last, unless its move is over: the robot
+// measures one at a time.
 TaskRecord* on_way;
 
 void forget_set(TaskRecord* task) { task->state &= static_cast<uint8_t>(~kHasSet); }
@@ -230,7 +231,7 @@ tini_noinline void Drive::take_motors() {
   if (holder->is(kDrives)) stand_still(holder);
 }
 
-// Of a robot without discs.
+// For a robot without discs.
 __attribute__((weak)) bool robot_measures() { return false; }
 __attribute__((weak)) void robot_go(int8_t, int8_t, int32_t) {}
 __attribute__((weak)) Going robot_going(int32_t*) { return Going::kThere; }

@@ -34,7 +34,7 @@ class Drive : public Execution {
   // A new program has no way that the robot measures.
   static void forget_way();
 
-  // How far the clock of a task is behind now; `execute_control_avr.S` is the same for the AVR.
+  // How far the clock of a task lags now; `execute_control_avr.S` is the same for the AVR.
   uint32_t late_ms(const TaskRecord* task) const;
 
   // Sets a task's clock to now.
@@ -45,7 +45,7 @@ class Drive : public Execution {
     if (late_ms(me) > kLateMs) set_clock(me);
   }
 
-  // How long after its clock, where it last looked, its UNTIL looks again.
+  // The time between its clock, at the last check, and the next check of its UNTIL.
   uint32_t next_check_ms(const TaskRecord* me) const {
     const uint32_t late = late_ms(me);
     uint32_t next_ms = kCheckMs;

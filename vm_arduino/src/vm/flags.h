@@ -1,4 +1,4 @@
-// Who has which of the flags that much of the firmware asks.
+// The owners of the flags that much of the firmware checks.
 
 #pragma once
 

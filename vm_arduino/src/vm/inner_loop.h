@@ -1,4 +1,4 @@
-// What instructions have in common, copied into the inner loop in `inner_loop.cpp`.
+// Code shared by instructions, copied into the inner loop in `inner_loop.cpp`.
 //
 // Not for the AVR. Each function returns whether the next instruction may run now.
 
@@ -95,7 +95,7 @@ tini_always_inline bool InnerLoop::fail(Fault fault) {
   return false;
 }
 
-// What an instruction takes from the stack lies at `top_` then, the first value first.
+// The operands of an instruction are then at `top_`, the first value first.
 tini_always_inline bool InnerLoop::pop(uint8_t values) {
   if (top_ < machine_.task_.stack + values) return fail(Fault::kBadCode);
   top_ -= values;
@@ -120,8 +120,8 @@ tini_always_inline uint16_t InnerLoop::offset(const uint8_t* at) const {
   return static_cast<uint16_t>(at - machine_.code_);
 }
 
-// Jumps by this many bytes forward or back from the end of the instruction. Where that leads is
-// checked when the next instruction begins.
+// Jumps by this many bytes forward or back from the end of the instruction. The target is checked
+// when the next instruction begins.
 tini_always_inline bool InnerLoop::jump(uint16_t distance) {
   next_ += distance;
   return true;
@@ -139,7 +139,7 @@ tini_always_inline bool InnerLoop::again(uint16_t distance) {
   return !machine_.has_tasks() || machine_.go_back();
 }
 
-// Goes on with the next instruction if a condition holds, else jumps.
+// Continues with the next instruction if a condition holds, otherwise jumps.
 tini_always_inline bool InnerLoop::unless(bool holds, uint16_t distance) {
   return holds || jump(distance);
 }
@@ -249,7 +249,7 @@ tini_always_inline bool InnerLoop::call(uint16_t distance) {
   return open(offset(next_)) && jump_back(distance);
 }
 
-// Leaves the value on the stack and jumps if it is `decisive`, else drops it.
+// Leaves the value on the stack and jumps if it is `decisive`, otherwise drops it.
 tini_always_inline bool InnerLoop::join(bool decisive, uint16_t distance) {
   if (!pop(1)) return false;
   if ((*top_ != 0) != decisive) return true;

@@ -1,4 +1,4 @@
-// Where a machine has what in memory, for assembly. `layout_avr.cpp` asserts each offset.
+// The memory layout of a machine, for assembly. `layout_avr.cpp` asserts each offset.
 
 #pragma once
 
@@ -7,7 +7,7 @@
 // The bit of GPIOR0 that interrupts set: `boards/avr/events.h`.
 #define tini_event_bit 0
 
-// What a chip has whose calls leave three bytes on the stack, not two.
+// Definitions for a chip whose calls leave three bytes on the stack, not two.
 #ifdef __AVR_3_BYTE_PC__
 #define tini_of_far_code(...) __VA_ARGS__
 #else

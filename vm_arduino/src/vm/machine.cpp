@@ -35,8 +35,8 @@ uint32_t Machine::wake_ms() const {
   return has_tasks() ? Scheduler::wake_ms() : task_.me->clock_ms;
 }
 
-// Whether the time has come for a round: in each millisecond there is one at least, which takes less
-// flash than to find out when the next turn is.
+// Whether it is time for a round: each millisecond has at least one, which takes less flash than
+// finding out when the next turn is.
 inline bool Machine::is_due() const {
   if (has_tasks()) return !task_.is_quiet;
   return static_cast<int32_t>(late_ms(task_.me)) >= 0;

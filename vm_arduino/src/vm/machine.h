@@ -1,10 +1,11 @@
 // The machine.
 //
-// Runs verified code. Time comes in as `now_ms`; the world is behind `robot.h`. `tick` does a
-// little and returns: nothing here blocks. In Python it is `machine.py`, whose `tick` counts instructions;
-// `tests/project/test_twins.py` lists what has another name there. What it has of a program is in
-// `state.h`, how it moves in `drive.h`, the turns of tasks in `scheduler.h`; `inner_loop.cpp` does
-// an instruction at a time, `actions.cpp` what an instruction asks of the robot.
+// Runs verified code. Time comes in as `now_ms`; the world is accessed through `robot.h`. `tick`
+// does a little and returns: nothing here blocks. In Python it is `machine.py`, whose `tick` counts
+// instructions; `tests/project/test_twins.py` lists what has another name there. Its state of a
+// program is in `state.h`, its moves in `drive.h`, the turns of tasks in `scheduler.h`;
+// `inner_loop.cpp` runs an instruction at a time, `actions.cpp` the instructions that involve the
+// robot.
 //
 // Cheap checks guard against unverified code: stack, counters, calls, offsets, opcodes and the
 // numbers of variables and sensors. A violation is the fault kBadCode, not a wild write. On the AVR
@@ -39,9 +40,9 @@ class Machine : public Scheduler {
   void start_prepared(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
                       uint32_t seed, uint32_t now_ms);
 
-  // Runs at the time `now_ms` until the program must wait or ends, or for a `budget` of jumps back and
-  // calls: code between two of them is short. In the assembly of an AVR a tick also ends there early
-  // if `boards/avr/events.h` requests it. With `tiniscript_counts_instructions` all count.
+  // Runs at the time `now_ms` until the program must wait or ends, or for a `budget` of jumps back
+  // and calls: code between two of them is short. In the assembly of an AVR a tick also ends there
+  // early if `boards/avr/events.h` requests it. With `tiniscript_counts_instructions`, all count.
   Status tick(uint32_t now_ms, uint8_t budget);
 
   const Task& task() const { return task_; }
@@ -60,18 +61,18 @@ class Machine : public Scheduler {
   // instruction of the text begins there, so the stack is empty.
   void resume();
 
-  // Whose turn it is, as the number of its record; not between two rounds.
+  // The task whose turn it is, as the number of its record; invalid between two rounds.
   uint8_t turn() const;
 
-  // Where a task goes on. Where the innermost open call of the one whose turn it is goes on.
+  // Where a task continues. Where the innermost open call of the current task continues.
   uint16_t place_of(uint8_t task) const;
   uint16_t return_place() const;
 
   // Sets the motors again as the program has them, to what is left of a way.
   void set_motors_again();
 
-  // Where the SHOW is whose value `robot_show` gets, also if it gets it again: it is a byte, and a
-  // task goes on after it.
+  // The offset of the SHOW whose value `robot_show` gets, also if it gets it again: it is a byte,
+  // and a task continues after it.
   uint16_t shown_at() const { return static_cast<uint16_t>(task_.pc - 1); }
 
   // When the machine has work again, while the program waits; of tasks it may be at once, or was.
@@ -80,7 +81,7 @@ class Machine : public Scheduler {
   // Goes on to where the next instruction begins. False: none may run now. Not for an AVR.
   bool reach_instruction(uint32_t now_ms);
 
-  // What is left of the last budget.
+  // The rest of the last budget.
   uint8_t left() const { return left_; }
 
  private:
@@ -98,7 +99,7 @@ class Machine : public Scheduler {
     return kHasBreakpoints && fault_ == Fault::kBadCode && at_ < length_ && code_[at_] == kTrap;
   }
 
-  // Whether a way that the robot measures has failed before an instruction runs.
+  // Whether a move that the robot measures has failed before an instruction runs.
   bool is_stuck() const { return kHasDiscs && fault_ != Fault::kNone; }
 
   // Runs turns until the round is over or the budget is used up: `turns.cpp`, `tasks_avr.S`.
@@ -111,13 +112,13 @@ class Machine : public Scheduler {
   // which the assembly lets its caller find out.
   bool execute(uint8_t budget);
 
-  // What asks something of the robot, of the clock or of chance: `actions.cpp`.
+  // Instructions that involve the robot, the clock or chance: `actions.cpp`.
   bool act(uint8_t code, const uint8_t* bytes, int32_t* top) tini_called_by_assembly;
   bool sense(uint8_t number) tini_called_by_assembly;
   bool go_ms(uint8_t code, int32_t* top);
   bool show(int32_t value);
 
-  // Nobody calls it: what it asserts, the compiler checks.
+  // It is never called: the compiler checks its assertions.
   static void check_layout();
 };
 

@@ -1,8 +1,8 @@
 // The numbers of TiniScript: signed 32-bit counts of thousandths.
 //
-// Knows arithmetic, its rounding and its faults; means the same as `fixed_point.py`. Every
-// argument and result is a count of thousandths unless a name says otherwise. Where a function
-// returns a fault, its result means nothing. `number_avr.S` is all of this for the AVR.
+// Knows arithmetic, its rounding and its faults; means the same as `fixed_point.py`. Every argument
+// and result is a count of thousandths unless a name says otherwise. If a function returns a fault,
+// its result means nothing. `number_avr.S` is all of this for the AVR.
 
 #pragma once
 

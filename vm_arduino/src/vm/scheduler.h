@@ -1,8 +1,8 @@
 // The turns of tasks: who goes on, and when.
 //
-// `task_steps.cpp` has what is the same on every chip, `turns.cpp` the rest, which is in `tasks_avr.S`
-// for an Uno. Without tasks nothing here is called. Has the names of `TaskMachine` in `tasks.py`;
-// `tests/project/test_twins.py` lists what has another.
+// `task_steps.cpp` has what is the same on every chip, `turns.cpp` the rest, which is in
+// `tasks_avr.S` for an Uno. Without tasks, none of these functions is called. Has the names of
+// `TaskMachine` in `tasks.py`; `tests/project/test_twins.py` lists what has another.
 
 #pragma once
 
@@ -27,7 +27,7 @@ class Scheduler : public Drive {
   // When the next task is due: it may be at once, or was.
   uint32_t wake_ms() const;
 
-  // What instructions do in a task. Each returns whether the next one may run now.
+  // The effects of instructions in a task. Each returns whether the next one may run now.
   bool go_back();
   bool look(bool holds);
   bool look_again();

@@ -16,7 +16,7 @@ namespace tiniscript {
 constexpr uint8_t kLateMs = 20;            // so late a move or wait may begin and lose nothing
 constexpr uint32_t kForever = 0xffffffff;  // the time of a move that only its UNTIL ends
 
-// What `tick` returns.
+// The result of `tick`.
 enum class Status : uint8_t {
   kRunning,  // there is more to do now
   kWaiting,  // nothing to do before the machine's `wake_ms`
@@ -38,12 +38,12 @@ constexpr Powers powers_of(int8_t left, int8_t right) {
   return static_cast<uint16_t>(static_cast<uint8_t>(left) | static_cast<uint8_t>(right) << 8);
 }
 
-// What one task has for itself; a program without TASK and WHEN has one, the main task. A move of
-// its own **drives**, or it is **blocked**: it waits for the motors, or stands still since a higher
-// task has taken them.
+// The state of one task; a program without TASK and WHEN has one, the main task. A move of its own
+// **drives**, or it is **blocked**: it waits for the motors, or stands still since a higher task
+// has taken them.
 struct TaskRecord {
   static constexpr uint8_t kWaits = 0x10;  // tells a wait from a move
-  // beside the code
+  // in addition to the code
   static constexpr uint8_t kWatches = 0x20;   // an UNTIL follows
   static constexpr uint8_t kMeasures = 0x80;  // it lasts until the way is gone
   static constexpr uint8_t kFirstShow = static_cast<uint8_t>(Op::kShow);
@@ -83,13 +83,13 @@ constexpr uint8_t kAtFirst = kHasTime | kHasBegun;
 
 // Bits of `others`.
 constexpr uint8_t kIsFirstRound = 1;
-constexpr uint8_t kOneOther = 2;     // so much for each task that has not ended, beside one
+constexpr uint8_t kOneOther = 2;     // the amount for each task that has not ended, except one
 constexpr uint8_t kAllOthers = 14;
 constexpr uint8_t kHasHadTurn = 64;   // the first turn, of the main task before all others, is over
-constexpr uint8_t kHasOthers = 128;  // there are tasks beside the main one
+constexpr uint8_t kHasOthers = 128;  // there are tasks besides the main one
 
-// Of a counted loop that is open: how many times it still goes around. Of an open call: where it
-// continues. They lie in the order in which they were opened.
+// For an open counted loop: how many times it still repeats. For an open call: where it continues.
+// They lie in the order in which they were opened.
 template <bool kInAssembly>
 struct FrameOf {
   using Type = int32_t;
@@ -109,7 +109,7 @@ constexpr uint8_t kFrames = kCounters + kCalls;
 template <bool kHasTasks>
 struct TaskOf;
 
-// Of a program that may have tasks.
+// For a program that may have tasks.
 template <>
 struct TaskOf<true> {
   uint16_t pc;
@@ -162,7 +162,7 @@ class Execution {
  protected:
   bool has_tasks() const { return task_.others != 0; }
 
-  // Whether it goes on, without a fault.
+  // Whether it continues, without a fault.
   bool goes_on(Fault fault);
 
   // A run-time check has failed, which verified code never causes.

@@ -1,4 +1,4 @@
-// What a task does in its turn beside moving, and when the next one is due: on every chip.
+// The turn of a task apart from moving, and the time of its next turn: on every chip.
 
 #include "build.h"
 
@@ -62,7 +62,7 @@ bool Scheduler::end_task() {
   return pause();
 }
 
-// Whether it waits for its clock, and not for the motors or for nothing any more.
+// Whether it waits only for its clock, and not for the motors.
 bool Scheduler::waits_for_clock(const TaskRecord* task) const {
   return task->is(kHasTime) || (task_.holder == task && task->is(kIsMoving));
 }

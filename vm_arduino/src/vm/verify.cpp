@@ -11,8 +11,8 @@ constexpr uint16_t kFarAway = 0xffff;  // an offset past any code
 
 enum class Kind : uint8_t { kCode, kIf, kRepeat, kCount };
 
-// An open block: an IF is one of these, a loop two, its start below its end. Nothing lies deeper on
-// the stack of an ATmega328P.
+// An open block: an IF is one of these, a loop two, its start below its end. This is the deepest
+// point of the stack on an ATmega328P.
 struct Block {
   uint16_t end;  // 0: a loop that names none and has no BREAK yet
   Kind kind;
@@ -88,10 +88,10 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
   Depth ended = 0;              // that the tasks need that have ended, together
   Depth beside = 0;             // that others need which are open with this routine
   Block* top = memory->blocks;  // the innermost block that is open
-  uint8_t tasks = 0;            // that have begun beside the main one
+  uint8_t tasks = 0;            // that have begun, besides the main one
   ControlRole closer = ControlRole::kNone;  // of the routine
-  uint8_t needed = 0;           // of `needs`, beside tasks
-  uint8_t minor = 0;            // that its instructions came with, beside what they need
+  uint8_t needed = 0;           // of `needs`, except tasks
+  uint8_t minor = 0;            // the version of its instructions, apart from their needs
   bool reads_inside = false;    // a reading was pushed above other values, or in an open join
   join->target = kFarAway;
   top->end = 0;

@@ -1,8 +1,8 @@
 // The verifier: what a machine must refuse, and the number of each reason.
 //
 // One pass over the code from its first byte to its last, with bounded memory: what is open is a
-// few words, and a jump is right when it leads where the structure around it ends or begins. What
-// is accepted cannot leave the stack, the variables, the kit or the code while it runs.
+// few words, and a jump is right when it leads where the structure around it ends or begins.
+// Accepted code cannot leave the stack, the variables, the kit or the code while it runs.
 // `bytecode_spec.md` has the steps in words, `verify.py` in Python: same names, same order, same
 // verdict at the same offset. Change all three.
 
@@ -15,9 +15,9 @@
 
 namespace tiniscript {
 
-// Of code that is refused: the first rule that it violates, and the offset of the instruction there.
-// Of code that is accepted: kNone, and bits of `needs` below the minor version that its instructions
-// came with.
+// For refused code: the first rule that it violates, and the offset of the instruction there. For
+// accepted code: kNone, and bits of `needs` below the minor version that its instructions came
+// with.
 struct Verdict {
   Rule rule;
   uint16_t offset_or_needs;

@@ -1,6 +1,6 @@
 """`tsc doctor`: prints the doctor's findings, the robot's description, and the ports.
 
-What is wrong goes into a report, too, which may be sent.
+Findings also go into a report that may be sent.
 """
 
 from __future__ import annotations

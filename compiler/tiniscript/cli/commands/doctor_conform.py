@@ -1,4 +1,4 @@
-"""`tsc doctor --conform`: whether a machine or a robot of others does what it should."""
+"""`tsc doctor --conform`: checks whether another vendor's machine or robot behaves as specified."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def report(
     options: Namespace,
     language: str,
 ) -> int:
-    """Print what differs, and the sum; return the exit code."""
+    """Print the differences and their number; return the exit code."""
     verdicts = list(verdicts)
     lacking_count = sum(verdict.what == LACKS for verdict in verdicts)
     verdicts = [verdict for verdict in verdicts if verdict.what != LACKS]

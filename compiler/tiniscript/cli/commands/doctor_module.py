@@ -55,7 +55,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _print_finding(finding: Finding, language: str) -> int:
-    """Print what was found; return the exit code."""
+    """Print the finding; return the exit code."""
     print("\n".join(finding_lines([finding], language)), flush=True)
     return 3 if finding.is_wrong else 0
 

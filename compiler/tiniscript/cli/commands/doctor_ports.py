@@ -57,7 +57,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
-    """Return the robot that answers on a port, or why none does."""
+    """Return the robot that answers on a port, or the reason why none does."""
     try:
         with closing(
             open_client(port, robot, LOOKING_VERB, baud, language, OPEN_TIMEOUT_S)

@@ -95,7 +95,7 @@ def _print(
 
 
 def _report(findings: list[Finding], name: str, port: str, language: str) -> list[str]:
-    """Return the lines of a report: nothing in it tells whose robot or computer it is."""
+    """Return the lines of a report: it does not identify the owner or the computer."""
     hidden_names = [
         (item, report.shown_port(port)) for item in (port, printable_name(port)) if port
     ]

@@ -89,7 +89,7 @@ def _selected_robot(options: Namespace, language: str) -> tuple[Robot, tuple[Boo
 
 
 def _port(options: Namespace) -> str:
-    """Return the port, which can be opened. Never the last used one: it may be that of a radio."""
+    """Return the port, which can be opened. It never uses the last port: that may be a radio's."""
     if options.port is None:
         raise CommandError(2, "flash_no_port")
     port = inputs.check_port(options.port)

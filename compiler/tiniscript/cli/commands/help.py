@@ -1,4 +1,4 @@
-"""`tsc help`: what a command does, and which options it has; or which command does something."""
+"""`tsc help`: describes a command and its options, or finds the command for a purpose."""
 
 from __future__ import annotations
 

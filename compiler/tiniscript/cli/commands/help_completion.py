@@ -1,8 +1,8 @@
-"""`tsc help --completion`: what a shell needs so that the Tab key completes commands of `tsc`.
+"""`tsc help --completion`: the script for completing commands of `tsc` with the Tab key.
 
-A shell's script asks `tsc` at each Tab what fits the typed words: they come after `--`, the last
-one with a dot before it, as PowerShell 5 leaves out an empty one. The first line of the answer says
-whether a file would fit, too; each other one has a word, a tab, and what it does.
+A shell's script asks `tsc` at each Tab for completions of the typed words: they come after `--`,
+the last one with a dot before it, because PowerShell 5 drops an empty one. The first line of the
+answer says whether a file would fit, too; each other one has a word, a tab, and what it does.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def run(options: Namespace, language: str) -> int:
 def _completions(
     words_before: list[str], last_word: str, language: str
 ) -> tuple[str, list[tuple[str, str]]]:
-    """Return the kind of what the last word may be, and the words of that kind."""
+    """Return the kind that the last word may have, and the words of that kind."""
     verb, words_before = _split_verb(words_before)
     if verb not in ("tsc", *VERBS):
         return "", []
@@ -135,7 +135,7 @@ def _split_verb(words: list[str]) -> tuple[str, list[str]]:
 
 
 def _values_of_kind(kind: Kind, language: str) -> list[tuple[str, str]]:
-    """Return the values of a kind that have names, and what they do if that is known."""
+    """Return the named values of a kind, with their descriptions if known."""
     if kind is VERB:
         return [(verb, _first_clause(summary_of(verb, "summary", language))) for verb in VERBS]
     if kind.name == "port":
@@ -152,5 +152,5 @@ def _values_of_kind(kind: Kind, language: str) -> list[tuple[str, str]]:
 
 
 def _first_clause(summary: str) -> str:
-    """Return the first part of what an option or a verb does, in one line."""
+    """Return the first clause of the description of an option or a verb, in one line."""
     return re.split(r"; |\. |: `", summary)[0].replace("`", "")

@@ -46,7 +46,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _check_options(options: Namespace, action: str) -> None:
-    """Refuse what only goes with another action."""
+    """Refuse options that belong to another action."""
     for option in options_of("lesson"):
         belongs_to_action = any(option.name in names for names in ACTIONS.values())
         if belongs_to_action and option.name not in ACTIONS.get(action, ()):

@@ -124,7 +124,7 @@ class Repl:
 
     def meet_robot(self) -> None:
         """Send HELLO to the robot, and use its kit. Raises CommandError if none answers, or it
-        cannot halt where it is to."""
+        cannot halt where it should."""
         self.connection.meet()
         if self.break_lines:
             require_breakpoints(self.connection)
@@ -156,7 +156,7 @@ class Repl:
         return exit_code
 
     def read_block(self, line: str, read_more: Callable[[], str | None]) -> str:
-        """Return a line with those that its blocks go on over, up to the first one with a mistake.
+        """Return a line with the further lines of its blocks, up to the first one with a mistake.
 
         `read_more` returns the next line, or None if there is none.
         """
@@ -217,8 +217,8 @@ class Repl:
         return tuple(sorted(offsets))
 
     def drive_by_keys(self, line: str | None) -> int:
-        """Drive what a line reads of a remote control, or the program that runs, by the keys of
-        the terminal; return the exit code."""
+        """Let the keys of the terminal act as the remote control of a line or of the running
+        program; return the exit code."""
         self.meet_robot()
         with TerminalRemote(self.connection) as self.remote:
             self.connection.print_text("live_keys")
@@ -302,7 +302,7 @@ class Repl:
         return False
 
     def _run_or_print(self, line: str) -> None:
-        """Run a line; print any failure, and go on with the session."""
+        """Run a line; print any failure, and continue the session."""
         try:
             self.run_line(line)
         except CommandError as error:

@@ -47,7 +47,7 @@ class _Log:
         self.search: PendingRequest[HelloReply] | None = None
 
     def print_events(self) -> None:
-        """Print events until the port is gone."""
+        """Print events until the port is lost."""
         self._print_text(
             "LINKED",
             "linked",

@@ -179,7 +179,7 @@ class _Stage:
                 self.screen.draw(self.picture, self.simulator.robot.now_ms)
 
     def _handle_keys(self, keys: str) -> bool:
-        """Handle keys; return whether to go on."""
+        """Handle keys; return whether to continue."""
         for key in keys:
             if key in QUIT_KEYS:
                 return False

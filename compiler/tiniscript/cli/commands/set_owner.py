@@ -27,7 +27,7 @@ def run(options: Namespace, language: str) -> int:
 
 def _claim(connection: Connection, key_kind: int) -> None:
     request = connection.connection.begin(lambda session: session.claim(key_kind))
-    # Said once the robot is asked: a press that has lasted 2 s before counts for nothing.
+    # Printed once the robot is asked: a press that has already lasted 2 s does not count.
     sentence = connection.text("claim_hold", seconds=CLAIM_TIMEOUT_MS // 1000)
     print(sentence, file=sys.stderr, flush=True)
     reply = connection.wait(request)

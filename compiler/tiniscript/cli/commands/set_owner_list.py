@@ -1,4 +1,4 @@
-"""`tsc set owner --list`: the robots whose keys this computer has; a list for another one."""
+"""`tsc set owner --list`: the robots whose keys this computer has; a list for another computer."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _change_trim(old_trim: Trim, typed_values: dict[str, Any], is_reset: bool) -> Trim:
-    """Return a trim with what the options say."""
+    """Return a trim changed by the options."""
     paces = {name: typed_values.pop(name) for name in Pace._fields if name in typed_values}
     if paces and old_trim.pace is None:
         raise CommandError(1, "trim_no_pace")

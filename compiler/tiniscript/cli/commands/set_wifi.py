@@ -24,7 +24,7 @@ from tiniscript.link.messages import (
 from tiniscript.link.payloads import WifiReply
 from tiniscript.link.wifi import MODES, STATES, Network, address
 
-# states from which nothing further follows by itself
+# states that are final on their own
 FINAL_STATES = tuple(map(STATES.index, ("READY", "REFUSED", "RESTS")))
 
 
@@ -66,7 +66,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _refuse_over_wifi(connection: Connection) -> None:
-    """Refuse to change the network over the network: nobody would hear how that ends.
+    """Refuse to change the network over the network: the result could not be reported.
 
     A robot that would refuse anyway does so here, before anybody is asked for a password.
     """

@@ -20,7 +20,7 @@ from tiniscript.link.payloads import ReceiptReply
 
 
 class UndoSaving(Saving):
-    """Waits until the robot keeps its choice: what it has undone is not lost before."""
+    """Waits until the robot has saved its choice: until then, the undone program is not lost."""
 
     KEY_BY_REASON: ClassVar = {"saves_later": "undo_later", "low_supply": "undo_low_supply",
                       "not_saved": "undo_not_saved"}  # fmt: skip

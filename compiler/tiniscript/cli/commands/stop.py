@@ -1,4 +1,4 @@
-"""`tsc stop`: stops the robot now, whatever else is wrong."""
+"""`tsc stop`: stops the robot now, even if something else is wrong."""
 
 from __future__ import annotations
 

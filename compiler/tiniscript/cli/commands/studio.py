@@ -126,7 +126,7 @@ def _address() -> str:
     """Return this computer's address in the local network, without asking another computer."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as connection:
         try:
-            connection.connect((UNUSED_ADDRESS, 9))  # chooses a way, and sends nothing
+            connection.connect((UNUSED_ADDRESS, 9))  # selects a path, and sends nothing
             return str(connection.getsockname()[0])
         except OSError:
             raise CommandError(3, "studio_no_network") from None

@@ -154,7 +154,7 @@ def _upload(
         try:
             if recorder is not None:
                 recorder.end_recording("STOPPED")
-            saving.wait()  # a short wait, because the motors stand now
+            saving.wait()  # a short wait, because the motors are off now
         except CommandError as error:
             print(error.sentence(language), file=sys.stderr)
         except KeyboardInterrupt:

@@ -15,7 +15,7 @@ from tiniscript.link.messages import NETWORK_BYTES, PASSWORD_BYTES
 from tiniscript.link.wifi import is_class_name
 
 PLAIN_PORT, TLS_PORT = 1883, 8883
-DEFAULT_GROUP = "class"  # the group of everyone who names none
+DEFAULT_GROUP = "class"  # the group of all robots without one
 
 
 class BrokerAddress(NamedTuple):

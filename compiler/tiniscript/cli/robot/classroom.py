@@ -67,7 +67,7 @@ class Classroom:
         return Access(name, password_text, bool(options.tls), options.trust)
 
     def present_robots(self) -> list[RobotPresence]:
-        """Return the robots that the broker knows, those that have gone, too."""
+        """Return the robots that the broker knows, including those that have left."""
         with convert_port_error(f"mqtt://{self.address}"):
             try:
                 known_robots = self.broker.list_robots(self.group)
@@ -83,7 +83,7 @@ class Classroom:
     def options_for(self, present_robots: list[RobotPresence], verb: str = "class") -> Namespace:
         """Return the options with which a verb reaches these robots.
 
-        Only who has them drive has to attend to them.
+        Only a teacher who lets pupils drive them needs to attend to them.
         """
         from tiniscript.link.transports.broker import port_of
 
@@ -129,7 +129,7 @@ def upload(classroom: Classroom) -> int:
 
 
 def stop(classroom: Classroom) -> int:
-    """Stop all at once, with one message; then ask each of them whether it stands."""
+    """Stop all at once, with one message; then ask each of them whether it has stopped."""
     is_published = False
     for _ in range(STOP_MESSAGES):
         with suppress(OSError):
@@ -168,7 +168,7 @@ def show(classroom: Classroom) -> int:
 
 
 class Listener:
-    """Prints the events of one of many robots, and changes nothing of its run.
+    """Prints the events of one of many robots, without changing its run.
 
     The times of all count from when the listener is made.
     """

@@ -1,6 +1,6 @@
 """The connection to a robot: `--port` and `--baud`, the choice of a port, and the robot there.
 
-Every failure becomes a sentence that says what to do next.
+Every failure becomes a sentence with the next step.
 """
 
 from __future__ import annotations
@@ -62,9 +62,9 @@ def baud_of(options: Namespace, robot: Robot, language: str) -> int:
 
 
 class Connection(Client):
-    """The client of a command: its port, and the robot there once it has said who it is.
+    """The client of a command: its port, and the robot there once it has identified itself.
 
-    Where a Client raises a RobotError, this raises a CommandError.
+    It raises a CommandError where a Client raises a RobotError.
     """
 
     def __init__(
@@ -136,7 +136,7 @@ class Connection(Client):
             if not self.is_one_of_many:
                 say_aside("holds_for_others", self.language, port=printable_name(self.port))
         try:
-            with suppress(CommandError):  # the port is gone
+            with suppress(CommandError):  # the port is lost
                 self.hold_for_others()
         except KeyboardInterrupt:
             if not self.stop():
@@ -144,8 +144,8 @@ class Connection(Client):
             raise
 
     def stop_unseen(self) -> bool:
-        """Stop the robot, because nobody reads, or can read, the output. Return True if this is the
-        first such call and the robot has confirmed the stop."""
+        """Stop the robot, because the output has no reader or cannot be written. Return True if
+        this is the first such call and the robot has confirmed the stop."""
         if self._is_stopped_unseen or not self.drives or self.drives_another:
             return False
         self._is_stopped_unseen = True
@@ -312,7 +312,7 @@ class Connection(Client):
         return CommandError(3, reason, port=printable_name(self.port), id=f"{reply.detail:08x}")
 
     def refusal_text(self, reply: Reply[object]) -> str:
-        """Return the meaning of a robot's refusal, and what to do."""
+        """Return the meaning of a robot's refusal, and the next step."""
         meaning, advice = status_text(reply.status, reply.detail, self.language)
         if reply.status == STATUSES["WRONG_KIT"]:
             name = shipped_name_of_kit(reply.detail)
@@ -413,7 +413,7 @@ def _select_port(options: Namespace, language: str) -> str:
 
 
 def describe_port(listed_port: ListedPort, language: str) -> str:
-    """Return the description of a port; of a built-in one the system has none."""
+    """Return the description of a port; the system has none for a built-in one."""
     has_description = bool(listed_port.description) or not is_built_in(listed_port.port)
     return listed_port.description if has_description else text("port_built_in", language)
 

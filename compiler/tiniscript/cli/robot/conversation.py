@@ -1,4 +1,4 @@
-"""The conversation with a person beside a robot: it does something, and they say what they saw.
+"""The conversation with a person at the robot, which acts while the person reports what they saw.
 
 The self-test and the trim ask their questions here: each is asked, and said, in one way.
 """
@@ -24,7 +24,7 @@ MOTOR_LINES = {"left": f"M({TURNING_POWER}, 0)", "right": f"M(0, {TURNING_POWER}
 
 
 class NoPerson(Exception):
-    """Raised if nobody answers."""
+    """Raised if no person answers."""
 
 
 class WheelTurn(NamedTuple):
@@ -44,7 +44,7 @@ NO_WHEEL_TURN = WheelTurn("", False)
 
 
 class Conversation:
-    """`is_asking`: a person is there. Who does not answer once is not asked again."""
+    """`is_asking`: a person is there. A person who does not answer once is not asked again."""
 
     def __init__(self, connection: Connection, is_asking: bool = True) -> None:
         self.connection = connection
@@ -110,8 +110,8 @@ class Conversation:
 def trim_from_answers(old_trim: Trim, left: WheelTurn, right: WheelTurn) -> Trim | None:
     """Return the trim with which each wheel turns forward for its side.
 
-    With `old_trim`, the motor of the left side turned the one wheel, that of the right side the
-    other. None if both turned the same, or one turned none.
+    With `old_trim`, the motor of the left side turned wheel `one`, that of the right side wheel
+    `other`. A value is None if both motors turned the same wheel, or one turned none.
     """
     if {left.wheel, right.wheel} != {"left", "right"}:
         return None

@@ -77,14 +77,14 @@ def breakpoint_offsets(lines: Sequence[int], program: HaltableProgram) -> tuple[
 
 
 def require_breakpoints(connection: Connection) -> None:
-    """Raise CommandError where the robot halts nothing."""
+    """Raise CommandError if the robot cannot halt programs."""
     if not connection.device_info.values.features & BREAKPOINTS:
         raise connection.error_for_reply(Reply(STATUSES["NO_BREAKPOINTS"]))
 
 
 class Debugger:
-    """Tells where a program halts. At a terminal a key steps it or lets it go on; elsewhere it goes
-    on by itself."""
+    """Tells where a program halts. At a terminal, a key steps or resumes it; elsewhere it resumes
+    by itself."""
 
     def __init__(
         self, connection: Connection, printer: EventPrinter, program: HaltableProgram,
@@ -136,8 +136,7 @@ class Debugger:
         return True
 
     def poll_keys(self) -> None:
-        """Do what the first key says that was pressed at this halt; while the program runs, none
-        does anything."""
+        """Obey the first key pressed at this halt; while the program runs, keys have no effect."""
         letters = letters_of(self.keys.read_keys()) if self.has_keys else ""
         key = next((key for key in letters if key in STEP_KEYS + GO_KEYS), "")
         if key and self.is_halted:
@@ -196,7 +195,7 @@ class Debugger:
         return list(zip(names, values, yes_no_flags, strict=False))
 
     def _tasks(self, halted_task: int) -> list[tuple[int, int]]:
-        """Return state and line of each task beside the one that is halted, and has not ended."""
+        """Return state and line of each task that has not ended, except the halted one."""
         reply = self.connection.request(lambda session: session.read_tasks())
         task_rows = []
         for number, (state, offset, _) in enumerate(iter_unpack("<BHI", reply.values.tasks)):

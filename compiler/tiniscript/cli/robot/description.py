@@ -165,7 +165,7 @@ class Description(NamedTuple):
 
 
 def describe_robot(connection: Connection) -> Description:
-    """Ask a robot that has answered HELLO what it says about itself."""
+    """Ask a robot that has answered HELLO for its description."""
     status = connection.request(lambda session: session.status()).values
     owner = ownership_of(connection.device_info)
     trim: Trim | None = None
@@ -185,7 +185,7 @@ def describe_in_a_line(connection: Connection, member: Member) -> Result:
 
 
 def introduce(connection: Connection, is_json: bool) -> int:
-    """Print what a robot says about itself and how soon it answers; return the exit code."""
+    """Print a robot's description and its response time; return the exit code."""
     connection.meet()
     trips_ms = _measure_trips(connection, ROUND_TRIP_COUNT)
     description = describe_robot(connection)

@@ -1,6 +1,6 @@
-"""The doctor as a command asks it: what it gets from outside, and of a robot that answers.
+"""The doctor as commands use it: its input from outside, and from a robot that answers.
 
-`tsc doctor` asks it, its self-test and its module's set-up if nothing answers, and the fleet.
+`tsc doctor`, the fleet, the self-test and the module's set-up use it if no robot answers.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def diagnosis_of(
 ) -> Diagnosis:  # fmt: skip
     """Diagnose a port, or the only port, and print the progress.
 
-    `may_open`: nobody has to be asked before the port of a cable is opened.
+    `may_open`: the port of a cable may be opened without asking.
     """
     robot = inputs.robot(options, language)
     question = Question(
@@ -68,7 +68,7 @@ def diagnosis_of(
 def expectations_of(
     options: Namespace, language: str, ping_count: int = PING_COUNT
 ) -> Expectations:
-    """Return the robot that the options name, and what this computer knows of all."""
+    """Return the robot that the options name, and this computer's knowledge of all robots."""
     robot = inputs.robot(options, language)
     kit = None if options.robot is None else robot.kit.fingerprint
     return Expectations(

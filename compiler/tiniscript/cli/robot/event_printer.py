@@ -48,7 +48,7 @@ class EventPrinter:
     """Prints events. `has_times`: each with the milliseconds since `began_ms`, else the first.
 
     `program_map` is the map of the program that is followed, `program` its checksum, and
-    `whole_map` its map with what a person has not typed, if there is such a thing. `add_row` gets
+    `whole_map` its map including code that a person has not typed, if there is any. `add_row` gets
     the cells of each event, for a CSV file. `print_line` and `print_error` replace `print` while a
     picture is on the terminal. JSON lines also get the `robot_fields`.
     """
@@ -77,7 +77,7 @@ class EventPrinter:
         )
         self.has_lines = whole_map is None  # whether a person knows the line numbers
         self.add_row = add_row
-        # Printed only for those who ask for it.
+        # Printed only on request.
         self.readings: Callable[[ReadingEvent], None] | None = None
         self.print_line = print_line or _print_line
         self.print_error = print_error or _print_error

@@ -73,7 +73,7 @@ def run_together(options: Namespace, robot: Robot, language: str, work: Work) ->
         fleet.interrupt_robots()
         streams.drop_unread_output()
         fleet.stop_robots()
-    except OSError:  # nobody reads the output, or it cannot be written
+    except OSError:  # the output has no reader, or cannot be written
         if options.verb == "upload" and not options.detach:
             fleet.stop_robots()
         raise
@@ -133,7 +133,7 @@ class Fleet:
         self._print_summary()
 
     def _raise_if_reader_gone(self) -> None:
-        """Raise BrokenPipeError where robots drive and nobody reads the output."""
+        """Raise BrokenPipeError if robots drive and the output has no reader."""
         is_driving = self.options.verb == "upload" and not self.options.detach
         if is_driving and not self.is_interrupted:
             streams.raise_if_reader_gone()
@@ -229,7 +229,7 @@ class Fleet:
         sentence = error.plain_sentence(self.language)
         return Result(False, sentence, {}, is_absent and not target.is_named)
 
-    # -- what is printed --------------------------------------------------------------------------
+    # -- output -----------------------------------------------------------------------------------
 
     def _print_result(self, member: Member) -> None:
         self._print_lines(None)  # lines from before

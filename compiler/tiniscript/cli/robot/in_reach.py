@@ -1,7 +1,7 @@
 """Robots that no system lists: in reach of Bluetooth LE, announced in the network, or in use.
 
-In use are those on a port that a command holds, and virtual ones. Connects to none of them. Where a
-search is impossible, says why.
+In use are those on a port that a command holds, and virtual ones. It connects to none of them. If a
+search is impossible, it says why.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from tiniscript.virtual import directory
 
 
 class ReachableRobots(NamedTuple):
-    """`other_ports` are ports that mean one of those described, too; `absent_ports` are known ports
-    without a robot; `notes` say what was not searched, and why."""
+    """`other_ports` are further ports of the described robots; `absent_ports` are known ports
+    without a robot; `notes` list what was not searched, and why."""
 
     description_by_port: dict[str, str]
     other_ports: list[str]
@@ -98,8 +98,8 @@ def _find_by_name(known_ports: list[str], language: str) -> ReachableRobots:
 def _name_robots(
     rows: list[tuple[str, set[str], str]], canonical_of: dict[str, str]
 ) -> ReachableRobots:
-    """Name each robot by the port that the user knows: `rows` have a port, all that mean it, and a
-    description; `canonical_of` maps known ports to what they mean."""
+    """Name each robot by the port that the user knows: `rows` have a port, its other names, and a
+    description; `canonical_of` maps known ports to their canonical names."""
     reach = ReachableRobots({}, [], list(canonical_of), [])
     for port, names, description in rows:
         known_ports = [

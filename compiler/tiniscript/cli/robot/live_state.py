@@ -1,8 +1,8 @@
 """The state between two live lines: DEFs as text, variables with their values.
 
-The robot forgets a line when it is done. So tsc puts the DEFs and variables that a line uses
-before it, and instructions after it that show the new values: a mark that no program shows by
-chance, then a SHOW for each variable. Knows no port.
+The robot forgets a line when it is done. So tsc puts the DEFs and variables that a line uses before
+it. After it come instructions that show the new values: a mark that no program shows by chance,
+then a SHOW for each variable. Knows no port.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ class LiveValue(NamedTuple):
 class LiveLine(NamedTuple):
     """A compiled line: `shown_variables` are the variables whose values it shows after the mark.
 
-    `text_by_def` are the DEFs in it, which are known once it is done; `has_only_defs`: it has
-    nothing but DEFs; `loses_values`: it sets variables, but has no room to show them. `whole_map`
-    is the map of the line with the DEFs and variables before it, which have `lines_before` lines.
+    `text_by_def` has the DEFs in it, which are known once it has run; `has_only_defs`: it consists
+    of DEFs; `loses_values`: it sets variables, but has no room to show them. `whole_map` is the map
+    of the line with the DEFs and variables before it, which have `lines_before` lines.
     """
 
     compilation: Compilation
@@ -58,7 +58,7 @@ def header(text: str) -> str:
 
 def missing_ends(text: str) -> str:
     """Return the ends that are missing of the blocks of a text, `END_LOOP; END_DEF`; the text may
-    go on there. Nothing if none is open, or an end is one of no block."""
+    continue there. The result is empty if no block is open, or an end has no block."""
     ends: list[str] = []
     for token in scan(text).tokens:
         word = ALIASES.get(token.text, token.text) if token.kind is WORD else ""

@@ -45,7 +45,7 @@ def select_port(options: Namespace) -> bool:
 def targets(options: Namespace) -> list[Target]:
     """Return each port once: the named ones, else all that may have a robot.
 
-    Ports in use come first, then ports of known robots. Opens none.
+    Ports in use come first, then ports of known robots. It opens none.
     """
     names_by_port = known_ports.remembered_ports().name_by_port
     candidate_ports = [inputs.check_port(port) for port in options.ports]
@@ -74,7 +74,7 @@ def targets(options: Namespace) -> list[Target]:
 
 
 class Result(NamedTuple):
-    """The result for one robot, as a sentence and as data. `is_absent`: there is none."""
+    """The result for one robot, as a sentence and as data. `is_absent`: no robot is there."""
 
     is_done: bool
     sentence: str

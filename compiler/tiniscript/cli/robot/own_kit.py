@@ -1,7 +1,7 @@
 """The kit of the connected robot, for commands without `--robot`.
 
-Such a command compiles for the default robot. A program with words of another robot is compiled
-for the robot that answers, if its profile is known: a shipped one, or one given before.
+With such a kit, a command compiles for the default robot. A program with words of another robot is
+compiled for the robot that answers, if its profile is known: a shipped one, or one given before.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A program on its way to a robot: sends it, follows its run, and says what became of it.
+"""A program on its way to a robot: sends it, follows its run, and reports the result.
 
 The virtual robot of one command has its button on a key; without a terminal the button is pushed
 at once.

@@ -1,4 +1,4 @@
-"""Writes what a robot says about a run into a file: `tsc upload --record`, and rows of CSV.
+"""Writes a robot's reports on a run into a file: `tsc upload --record`, and rows of CSV.
 
 The file of a run has the form of `studio/recordings.py`, which reads it. Each line is flushed
 before the next one comes.
@@ -78,8 +78,8 @@ class Recorder:
     """The file of a run that began at `began_s` (monotonic); None: at its first event.
 
     `head` is the first line. A virtual robot has a clock of its own: `robot_ms` says when it did an
-    event, since the run began. Until there is an event, the old file stays. Raises CommandError
-    if it cannot be written.
+    event, since the run began. The old file stays until there is an event. Raises CommandError if
+    it cannot be written.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class Recorder:
         self._rows = Rows(name, head.encode(), "unwritable_more --record")
 
     def add_event(self, _: int, name: str, text: str, __: str = "") -> None:
-        """Add an event as `EventPrinter` tells it, at the time at which it came here."""
+        """Add an event as `EventPrinter` prints it, with its time of arrival."""
         if self._is_over or name not in ("SHOW", *ENDING_EVENTS):
             return
         event = f"{name} {text}" if name in ("SHOW", "FAULT") else name
@@ -112,7 +112,7 @@ class Recorder:
             self._add_end_row(row.ms)
 
     def add_reading(self, event: ReadingEvent) -> None:
-        """Add what the program has read, at the time that the robot tells."""
+        """Add a reading of the program, at the time that the robot reports."""
         if self._is_over:
             return
         since_s = 0.0 if self._began_s is None else monotonic() - self._began_s
@@ -136,7 +136,7 @@ class Recorder:
             self._add_end_row(row.ms)
 
     def close(self) -> None:
-        """Close the file; a run whose end nobody has told was stopped by this computer."""
+        """Close the file; a run without a reported end was stopped by this computer."""
         try:
             self.end_recording("STOPPED")
         finally:

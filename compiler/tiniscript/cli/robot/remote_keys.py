@@ -1,6 +1,6 @@
 """A terminal as a remote control: the arrow keys, a and b, until q or Ctrl-C.
 
-A terminal says nothing of a key that is let go. It repeats one that is held, the first time after
+A terminal does not report the release of a key. It repeats one that is held, the first time after
 250 ms or more: so a first press holds it longer than a repeat. Knows the clock.
 """
 
@@ -34,14 +34,14 @@ _UNFINISHED_KEY = re.compile(_KEY_START + (r"\Z|[\0\xe0]\Z" if sys.platform == "
 
 
 class HeldKeys:
-    """Which keys are held, as far as a terminal tells."""
+    """Which keys are held, as far as a terminal reports it."""
 
     def __init__(self) -> None:
         self._release_s_by_key: dict[str, float] = {}
         self._unfinished_key = ""
 
     def press_typed(self, typed_keys: str, now_s: float) -> bool:
-        """Take what was typed; return whether somebody wants to leave."""
+        """Process typed characters; return whether the person wants to leave."""
         text, offset = self._unfinished_key + typed_keys, 0
         self._unfinished_key = ""
         while offset < len(text):

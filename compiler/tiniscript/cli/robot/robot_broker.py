@@ -78,7 +78,7 @@ def _tls_settings(
 
 
 def _certificate(data: bytes) -> bytes | None:
-    """Return the one certificate that a file has, in DER, or None."""
+    """Return the only certificate in a file, in DER, or None."""
     pem_blocks = re.findall(_PEM, data.decode("latin-1"), re.DOTALL)
     if len(pem_blocks) > 1:
         return None
@@ -134,7 +134,7 @@ def tell_wifi_state(
 ) -> None:
     """Say where the robot's broker is: under its name, if that is known.
 
-    `command` reaches all robots of the class: a robot tells neither port nor certificate.
+    `command` reaches all robots of the class: a robot reports neither port nor certificate.
     """
     state = _state(wifi_reply)
     key = f"broker_{state.lower()}" if wifi_reply.network else "broker_none"

@@ -75,7 +75,8 @@ class RunMonitor:
                 return exit_code
 
     def stop_in_time(self) -> int:
-        """Stop a virtual robot at its time limit: it stands already, but its firmware runs on."""
+        """Stop a virtual robot at its time limit: it no longer moves, but its firmware still
+        runs."""
         if not self.connection.stop():
             raise CommandError(3, "not_confirmed", port=printable_name(self.connection.port))
         language = self.connection.language
@@ -84,7 +85,7 @@ class RunMonitor:
 
 
 def exit_code_of(event: Event, run: int | None) -> int | None:
-    """Return the exit code where an event ends a run, else None. A `run` of None is any."""
+    """Return the exit code if an event ends a run, else None. A `run` of None matches any run."""
     end = end_of(event, run)
     if end is None:
         return None

@@ -1,8 +1,9 @@
 """The checks that a computer can make of a robot before a lesson.
 
-What the robot says of itself the doctor examines; here are its trim, and what it senses and does.
-Nothing moves before a person has lifted the robot; without a person no motor turns. Changes nothing
-that the robot keeps, except how its motors are wired, after a yes.
+The doctor examines what the robot reports about itself; this module asks for its trim and checks
+what it senses and does. No motor turns before a person has confirmed that the robot is lifted;
+without a person, none turns at all. It changes no stored data of the robot, except the wiring of
+its motors, after a yes.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ ANSWERED_FAILURES = (
 
 
 class SelfTest(Conversation):
-    """The checks of a robot that has answered. `is_asking`: a person is beside it."""
+    """The checks of a robot that has answered. `is_asking`: a person is at the robot."""
 
     def __init__(self, connection: Connection, expectations: Expectations, is_asking: bool) -> None:
         super().__init__(connection, is_asking)
@@ -87,7 +88,7 @@ class SelfTest(Conversation):
     def _add_finding(self, cause: str, part: str = "", **values: str) -> None:
         self.findings.append(Finding(cause, True, values, part))
 
-    # -- what the robot says about itself
+    # -- the robot's description of itself
 
     def _examine_robot(self) -> Robot | None:
         """Examine the robot; return its profile, if this computer knows it."""
@@ -140,7 +141,7 @@ class SelfTest(Conversation):
         else:
             self._add_finding("discs_noise", left=left, right=right)
 
-    # -- what it senses and does
+    # -- its sensors and actions
 
     def _ask_whether_lifted(self) -> bool:
         with suppress(NoPerson):
@@ -193,7 +194,7 @@ class SelfTest(Conversation):
             self._check_motor(side, is_lifted)
 
     def _check_motor(self, side: str, is_lifted: bool) -> WheelTurn | None:
-        """Return a person's answer about a motor, and note it; None if nobody saw it."""
+        """Return a person's answer about a motor, and record it; None if no person saw it."""
         try:
             if not is_lifted:
                 raise NoPerson
@@ -249,7 +250,7 @@ class SelfTest(Conversation):
 
 
 def _saved_cause(saved_state: str) -> str:
-    """Return the cause of what the robot says of its program."""
+    """Return the cause behind the robot's report on its program."""
     return {"STORED": "saved", "NOTHING": "empty"}.get(saved_state, "unsaved")
 
 

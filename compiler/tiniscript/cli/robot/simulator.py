@@ -127,7 +127,8 @@ class CommandSimulator(SimulatorThread):
     def event_ms(self, event: str) -> int:
         """Return the time of the robot's next event of this kind, since the start of its program.
 
-        Of what it has not told itself (that its values did not arrive), the time now.
+        For an event that the robot has not reported itself (its values did not arrive), this is the
+        current time.
         """
         event_text = "STOP" if event == "STOPPED" else event
 
@@ -159,7 +160,7 @@ class CommandSimulator(SimulatorThread):
             screen, self.screen = self.screen, None
             if screen is not None:
                 if self._picture is not None:
-                    self._picture.footer = ""  # the keys do nothing now
+                    self._picture.footer = ""  # the keys have no effect now
                 self._draw(screen)
                 screen.end()
 

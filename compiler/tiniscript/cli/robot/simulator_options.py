@@ -55,7 +55,8 @@ def make_robot(
 
 @contextmanager
 def convert_refusal(world: str, language: str) -> Iterator[None]:
-    """Raise CommandError where a world is refused, or what a virtual robot needs is missing."""
+    """Raise CommandError if a world is refused, or something that a virtual robot needs is
+    missing."""
     try:
         yield
     except NoWebAssembly as why:

@@ -1,4 +1,4 @@
-"""Stops one robot of a fleet, and asks for what a stop may need beside it."""
+"""Stops one robot of a fleet, and asks for the other information that a stop may need."""
 
 from __future__ import annotations
 

@@ -19,13 +19,13 @@ def can_ask() -> bool:
 
 
 def ask(question: str) -> str:
-    """Ask, and return the line that is typed; nothing if nobody answers."""
+    """Ask, and return the typed line; an empty text without an answer."""
     print(question, end="", file=sys.stderr, flush=True)
     return sys.stdin.readline()
 
 
 def confirm(question: str) -> bool:
-    """Ask, and return whether the answer is a yes: an empty one is none."""
+    """Ask, and return whether the answer is a yes: an empty one is not."""
     return ask(question).strip().lower() in YES_ANSWERS
 
 
@@ -33,9 +33,10 @@ LONGEST_LINE = 1024  # bytes of standard input that may be a password
 
 
 def ask_password(prompt: str, least_bytes: int, most_bytes: int, error_key: str) -> bytes:
-    """Ask without an echo, or take the first line of standard input, if nobody types there.
+    """Ask without an echo, or take the first line of standard input, if it is not a terminal.
 
-    Raises CommandError `error_key` if it has fewer or more bytes, or some that nobody types.
+    Raises CommandError `error_key` if its length is wrong, or it contains characters that cannot be
+    typed.
     """
     if sys.stdin is not None and sys.stdin.isatty():
         try:

@@ -1,7 +1,7 @@
 """Dots on a terminal: braille has 2 x 4 of them in a character.
 
-Knows dots, straight lines and layers; a dot is given from the left and from the top. What lies
-outside is not drawn. Does not know what is drawn, nor where on the terminal.
+Knows dots, straight lines and layers; a dot is given from the left and from the top. Anything
+outside is not drawn. It does not know what is drawn, nor where on the terminal.
 """
 
 from __future__ import annotations

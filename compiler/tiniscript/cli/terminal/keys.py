@@ -8,7 +8,7 @@ import select
 import sys
 
 INTERRUPT = "\x03"
-# A key of several characters, as F4 and the arrows are: nobody has typed its last one.
+# A key of several characters, such as F4 or an arrow: its last one was not typed.
 _SEQUENCE = re.compile(r"\x1b(?:\[\[.|\[[0-?]*[ -/]*[@-~]|O.|[^\[O])?", re.DOTALL)
 _SEQUENCE_OF_WINDOWS = re.compile(r"[\0\xe0].", re.DOTALL)
 

@@ -1,6 +1,6 @@
 """A long text on a terminal: shown by `$PAGER`, or by `less`, a page at a time.
 
-Where the output is no terminal, the text is short, or no pager can be started, it is printed.
+If the output is not a terminal, the text is short, or no pager can be started, the text is printed.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ def _needs_pager(text: str) -> bool:
 
 
 def _command(language: str) -> str:
-    """Return the pager's command for the shell. An empty `$PAGER` says that none is wanted.
+    """Return the pager's command for the shell. An empty `$PAGER` means no pager.
 
-    Without `$PAGER` the prompt of `less` shows its keys, because the user may not know them.
+    Without `$PAGER`, the prompt of `less` shows its keys, because the user may not know them.
     """
     command = os.environ.get("PAGER")
     if command is None:

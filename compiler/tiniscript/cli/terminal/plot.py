@@ -1,7 +1,7 @@
 """`tsc monitor --plot`: the values that a robot shows, as curves that move with the time.
 
-There is one for each SHOW of its program, by its name. Drawn below what is printed. Knows values
-and times; the terminal is known by `screen`.
+There is one for each SHOW of its program, with that SHOW's name. It is drawn below the printed
+text. Knows values and times; the terminal is known by `screen`.
 """
 
 from __future__ import annotations

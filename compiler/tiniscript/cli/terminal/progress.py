@@ -21,7 +21,7 @@ MOST_PERCENT = 99  # percent shown until the work is done
 class Progress:
     """Draws nothing during the first moment, and nothing without a terminal.
 
-    The last percent is there when the line is cleared: what has arrived is not done yet.
+    The line is cleared instead of showing 100 %: arrived data still has to be processed.
     """
 
     def __init__(self, language: str, total: int) -> None:
@@ -70,12 +70,12 @@ class StatusLine:
 
 
 SILENCE_LIMIT_S = 2.0
-# Between two waits: the person has typed or read something, so a new one begins.
+# After the person has typed or read something, the next wait counts as a new one.
 NEW_WAIT_PAUSE_S = 0.5
 
 
 class WaitNotice:
-    """Somebody waits, and has been told nothing yet, or `is_told`."""
+    """A person waits, and has seen no message yet, or `is_told`."""
 
     def __init__(self, sentence: str) -> None:
         self.is_told = False
@@ -112,7 +112,7 @@ class WaitNotice:
 
 
 class RepeatedWaitNotice:
-    """A notice for successive waits, printed once until something else is printed."""
+    """A notice for successive waits, printed again only after other output."""
 
     def __init__(self, sentence: str, is_seen: bool) -> None:
         self.before_print: Callable[[], None] = lambda: None  # clears the line of a bar
@@ -127,7 +127,7 @@ class RepeatedWaitNotice:
             self.note_other_output()
 
     def note_other_output(self) -> None:
-        """Something else was said, or typed."""
+        """Call this when other output was printed, or something was typed."""
         self.is_told = False
         self.restart()
 
@@ -150,7 +150,7 @@ class RepeatedWaitNotice:
         return notice
 
     def poll(self) -> None:
-        """The wait goes on."""
+        """Continue the wait."""
         self._until_s = monotonic()
         if self.is_told or not self._is_terminal or self._until_s - self._since_s < SILENCE_LIMIT_S:
             return

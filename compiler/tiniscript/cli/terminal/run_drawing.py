@@ -1,6 +1,6 @@
 """`tsc run --show`: the way and the values of a run, drawn on a terminal as they come.
 
-Knows what a picture of a run shows, and where. Knows no programs and no machine; the terminal is
+It knows what a picture of a run shows, and where. Knows no programs and no machine; the terminal is
 known by `screen`, the way by `sketch`.
 """
 
@@ -22,13 +22,13 @@ from tiniscript.robots.profile import Robot
 
 MOST_SHOWN_VALUES = 5  # values of SHOW that stay in the picture
 MOST_VALUE_COLUMNS = 80  # columns of the values, if the path leaves that many
-COLUMNS_FOR_VALUES_BESIDE = 60  # columns from which on the values are beside the way, not below it
+COLUMNS_FOR_VALUES_BESIDE = 60  # columns from which on the values are beside the path, not below it
 
 
 def watch(events: Iterator[Event | Ending], robot: Robot, pace: float, language: str) -> Ending:
     """Print the trace and draw the picture, `pace` times as fast as the robot; return the end.
 
-    With a `pace` of 0 only the last picture is drawn.
+    With a `pace` of 0, only the last picture is drawn.
     """
     screen = Screen()
     picture = Picture(robot, language)
@@ -118,7 +118,7 @@ class Picture:
         return Text(name + "─" * (width - cell_len(name) - cell_len(ruler)) + ruler, style="dim")
 
     def _values(self, width: int, height: int, now_ms: float) -> list[Text]:
-        """Return a line for each: a name, a value with its unit, and what else is to say."""
+        """Return a line for each: a name, a value with its unit, and a remark, if any."""
         language, kit = self.language, self.robot.kit
         left, right = self.sketch.way.left, self.sketch.way.right
         clock = as_text(self.now_ms) if self.ending else f"{now_ms / 1000:.1f}"

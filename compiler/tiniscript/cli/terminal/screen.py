@@ -1,7 +1,7 @@
 """A picture at the bottom of the terminal, which is redrawn while lines are printed above it.
 
-The picture goes to standard error, the lines to standard output. Knows the terminal and the time
-that passes in front of it; does not know what a picture shows.
+The picture goes to standard error, the lines to standard output. It knows the terminal and the time
+that passes in front of it, but not what a picture shows.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Frame:
         self._write(HIDE_CURSOR)
 
     def end(self) -> None:
-        """Leave the picture, and go on below it."""
+        """Leave the picture, and continue below it."""
         self._write(("\n" if self.lines else "") + SHOW_CURSOR)
         self.lines = []
 
@@ -169,7 +169,7 @@ class Screen:
         return True
 
     def draw(self, picture: Drawable, now_ms: float) -> None:
-        """Print what was said, and the picture below it."""
+        """Print the new text, and the picture below it."""
         width, height = self.console.size
         lines = picture.lines(width - 1, height - max(3, height // 4), now_ms)
         if not self.console.encoding.startswith("utf"):

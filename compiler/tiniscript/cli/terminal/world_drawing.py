@@ -1,4 +1,4 @@
-"""The virtual robot on a terminal: its world, its way, and what it senses, does and plays.
+"""The virtual robot on a terminal: its world, its path, its readings, its actions and its sounds.
 
 Knows the floor of a world and how it lies on a canvas. The picture is that of `tsc run --show`,
 with a world around it.
@@ -40,7 +40,7 @@ class WorldPicture(Picture):
         self.footer = footer
         self.sketch: WorldSketch = WorldSketch(robot)
         self.began_ms = 0
-        self.is_new = True  # nothing has run yet
+        self.is_new = True  # no program has run yet
 
     def add_event(self, event: Event) -> None:
         if event.kind == "START":

@@ -14,8 +14,8 @@ from tiniscript.base.source import printable
 
 CATALOGUE = "command"
 MOST_VALUE_CHARACTERS = 2000  # characters of a value in a sentence
-# What is counted, right after its number: catalogues have how one of it is called, and several.
-# Other words have a sentence of their own for one.
+# The words that follow a number, in singular and plural; catalogues have both forms. Other words
+# have a sentence of their own for one.
 COUNTED_NOUNS = ("counted_bytes", "counted_checks")
 SEVERAL_COUNT = 5  # a typical plural number in sentences
 

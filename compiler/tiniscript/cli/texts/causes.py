@@ -55,7 +55,7 @@ def sentences_of(
 
 
 def as_data(finding: Finding, language: str) -> dict[str, object]:
-    """Return a finding as data: what a program reads, and what a person would."""
+    """Return a finding as data, for programs and for people."""
     meaning, evidence, advice = sentences_of(finding, language)
     return {
         "cause": finding.cause,

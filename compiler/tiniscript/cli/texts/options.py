@@ -1,4 +1,4 @@
-"""The options of all commands: one table. What each does says the catalogue `help`.
+"""The options of all commands: one table. The catalogue `help` describes each option.
 
 Parsers, help, completion, `cli/paths.py` and the documents are made from it and from the table in
 `verbs.py`, which says how texts are written.
@@ -55,7 +55,7 @@ class Option(NamedTuple):
 
     @property
     def default(self) -> object:
-        """Its value if nobody has given it."""
+        """Its value if it is not given."""
         return [] if self.repeats else False if self.kind is None else None
 
     def help(self, language: str) -> str:
@@ -204,7 +204,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--breakpoints", "firmware"),
     Option("--build", "firmware"),
     Option("--list", "firmware"),
-    # Options that change what a verb does.
+    # Options that change the action of a verb.
     Option("--broker", "class", TEXT, "HOST[:PORT]"),
     Option("--broker", "set_wifi", TEXT, "HOST[:PORT]"),
     Option("--class", "class set_wifi", TEXT, "NAME", "group"),
@@ -342,7 +342,7 @@ def selecting_options_of(command: str) -> list[Option]:
 def command_of(verb: str, words: list[str]) -> tuple[str, list[str]]:
     """Return the command that a verb and its words mean, and the remaining words.
 
-    That is the verb itself where they choose none of its steps.
+    Without a step, this is the verb itself.
     """
     own_words = words[: words.index("--")] if "--" in words else words
     flags = {word.partition("=")[0] for word in own_words if word.startswith("-")}

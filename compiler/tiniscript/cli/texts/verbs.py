@@ -1,9 +1,8 @@
-"""The commands of `tsc`, in the order of help, and what the catalogue `help` says of them.
+"""The commands of `tsc`, in the order of help, and their descriptions in the catalogue `help`.
 
-A command is a verb, or a step of one, which more words choose: `tsc doctor --ports`.
-Parsers, help, completion and the documents are made from it and from the table in `options.py`.
-What is typed stands between backticks: documents show it as code, and on a terminal no line ends
-in it.
+A command is a verb, or a step of one, which more words choose: `tsc doctor --ports`. Parsers, help,
+completion and the documents are made from it and from the table in `options.py`. Text to type is
+between backticks: documents show it as code, and a terminal never breaks a line in it.
 """
 
 from typing import NamedTuple
@@ -54,7 +53,7 @@ class Step(NamedTuple):
         return [*own_flags, *self.flags.split()]
 
 
-# Each command is a module of `cli/commands/`: a verb, or a step of one, by what is typed for it.
+# Each command is a module of `cli/commands/`, for a verb or a step of one, named as it is typed.
 STEPS: dict[str, Step] = {
     "check_explain": Step("check --explain"),
     "show_port": Step("show --port", "--virtual"),
@@ -77,7 +76,7 @@ STEPS: dict[str, Step] = {
     "help_completion": Step("help --completion"),
 }
 COMMANDS = (*VERBS, *STEPS)
-# What was a verb before 0.3, and the command that it is now; no verb is called so.
+# Verbs from before 0.3, with the commands that replace them; no current verb has such a name.
 FORMER_COMMANDS = {
     "explain": "check_explain",
     "fetch": "show_port",
@@ -145,7 +144,7 @@ def settings() -> tuple[str, ...]:
 def verb_sentence(verb: str, part: str, language: str) -> str:
     """Return a sentence about a command.
 
-    `example` is what may be typed for it, `summary` what that does, `says` what the command does,
-    `ends` what else there is to know. Where it is used in several ways, `usage` has a line for each.
+    `example` is a command line, `summary` what it does, `says` what the command does, `ends`
+    further information. If there are several ways to use it, `usage` has a line for each.
     """
     return verb_text(f"verb/{verb}/{part}", language) or command_words(verb) * (part == "example")

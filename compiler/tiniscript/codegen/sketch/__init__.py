@@ -1,6 +1,6 @@
-"""A program as an Arduino sketch for a robot's pins: C++ that a pupil can read beside it.
+"""A program as an Arduino sketch for a robot's pins: C++ that a pupil can read with it.
 
-`writing` puts a sketch together; `statements` and `expressions` say the program in C++, `wiring`
-what the pins of a kit need, `helpers` has the functions that are written where they are used,
-`numbers` those that calculate, `names` what things are called and what is said in words.
+`writing` puts a sketch together; `statements` and `expressions` write the program in C++, `wiring`
+the code for the pins of a kit; `helpers` has functions that are included only if used, `numbers`
+those that calculate, `names` the names of things and the texts.
 """

@@ -50,7 +50,7 @@ class Expressions:
         self.kept_count = 0  # left sides that need a variable
 
     def code_of(self, expression: Expression, reading: tuple[int, str] | None = None) -> str:
-        """Return an expression; `reading` is a sensor, and what stands in the place of its name."""
+        """Return an expression; `reading` is a sensor, and the text that replaces its name."""
         stack: list[_Operand] = []
         for op, value in expression:
             if op == "NUMBER":
@@ -135,7 +135,7 @@ class Expressions:
 
 
 def _bracket(operand: _Operand, precedence: int) -> str:
-    """Return an operand as it stands beside an operator that binds so tightly."""
+    """Return an operand, in brackets if it binds less tightly than the operator next to it."""
     return operand.text if operand.precedence >= precedence else f"({operand.text})"
 
 

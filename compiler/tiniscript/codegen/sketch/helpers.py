@@ -1,8 +1,8 @@
 """The functions of a sketch that move, wait and sound, for every kit.
 
-Each is text whose `$words` are names that `names` has: a function that stands in another's text
-is written, too. `$N` is the type of numbers. Parameters and own variables are English here;
-the catalogue `sketch` has them in each language.
+Each is text whose `$words` are names that `names` has: a function mentioned in another's text is
+written, too. `$N` is the type of numbers. Parameters and own variables are English here; the
+catalogue `sketch` has them in each language.
 """
 
 from __future__ import annotations

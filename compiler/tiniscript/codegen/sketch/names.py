@@ -1,7 +1,7 @@
 """The C++ names of a program's names: `MY_SPEED` becomes `mySpeed`.
 
-No two have the same name, and none has a name of C++, of the Arduino core or of a helper. Their
-names, and what a sketch says in words, are in the catalogue `sketch`.
+Names are unique and differ from those of C++, of the Arduino core or of a helper. Their names, and
+the texts of a sketch, are in the catalogue `sketch`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import re
 
 from tiniscript.base.languages import find_text, languages, plain_text_keys, text
 
-# What has a name of its own in each language, and the parameters and variables of helpers.
+# Names that differ by language, and the parameters and variables of helpers.
 IDENTIFIERS, LOCALS = (
     [key.partition("/")[2] for key in plain_text_keys("sketch") if key.startswith(kind)]
     for kind in ("name/", "local/")
@@ -19,7 +19,7 @@ _LOCAL = re.compile(rf"(?<![$\w.])({'|'.join(LOCALS)})(?!\w)")
 
 
 def note_text(key: str, language: str) -> str:
-    """Return a note, or nothing if nothing is said."""
+    """Return a comment, or an empty text if there is none."""
     return find_text("sketch", f"said/{key}", language) or ""
 
 
@@ -29,7 +29,7 @@ def translated_name(key: str, language: str) -> str:
 
 
 def translate_locals(code: str, language: str) -> str:
-    """Return a helper whose parameters and own variables are called as in the language."""
+    """Return a helper whose parameters and own variables have their names in the language."""
     return _LOCAL.sub(lambda match: text("sketch", f"local/{match[1]}", language), code)
 
 

@@ -1,6 +1,7 @@
-"""The instructions of a program as lines of C++, each with its TiniScript beside it.
+"""The instructions of a program as lines of C++, each with its TiniScript in a comment.
 
-Knows which helper does what a word means. `Uses` collects what the sketch has to have for that.
+It knows which helper carries out the meaning of a word. `Uses` collects the parts that the sketch
+needs for that.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from tiniscript.semantics.optimizer import constant
 from tiniscript.semantics.ways import to_timed
 
 MOST_COLUMNS = 100  # columns of a line with its comment
-COMMENT_COLUMN = 40  # column of the comments beside code
+COMMENT_COLUMN = 40  # column of the comments after code
 _MOVE_FUNCTIONS = {"F": "forward", "B": "backward", "L": "turn_left", "R": "turn_right"}
 _START_FUNCTIONS = {
     "F": "start_forward",
@@ -206,7 +207,7 @@ class Statements:
             )
         return texts
 
-    # -- moves and what is shown
+    # -- moves and shown values
 
     def move(self, move: ir.Move, comment: str) -> None:
         if move.until is not None:
@@ -310,7 +311,7 @@ class Statements:
         self.add_line("}")
 
     def add_comments_before_arm(self, start: int, arm: int) -> None:
-        """Add comments before an arm: those of an ELSEIF stand in the block before it."""
+        """Add comments before an arm: those of an ELSEIF are in the block before it."""
         self.depth += arm > 0
         self.add_comments(start)
         self.depth -= arm > 0
@@ -364,7 +365,8 @@ _STATEMENTS: dict[type, Callable[..., None]] = {
 
 
 def comment_text(text: str) -> str:
-    """Return a text that stays in its comment: no controls, and nothing that joins lines."""
+    """Return a text that stays in its comment: without control characters, and without a sign that
+    joins lines."""
     return printable(text).replace("??/", "?? /").rstrip("\\ ")
 
 

@@ -11,7 +11,7 @@ from tiniscript.robots.profile import Robot, Wiring
 
 
 class SketchPlan(DriverPlan):
-    """Writes what the program uses of a robot."""
+    """Writes the parts of a robot that the program uses."""
 
     def __init__(self, robot: Robot, label: Callable[[str], str], is_exact: bool) -> None:
         super().__init__(robot, is_exact)
@@ -37,7 +37,7 @@ class SketchPlan(DriverPlan):
         return "$N" if self.is_exact else "int" if reads_counts(device, wiring) else "float"
 
     def reader_code(self, sensor: int, name: str, function: str) -> str:
-        """Return the function that takes a reading; it returns what it has kept."""
+        """Return the function that takes a reading; it returns the stored value."""
         device, wiring = self.robot.kit.sensors[sensor], self.robot.board.sensors[sensor]
         label = self.label(device.name)
         lines = sensor_of(device.kind, wiring).sketch_lines(self, device, wiring, name, label)

@@ -1,6 +1,6 @@
 """A sketch is put together: its limits, the pins, the program, then the functions it needs.
 
-Which kind of numbers it needs is found first.
+It first determines which kind of numbers the program needs.
 """
 
 from __future__ import annotations
@@ -75,7 +75,8 @@ BOARD_TITLES = {"uno": "Uno", "nano": "Nano", "mega": "Mega 2560"}
 def missing_feature(program: ir.Program, kit: Kit) -> str | None:
     """Return a feature of a program that sketches lack: "tasks", "remote" or "ways".
 
-    Tasks are TASK and WHEN, ways are CM and DEG that are calculated. None if there is a sketch.
+    Tasks are TASK and WHEN, ways are CM and DEG that are calculated. None if a sketch can be
+    written.
     """
     statements = list(ir.all_statements(program))
     sensors_read = {statement.sensor for statement in statements if isinstance(statement, ir.Read)}
@@ -100,7 +101,7 @@ class _Sketch:
     def __init__(self, source: Source, program: ir.Program, robot: Robot, language: str) -> None:
         self.source, self.program, self.robot, self.language = source, program, robot, language
         self.is_exact = needs_numbers(program, robot)
-        # Whether each variable is a yes-no value.
+        # For each variable, whether it is a yes-no value.
         self.are_yes_no = ir.yes_no_variables(program, robot.kit)
         self.argument_variables = frozenset(
             k for procedure in program.procedures for k in procedure.values
@@ -229,7 +230,7 @@ class _Sketch:
         repeated_lines: list[str],
         procedures: list[str],
     ) -> str:
-        """Return the sketch; what the program uses is known by now."""
+        """Return the sketch; the parts that the program uses are known by now."""
         is_ping, plan = self.program.start == "PING", self.plan
         if not is_ping:
             self.plan.add_motors()

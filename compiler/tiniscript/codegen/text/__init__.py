@@ -1,1 +1,1 @@
-"""Programs as text that a robot reads itself: what fits its reader, and lines for it."""
+"""Programs as text that a robot reads itself: the limits of its reader, and lines for it."""

@@ -1,7 +1,7 @@
 """A program as one line for a robot that reads text, and the plain code that the robot makes of it.
 
 Knows where a space is needed. Works on tokens, so that numbers and brackets stay as they are
-written, and so does the order of everything. It is made for texts in which nothing is wrong.
+written, and so does the order of everything. It is made for texts without mistakes.
 """
 
 from __future__ import annotations

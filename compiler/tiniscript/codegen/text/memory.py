@@ -1,6 +1,6 @@
 """The memory that a robot's reader needs while it reads a program, token by token.
 
-Knows what a reader keeps beside the code, and in which order: `docs/develop/text.md`. The code
+Knows what a reader stores apart from the code, and in which order: `docs/develop/text.md`. The code
 grows from one end of the memory; names, blocks that are open and operators that wait grow from the
 other one, and a word lies after the code until it has been looked up. Made for right programs: it
 looks for no mistake.
@@ -38,7 +38,7 @@ class Need(NamedTuple):
 
 
 class _Def(NamedTuple):
-    """The sensors that are surely read after it, and the variables of its values."""
+    """The sensors certainly read after it, and the variables of its values."""
 
     read_mask: int
     values: tuple[int, ...]
@@ -85,7 +85,7 @@ class Reader:
         self.variable_count = 0  # variables so far, including the values of DEFs
         self.defs: dict[str, _Def] = {}
         self.blocks: list[_Block] = []
-        self.read_mask = 0  # sensors that are surely read
+        self.read_mask = 0  # sensors certainly read
         # Variables known so far, including those that this instruction has read.
         self.known_mask = 0
         self.pending_operators: list[
@@ -213,7 +213,7 @@ class Reader:
         self.emit_numbered(number)
 
     def number_of(self, name: str, default: int) -> int:
-        """Return the number of a variable, and `default` if there is none."""
+        """Return the number of a variable, or `default` if there is none."""
         return self.own_variables.get(name, self.variables.get(name, default))
 
     def read_def_values(self) -> None:
@@ -310,7 +310,7 @@ class Reader:
     # -- values -------------------------------------------------------------------------------
 
     def arguments(self) -> bool:
-        """Read what stands in the brackets of an instruction; return whether it is FOREVER."""
+        """Read the content of the brackets of an instruction; return whether it is FOREVER."""
         self.open_bracket()
         is_forever = self.has_extent_unit = False
         while True:
@@ -336,7 +336,7 @@ class Reader:
         self.pop()
 
     def operand(self) -> bool:
-        """Read an operand or what stands before one; return whether the operand is complete."""
+        """Read an operand or a prefix of one; return whether the operand is complete."""
         self.skip_newlines()
         token = self.token
         if token.kind == "(":
@@ -385,7 +385,7 @@ class Reader:
         self.pending_operators.append((binding, name))
 
     def operator(self) -> bool:
-        """Read what follows an operand; return whether another operand is wanted."""
+        """Read the token after an operand; return whether another operand is expected."""
         while True:
             self.skip_newlines()
             token = self.token
@@ -418,7 +418,7 @@ class Reader:
         self.wait(binding, name)
 
     def reduce(self, binding: int) -> None:
-        """Apply what waits and binds at least so tightly, back to an open bracket."""
+        """Apply the waiting operators of at least this precedence, back to an open bracket."""
         while self.pending_operators and self.pending_operators[-1][0] >= binding:
             precedence, _ = self.pending_operators.pop()
             self.pop()

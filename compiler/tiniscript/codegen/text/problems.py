@@ -1,7 +1,7 @@
 """The messages of a robot that reads text, for wrong lines and for people.
 
 Knows numbers and names; the catalogue `robot` has the words. Generated into the firmware, which has
-room for one language. A number is never used for something else. Texts are ASCII, for any terminal.
+room for one language. A number is never reused. Texts are ASCII, for any terminal.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from tiniscript.base.languages import find_text
 
 MOST_CHARACTERS = 40  # characters of a text
 
-# By number, from 1. A message begins with a column; that of RANGE also with the value's number and
-# its least value, and ends with the largest. fmt: off
+# Problems by number, starting with 1. A message begins with a column; that of RANGE also with the
+# value's number and its least value, and ends with the largest. fmt: off
 PROBLEMS = (
     "CHECKSUM",
     "CHARACTER",
@@ -47,7 +47,7 @@ PROBLEMS = (
     "ONE_TASK",
 )
 DEF_PROBLEMS = frozenset(("DEF", "ONE_TASK"))  # only robots whose reader knows DEF report these
-# Of MISTAKE and HELP the firmware makes the text.
+# The firmware composes the text of MISTAKE and HELP.
 REMARKS = (
     "OK",
     "OK_BUTTON",

@@ -1,7 +1,7 @@
 """The AT commands of Bluetooth modules: one row for each kind, clones included.
 
-From the modules' papers, and from what their users found. Knows no port: what is sent and what is
-heard is text.
+From the modules' papers, and from what their users found. It knows no port: input and output are
+text.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ _PLAIN = {baud: str(baud) for baud in BAUDS}
 class Dialect(NamedTuple):
     """The commands of a kind of module; `{}` is the value.
 
-    Where a command has several forms, they are tried in this order. The answer to a question
-    shows what a command has done. `baud_codes` says how a speed is written. `restart_command` is
-    that after which a speed counts; without it the speed counts at once. `keeps_baud`: while the
-    module is set up it keeps the speed of that, and has the new one when it is switched on again.
+    Several forms of a command are tried in this order. The answer to a query shows the effect of a
+    command. `baud_codes` says how a speed is written. `restart_command` is that after which a speed
+    counts; without it the speed counts at once. `keeps_baud`: while the module is set up it keeps
+    the speed of that, and has the new one when it is switched on again.
     """
 
     name: str
@@ -87,7 +87,7 @@ def is_error(answer: str) -> bool:
 def value_of(answer: str) -> str:
     """Return the value in an answer: of `+NAME:ANA`, `OK+Get:4`, `+UART:9600,0,0`, `+PIN:"1234"`.
 
-    The answer to a question about a value that a module does not tell is empty.
+    The answer to a question about a value that a module does not report is empty.
     """
     for line in answer.splitlines():
         for prefix in ("OK+Get:", "OK+NAME:", "OK+PASS:", "+"):

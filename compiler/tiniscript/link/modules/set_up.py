@@ -1,7 +1,7 @@
 """Sets a module's name, PIN and speed, and checks them afterwards.
 
-The speed comes last, and is looked for at all speeds if it cannot be found at the new one: so
-nobody is left with a module whose speed they do not know.
+The speed comes last, and is looked for at all speeds if it cannot be found at the new one: so no
+user is left with a module of unknown speed.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def unsupported_setting(settings: WantedSettings, dialect: Dialect) -> str:
 
 
 def plan_steps(settings: WantedSettings, dialect: Dialect) -> list[Step]:
-    """Return the steps in the order in which to send them. Sends nothing."""
+    """Return the steps in the order in which to send them. It sends nothing."""
     name, pin, baud = settings
     plan = (
         (NAME, name, dialect.name_commands, name),
@@ -95,7 +95,7 @@ def apply_steps(
 
 
 def _apply_step(wire: Wire, dialect: Dialect, step: Step) -> Outcome:
-    """Send the forms of a command until one is taken and the module tells the value."""
+    """Send the forms of a command until the module accepts one and reports the value."""
     question = {
         NAME: dialect.name_question,
         PIN: dialect.pin_question,
@@ -124,8 +124,8 @@ def _apply_step(wire: Wire, dialect: Dialect, step: Step) -> Outcome:
 def _is_same(step: Step, dialect: Dialect, answer: str) -> bool:
     """Return whether an answer contains the value.
 
-    Firmware that wants a PIN in quotes tells `+PIN:"1234"`. Where an older one tells
-    `+PSWD:"1234"`, it has kept the quotes.
+    Firmware that wants a PIN in quotes reports `+PIN:"1234"`. If an older one reports
+    `+PSWD:"1234"`, it has stored the quotes.
     """
     value = value_of(answer)
     if step.setting == BAUD:
@@ -136,7 +136,7 @@ def _is_same(step: Step, dialect: Dialect, answer: str) -> bool:
 
 
 def _check_speed(wire: Wire, module: Module, outcome: Outcome) -> Outcome:
-    """Return whether the module is at its new speed, else at which one it is."""
+    """Return whether the module is at its new speed, otherwise which speed it has."""
     dialect, step = module.dialect, outcome.step
     baud = int(step.value)
     if dialect.keeps_baud:

@@ -1,6 +1,7 @@
 """Talks with a module over a wire, and finds out at which speed it listens and which one it is.
 
-Nothing here changes a module: AT, and questions. Interrupted set-ups are found this way, too.
+Nothing here changes a module: it sends only AT and queries. Interrupted set-ups are found this way,
+too.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ def find_module(
     """Return the module on a wire, or None if there is no answer. `on_baud` is called for each
     speed.
 
-    `wakes`: if none answers a text of 100 bytes is sent, which wakes an HM-10 that sleeps.
+    `wakes`: if none answers, send a text of 100 bytes, which wakes a sleeping HM-10.
     """
     wire.receive(SLOW_ANSWER_MS, SLOW_ANSWER_MS)  # discards the answers to earlier bytes
     for is_awake in (False, True) if wakes else (False,):
@@ -121,6 +122,6 @@ def _identify_dialect(wire: Wire, line_end: bytes) -> tuple[Dialect, str]:
 
 
 def _version_line(answer: str) -> str:
-    """Return the version in an answer: its first line, without what it is called."""
+    """Return the version in an answer: its first line, without the label."""
     first_line = answer.splitlines()[0] if answer else ""
     return first_line.removeprefix("+").removeprefix("VERSION").lstrip(":=")

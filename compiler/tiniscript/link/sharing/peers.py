@@ -1,7 +1,7 @@
-"""Whose connection it is: the user at the other end of a connection within this computer.
+"""Finds whose connection it is: the user at the other end of a connection within this computer.
 
-A port of 127.0.0.1 is there for all users. Linux tells who has the other end; if nobody tells,
-everybody is let in.
+A port of 127.0.0.1 is there for all users. Linux reports who has the other end; where this is
+unknown, everyone is admitted.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ _SOCKET_ENDS = struct.Struct(">HH16s16sI8s")  # ports, addresses, interface, coo
 _ANSWER = struct.Struct("=BBBB48sIIIII")  # family, state, .., expires, queues, user, inode
 ROOT_USER = 0
 HOST = "127.0.0.1"
-# Nobody has the other end any more; or this process has too many files open to ask.
+# The other end is closed, or this process has too many files open to ask.
 _NO_SOCKET_ERRORS = (errno.ENOENT, errno.EMFILE, errno.ENFILE)
 
 
 class SocketOwner(NamedTuple):
     """The other end of a connection.
 
-    What a process has closed has no inode. The kernel says 0, as of root, of its user then; Linux
-    6.17 and later say that for a moment still who it was.
+    A connection that its process has closed has no inode. The kernel then reports its user as 0, as
+    for root; Linux 6.17 and later report the real user for a moment.
     """
 
     user: int
@@ -44,13 +44,13 @@ class SocketOwner(NamedTuple):
 def is_of_this_user(peer: socket.socket) -> bool:
     """Return whether the other end of an accepted connection belongs to this user or root.
 
-    False if nobody has it any more: who has hung up can have been anybody.
+    False if the other end is closed: it could have been any user.
     """
     if sys.platform != "linux":
         return True
     try:
         peer_address, own_address = peer.getpeername(), peer.getsockname()
-    except OSError:  # the process has gone
+    except OSError:  # the process has ended
         return False
     try:
         owner = _socket_owner(peer_address, own_address)
@@ -62,7 +62,7 @@ def is_of_this_user(peer: socket.socket) -> bool:
 def is_of_another_user(number: int) -> bool:
     """Return whether another user, except root, listens at a port of 127.0.0.1.
 
-    False if nobody listens there, and if nobody tells.
+    False if no server listens there, or if this is unknown.
     """
     if sys.platform == "win32":
         return False

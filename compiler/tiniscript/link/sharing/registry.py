@@ -1,4 +1,4 @@
-"""Which command holds which port: one file for each port, which only the user can read.
+"""Records which command holds which port: one file for each port, which only the user can read.
 
 The file says where the server listens, and has the token that proves that a client belongs to the
 same user. A file may outlive its server: without the right answer from there, the port is free.
@@ -129,7 +129,7 @@ def is_taken(number: int) -> bool:
 
 
 def forget(port: str) -> None:
-    """Remove the registration of a port. Only for the command that has opened the port itself."""
+    """Remove the registration of a port. Only for a command that has opened the port itself."""
     with suppress(OSError):
         _path(port).unlink(missing_ok=True)
 

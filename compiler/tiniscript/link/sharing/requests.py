@@ -54,7 +54,8 @@ class ClientRequests(Requester):
 
 
 def _message_fields(arguments: Mapping[str, object]) -> JsonMessage:
-    """Return the fields of a message: bytes are hex, and a tuple's own stand beside the others."""
+    """Return the fields of a message: bytes are hex, and the fields of a tuple are on the same
+    level as the others."""
     fields: JsonMessage = {}
     for name, value in arguments.items():
         if hasattr(value, "_asdict"):
@@ -71,7 +72,7 @@ def request_maker(
 ) -> Callable[[Requester], PendingRequest[Any]]:
     """Return the function that makes a message's request to a session. Raises BadMessage.
 
-    `speaker` is who presses keys.
+    `speaker` is the client that presses keys.
     """
     name = protocol.read_field(message, "do", str)
     arguments = (
@@ -91,7 +92,7 @@ def request_maker(
 
 
 def is_detached(message: JsonMessage) -> bool:
-    """Return whether a message requests a run that goes on without its client."""
+    """Return whether a message requests a run that continues without its client."""
     return message.get("is_detached") is True
 
 

@@ -1,11 +1,11 @@
 """A line that other commands share: they connect as clients, and one thread serves all of them.
 
-The requests of all clients go to the one session of the line, and all clients get the events of
-the robot. A run belongs to the client that has started it: when that client leaves or its
-heartbeats stop, the server ends the run, as the robot stops itself when the command that holds
-the port ends. What a client that leaves has not finished starts nothing, and cancels nothing of
-others. No client can delay the line or another client: a slow client misses events, and
-one that breaks the protocol is disconnected.
+The requests of all clients go to the one session of the line, and all clients get the events of the
+robot. A run belongs to the client that has started it: when that client leaves or its heartbeats
+stop, the server ends the run, as the robot stops itself when the command that holds the port ends.
+A client that leaves does not start what it had not finished, and cancels nothing of other clients.
+No client can delay the line or another client: a slow client misses events, and one that breaks the
+protocol is disconnected.
 """
 
 from __future__ import annotations
@@ -252,7 +252,7 @@ class Server:
     def _greet(self, client: ConnectedClient, data: bytes) -> bytes:
         """Read a new client's greeting; return the bytes after it.
 
-        Until the token is right, nothing else is read. Raises BadMessage.
+        Until the token is right, no other message is read. Raises BadMessage.
         """
         client.greeting += data
         greeting = protocol.read_greeting(client.greeting)
@@ -390,7 +390,7 @@ class Server:
         if client.verb not in ("", protocol.LOOKING_VERB):
             self._connection.post_event(event(client.verb.encode()))
 
-    # -- what clients are told --------------------------------------------------------------------
+    # -- messages to clients ----------------------------------------------------------------------
 
     def _send(self, client: ConnectedClient, message: JsonMessage) -> None:
         client.output += protocol.encode_message(message)

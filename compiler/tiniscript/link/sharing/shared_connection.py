@@ -1,6 +1,6 @@
 """The connection to a robot through the command that holds its port.
 
-Has no thread: a caller that waits reads what has arrived. While it waits it sends heartbeats; the
+It has no thread: a waiting caller reads the received bytes. While it waits it sends heartbeats; the
 server ends a run that it has started when they stay away. Knows sockets and the clock.
 """
 
@@ -165,7 +165,7 @@ class SharedConnection(LinkConnection):
             self._learn(request, reply.values)
 
     def _learn(self, request: ClientRequest[Any], values: object) -> None:
-        """Remember who the robot is."""
+        """Remember the identity of the robot."""
         if isinstance(values, HelloReply):
             self._robot = device_info_of(values)
         elif request.message["do"] == "name" and self.robot is not None:
@@ -222,7 +222,7 @@ def _connect_to(registration: Registration, verb: str) -> SharedConnection | Non
 
 
 def _read_greeting(peer: socket.socket, reader: protocol.MessageReader) -> list[JsonMessage]:
-    """Return the greeting of a server and what follows it."""
+    """Return the greeting of a server and the data after it."""
     end_s = monotonic() + ANSWER_S
     while (left_s := end_s - monotonic()) > 0:
         peer.settimeout(left_s)

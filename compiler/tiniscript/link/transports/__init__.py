@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-READ_S = 0.02  # timeout of a read: on some systems nothing can interrupt it
+READ_S = 0.02  # timeout of a read: on some systems it cannot be interrupted
 WRITE_S = 1.0  # timeout of a write; the session sends the bytes again
 
 

@@ -1,7 +1,8 @@
 """A robot's port over Bluetooth LE: the Nordic UART service, or that of an HM-10.
 
-`BluetoothPort` has what a `PortConnection` uses of a serial port. Knows bleak; importing this fails
-without it. What is seen in a scan is in `bluetooth_search`. Knows no robot and no sentences.
+`BluetoothPort` has the methods of a serial port that a `PortConnection` uses. Knows bleak;
+importing this fails without it. `bluetooth_search` handles scan results. Knows no robot and no
+sentences.
 """
 
 from __future__ import annotations
@@ -37,8 +38,8 @@ T = TypeVar("T")
 class UartService(NamedTuple):
     """A way of sending bytes over Bluetooth LE.
 
-    `is_paced`: the module loses bytes that arrive faster than its UART passes them on, and takes
-    no more than LEAST_WRITE_BYTES in one write, whatever was negotiated.
+    `is_paced`: the module loses bytes that arrive faster than its UART passes them on, and accepts
+    at most LEAST_WRITE_BYTES in one write, whatever was negotiated.
     """
 
     service_uuid: str

@@ -1,8 +1,8 @@
 """The robots in reach of Bluetooth LE: finds one by its name or its address, or lists them.
 
-All searches of a process share a scan, because BlueZ lets a program scan once at a time. What a
-device says of itself is unproven: names that two devices have are refused. Knows bleak. Its
-coroutines run in the loop of `event_loop`.
+All searches of a process share a scan, because BlueZ lets a program scan once at a time. A device's
+own claims are unproven, so a name that two devices have is refused. Knows bleak. Its coroutines run
+in the loop of `event_loop`.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class _Scan:
     async def _end(self) -> None:
         scanner, self._scanner = self._scanner, None
         if scanner is not None:
-            with suppress(Exception):  # the adapter is gone: the scan is over
+            with suppress(Exception):  # the adapter is lost: the scan is over
                 await asyncio.wait_for(scanner.stop(), LEAVE_S)
 
     def _notice_device(self, device: BLEDevice, advertisement: AdvertisementData) -> None:

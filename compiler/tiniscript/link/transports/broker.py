@@ -1,9 +1,9 @@
 """Robots at an MQTT broker: which ones are there, a port for each, and a stop for all of them.
 
-All robots of a broker share a connection of this process. A message is a piece of the bytes that
-any port carries: nothing is retained, and everything has QoS 0, since the session repeats what is
-lost. Knows paho-mqtt; importing this fails without it. Whoever may publish at the broker can say
-anything: what is believed, the seals of the link decide. Knows no sentences.
+All robots of a broker share a connection of this process. A message is a piece of the port's byte
+stream: no message is retained, and all have QoS 0, because the session repeats lost bytes. Knows
+paho-mqtt; importing this fails without it. Anyone who may publish at the broker can send anything:
+the seals of the link decide what is trusted. Knows no sentences.
 """
 
 from __future__ import annotations
@@ -107,9 +107,10 @@ def connect(host: str, port: int) -> Broker:
 
 
 def _tls_context(path: str | None) -> ssl.SSLContext:
-    """Return whom TLS trusts: what a file has, in PEM or DER, or whom this computer does.
+    """Return the certificates that TLS trusts: those of a file, in PEM or DER, or those of this
+    computer.
 
-    A broker's own certificate is enough, anyone who has signed it. Raises OSError.
+    A broker's own certificate is enough, whoever has signed it. Raises OSError.
     """
     data = None if path is None else Path(path).read_bytes()
     if data is None or b"-----BEGIN" in data:
@@ -121,10 +122,10 @@ def _tls_context(path: str | None) -> ssl.SSLContext:
 
 
 class _Client(mqtt.Client):
-    """Leaves out a message that is too large, and ends the connection where it is far too large:
-    none of it is in memory.
+    """Leaves out a message that is too large, and ends the connection if it is far too large: it is
+    never kept in memory.
 
-    `skipped_bytes` maps the topics of what was left out to the bytes of it.
+    `skipped_bytes` maps the topics of omitted messages to their sizes.
     """
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
@@ -197,8 +198,8 @@ class Broker:
     def list_robots(self, group: str) -> list[RobotPresence]:
         """Return the robots of a class that the broker knows, in the order of their names.
 
-        A broker does one request after the other. So the answer to a second one, which asks for
-        nothing, comes after what it retains; silence counts from then on. Raises PortError.
+        A broker does one request after the other. So the answer to a second request, which asks for
+        nothing, comes after the retained messages; silence counts from then on. Raises PortError.
         """
         assert is_class_name(group)
         end_s = monotonic() + LIST_S
@@ -228,9 +229,9 @@ class Broker:
         return dict(self._client.skipped_bytes)
 
     def stop(self, group: str) -> bool:
-        """Stop every robot of a class: one message for all. Nothing confirms it.
+        """Stop every robot of a class: one message for all. No reply confirms it.
 
-        Return whether it has gone to the broker. Raises OSError.
+        Return whether it was sent to the broker. Raises OSError.
         """
         delivery = self.publish(f"{ROOT}/{group}/stop", bytes(STOP_BYTES))
         with suppress(RuntimeError, ValueError):
@@ -257,7 +258,7 @@ class Broker:
         with self._lock:
             if self._port_by_group_and_id.get((port.group, port.robot_id)) is port:
                 del self._port_by_group_and_id[port.group, port.robot_id]
-        with suppress(OSError, RuntimeError, ValueError):  # the broker has gone
+        with suppress(OSError, RuntimeError, ValueError):  # the broker is lost
             # Completes before the process ends.
             self.publish(port.topic, b"").wait_for_publish(LEAVE_S)
 
@@ -349,7 +350,7 @@ class BrokerPort(PushedTransport):
         self._patient_until_s = monotonic() + PATIENCE_S
 
     def write(self, data: bytes) -> None:
-        """Send bytes in pieces. If nobody attends to the run, the robot hears a stop instead."""
+        """Send bytes in pieces. If no driver attends to the run, the robot is stopped instead."""
         if self._end_reason:
             raise OSError(self._end_reason)
         if not self._broker.has_driver:

@@ -1,4 +1,4 @@
-"""An asyncio event loop in a thread of its own, for what cannot be used without one.
+"""An asyncio event loop in a thread of its own, for libraries that need one.
 
 It begins with its first use. At the end of the process its tasks are cancelled, which ends open
 connections. Knows no port.
@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 from tiniscript.base.bell import Bell
 
-LOOK_S = 0.1  # between two looks: on Windows, Ctrl-C interrupts nothing that waits
+LOOK_S = 0.1  # between two looks: on Windows, Ctrl-C does not interrupt a wait
 CANCEL_S = 1.0  # timeout of cancelled tasks
 END_S = 5.0  # timeout of the tasks that end with the process
 
@@ -57,7 +57,7 @@ class EventLoop:
         return tasks[0].result()
 
     def close(self) -> None:
-        """Cancel all tasks, and end the thread. The process ends: nobody runs anything more."""
+        """Cancel all tasks, and end the thread. The process ends: no more calls will run."""
         if not self._thread.is_alive():
             return
         with suppress(TimeoutError):

@@ -1,7 +1,7 @@
 """Robots that announce themselves in the network, by multicast DNS: finds one, or lists them.
 
-Knows zeroconf; importing this fails without it. Anybody in the network can announce anything: an
-address that is not of a local network is refused, and a name proves nothing.
+Knows zeroconf; importing this fails without it. Anyone in the network can announce anything: an
+address outside a local network is refused, and a name proves nothing.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def query_service(network: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | 
     """
     try:
         return network.get_service_info(SERVICE, name, limit_ms, question_type=DNSQuestionType.QM)
-    except Error:  # a name that nothing in a network may have
+    except Error:  # a name that no device in a network may have
         return None
 
 
@@ -104,7 +104,8 @@ def _network() -> Zeroconf:
 
 
 def _address(info: ServiceInfo) -> str:
-    """Return the port that a robot announces. Raises PortError: it is none of a local network."""
+    """Return the port that a robot announces. It raises PortError if it is not of a local
+    network."""
     for parsed_address in info.parsed_addresses(IPVersion.V4Only):
         address = ip_address(parsed_address)
         is_local = address.is_private or address.is_link_local or address.is_loopback

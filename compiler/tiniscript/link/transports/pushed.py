@@ -1,6 +1,6 @@
-"""The reading half of a port whose bytes another thread brings: of a radio, of a broker.
+"""The reading half of a port whose bytes another thread delivers: of a radio, of a broker.
 
-Knows what a `PortConnection` uses of a serial port to read, and no way by which bytes come.
+It knows which reading methods of a serial port a `PortConnection` uses, but not how bytes arrive.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class PushedTransport:
             self._bell.ring()
 
     def bring(self, data: bytes | bytearray) -> None:
-        """Bytes have come."""
+        """Add received bytes."""
         with self._lock:
             self._buffer += data[: MOST_BUFFERED_BYTES - len(self._buffer)]
             self._bell.ring()

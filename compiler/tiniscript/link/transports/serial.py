@@ -2,7 +2,7 @@
 
 Also the addresses `socket://host:port` and `rfc2217://host:port`.
 
-Knows pyserial, and what its exceptions mean. Knows no robot and no sentences.
+It knows pyserial and the meanings of its exceptions. Knows no robot and no sentences.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class _Device(serial.Serial):  # type: ignore[misc] # pyserial has no types
 
 
 class ListedDevice(Protocol):
-    """A port that the system knows: its name, what it says of itself, and its hardware."""
+    """A port that the system knows: its name, its description, and its hardware."""
 
     device: str
     description: str  # "n/a" if unknown

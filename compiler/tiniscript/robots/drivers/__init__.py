@@ -1,4 +1,4 @@
-"""The drivers: each file describes one. `robots/driver.py` says what such a file contains."""
+"""The drivers: each file describes one. `robots/driver.py` describes the content of such a file."""
 
 from __future__ import annotations
 

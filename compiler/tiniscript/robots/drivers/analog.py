@@ -86,7 +86,8 @@ class Analog(SensorDriver):
 
 
 def _divided_voltage(device: Device, full_volts: int, pin_volts: int) -> Shape:
-    """Two resistors: the lower one has what a pin takes when the whole has `full_volts` thousandths."""
+    """Two resistors: the lower one has the voltage of a pin when both together have `full_volts`
+    thousandths."""
     upper = f"{10 * (full_volts - pin_volts) / pin_volts:g} kΩ"
     is_battery = lexicon_concept(re.split("[_0-9]", device.name)[0]) == "BATTERY"
     name = MOTOR_BATTERY if is_battery else "what_is_measured"

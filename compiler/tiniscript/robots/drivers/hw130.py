@@ -1,7 +1,7 @@
 """The shield HW-130, "Motor Shield V1": four motors on two L293Ds, directions in a 74HC595.
 
-Which pins it takes, and which bit of the 74HC595 is which input of an L293D, is from the schematic
-and the header AFMotor.h of Adafruit's Motor Shield, of which it is a copy.
+The pins that it uses, and the bits of the 74HC595 for each input of an L293D, are from the
+schematic and the header AFMotor.h of Adafruit's Motor Shield, of which it is a copy.
 """
 
 from __future__ import annotations

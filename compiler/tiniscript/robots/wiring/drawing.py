@@ -37,7 +37,7 @@ RAIL_COLOURS = {
 LINE_COLOUR = "#333333"
 LEGEND_STEP = 24
 FONT = "'DejaVu Sans', Verdana, Arial, sans-serif"
-# How far from a part's edge things are, in the zone beside it.
+# The distance between a part's edge and the things in the zone next to it.
 TAG_DISTANCE, NEAR_DISTANCE, DOT_DISTANCE, FAR_DISTANCE = 26, 65, 94, 118
 LEAST_SCALE = 0.65  # a text is made smaller to this part of its size, and then cut
 NARROW_LETTERS = frozenset("iljtfrI1.,:;'|()[] ")

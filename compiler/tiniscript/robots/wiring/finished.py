@@ -180,7 +180,7 @@ class _FinishedDrawing:
         first_row = max(front_y + 26, MARGIN + 14 + LABEL_STEP * label_count)
         for k, part in enumerate(self.servos):
             share = (k + 0.5) / len(self.servos) - 0.5
-            if touch_place is not None:  # the jaws are in the middle, the others beside them
+            if touch_place is not None:  # the jaws are in the middle, the others next to them
                 share = (0.38 - 0.12 * ((k - 1) // 2)) * (1 if k % 2 else -1) if k else 0
             x = self.x + share * self.breadth
             lines.append(_box(x - 26, front_y + 4, 52, 30, PART_FILL))

@@ -1,6 +1,6 @@
 """The two sides of each board as they are printed on it, with the USB socket at the top.
 
-Knows which pin is beside which. `None` is a gap; what is no number is only a name.
+Knows which pins are next to each other. `None` is a gap; what is no number is only a name.
 """
 
 from __future__ import annotations

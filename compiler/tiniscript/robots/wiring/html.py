@@ -91,7 +91,7 @@ def _block(block: Block, plan: Plan) -> str:
 
 
 def _row(cells: tuple[str, ...], head: tuple[str, ...]) -> str:
-    """Return a row; each cell knows its column, which a narrow screen shows beside it."""
+    """Return a row; each cell knows its column, which a narrow screen shows next to it."""
     html_cells = (
         f'<td data-head="{escape(name)}">{_bold_html(cell)}</td>'
         for cell, name in zip(cells, head, strict=True)

@@ -1,7 +1,7 @@
 """Calculates where the board, the parts and the wires of a plan are drawn.
 
-Pins lie on a grid, terminals half a step beside it, and every wire has a track of its own between
-the board and the parts: so wires cross, and never lie upon each other. Knows no SVG.
+Pins lie on a grid, terminals half a step off it, and every wire has its own track between the board
+and the parts, so wires may cross but never overlap. Knows no SVG.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ HEAD_HEIGHT = 44  # the title of a part
 BOARD_WIDTH = 136
 BOARD_NAME_HEIGHT = 44  # below its pins
 PART_WIDTH = 160
-ZONE_WIDTH = 158  # beside a part, where its resistors are
+ZONE_WIDTH = 158  # the zone next to a part, where its resistors are
 BOARD_GAPS = (54, 26)  # left: connections of the board's 5V and GND; right: only numbers
 MOTORS_WIDTH = 100
 MARGIN = 10
@@ -53,7 +53,7 @@ class Box(NamedTuple):
 
 
 class Route(NamedTuple):
-    """A wire's corners, from the board's edge to the zone beside its part."""
+    """A wire's corners, from the board's edge to the zone next to its part."""
 
     wire: Wire
     points: tuple[tuple[int, int], ...]
@@ -179,7 +179,7 @@ class _Layout:
         return RIGHT if sides and 2 * sum(sides) >= len(sides) else LEFT
 
     def _wanted_y(self, part: Part) -> float:
-        """Return the preferred height of a part's first terminal: beside its pins."""
+        """Return the preferred height of a part's first terminal: that of its pins."""
         offsets = [
             self.pin_y[end.wire.pin] - row
             for end, row in zip(part.ends, _rows_of(part), strict=True)
@@ -266,7 +266,7 @@ class _Layout:
         return Layout(width, bottom_y + MARGIN, board, tuple(self.pins), boxes, routes)
 
     def _free_y(self) -> int:
-        """Return the first height below the board, a quarter step beside pins and terminals."""
+        """Return the first height below the board, a quarter step off pins and terminals."""
         return self.board_top + _snap(self.board_height) + STEP + STEP // 4
 
     def _box(self, part: Part, columns: tuple[int, int]) -> Box:

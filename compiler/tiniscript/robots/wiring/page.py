@@ -1,4 +1,4 @@
-"""The text beside a drawing: parts list, tables, warnings and checks.
+"""The text next to a drawing: parts list, tables, warnings and checks.
 
 Knows a plan, and which sentences apply to it. Text in a block is plain except for **bold** in
 sentences of `texts`; the code that writes it escapes it.

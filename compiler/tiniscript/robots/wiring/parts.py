@@ -35,8 +35,8 @@ def shape_of(used_by: str, wiring: Wiring, device: Device | None = None,
 def _adapt_to_3v3(shape: Shape) -> Shape:
     """Return a part as it is joined to a board whose pins have 3.3 V.
 
-    It gets 3.3 V, so that nothing else comes back; what needs 5 V gets them, and a divider where
-    it answers with them: its middle is the pin.
+    A part gets 3.3 V, so that no higher voltage comes back. A part that needs 5 V gets 5 V, and a
+    divider if it answers with 5 V: the pin is at its middle.
     """
     if shape.needs_5v:
         terminals = (

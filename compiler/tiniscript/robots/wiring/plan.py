@@ -1,7 +1,7 @@
 """Makes the plan of a robot: its parts, and every wire between them and the board, numbered.
 
-Knows which pin is joined to which terminal. Does not know where things are drawn (`layout`). What
-comes from a profile is cut to a length here; the code that writes it must escape it.
+Knows which pin is joined to which terminal. Does not know where things are drawn (`layout`). Text
+from a profile is cut to a maximum length here; the code that writes it must escape it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The lint: warnings about a program that has no mistakes, never mistakes.
 
-`TABLE` has all of them: the codes, where each is looked for, and what finds it there. What cannot
-be looked for in a program that is checked is in `FOUND_ELSEWHERE`.
+`TABLE` has all of them: the codes, where each is looked for, and what finds it there. Warnings that
+cannot be found in a checked program are in `FOUND_ELSEWHERE`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tiniscript.semantics.lint import conditions, known, moves, numbers, tasks, 
 from tiniscript.semantics.lint.context import BodyContext, LintContext
 from tiniscript.syntax.lexer import Scan
 
-# Where a warning is looked for, if not at statements of a type.
+# Where to look for a warning, if not at statements of a type.
 PROGRAM, TASKS, BODY, STATEMENT = "program", "tasks", "body", "statement"
 
 

@@ -178,7 +178,8 @@ class _Conditions:
             self._context.report(codes.TURNED_ROUND, self._context.header_span(loop.span), **values)
 
     def _direction_and_ending_op(self, loop: ir.While, comparison: Comparison) -> tuple[str, str]:
-        """Return the way that all moves of a loop go, and what else would end it, if anything."""
+        """Return the direction of all moves of a loop, and the other condition that would end it,
+        if any."""
         moves = [
             statement for statement in loop.body if not isinstance(statement, STANDING_STATEMENTS)
         ]
@@ -251,7 +252,7 @@ class _Conditions:
         )
         terms_used = self._context.variables.terms_used_in(outermost)
         if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & terms_used:
-            return  # it is shown beside the current measurement, or the rounds depend on it
+            return  # it is shown together with the current measurement, or the rounds depend on it
         fix = f"SHOW({sensor_of_variable[name]})"
         self._context.report(
             codes.FROZEN_WHILE, show.span, name=name, sensor=sensor_of_variable[name], fix=fix
@@ -260,8 +261,8 @@ class _Conditions:
     def _report_thrown_once(self, show: ir.Show, variable: int, loop: ir.Loop | ir.While) -> bool:
         """`DICE = RANDOM(1, 6); LOOP(5); SHOW(DICE); END_LOOP`: five times the same number.
 
-        It is said where the loop shows it in each round, shows nothing else that changes, and
-        where the number is there for nothing else.
+        The warning appears if the loop shows the number in each round, shows no other value that
+        changes, and the number has no other use.
         """
         assignments = [
             statement

@@ -66,7 +66,7 @@ class LintContext:
     def condition_text(self, span: Span, word: str) -> str:
         """Return the text in the brackets after the last `word` in `span`.
 
-        Nothing where it is long, or goes over several lines.
+        Return nothing if it is long or spans several lines.
         """
         text = self.source[span]
         offsets = [match.end() for match in re.finditer(rf"\b{word}\s*\(", text, re.IGNORECASE)]
@@ -83,7 +83,7 @@ class LintContext:
 
 
 class Variables:
-    """Which values the variables of a program get, and where."""
+    """The values that the variables of a program get, and where."""
 
     def __init__(self, program: ir.Program, kit: Kit) -> None:
         self._program = program

@@ -1,7 +1,7 @@
 """Warns of code with a constant effect where another one was meant.
 
-A clock that is past a number, MIN and MAX the wrong way round, an ELSE that its questions leave no
-room, and a RANDOM that is thrown again.
+A clock that is past a number, MIN and MAX the wrong way round, an ELSE that is never reached, and a
+RANDOM that is thrown again.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tiniscript.semantics.optimizer import known_value
 
 _LESS_OPS = ("LT", "LE")
 _NARROWING_OPS = ("MIN", "MAX")
-_SIDE_OPS = {"LT", "GT"}  # comparisons of one number, which alone remains for ELSE
+_SIDE_OPS = {"LT", "GT"}  # comparisons of one number, the only one that remains for ELSE
 _THROW_OPS = ("NUMBER", "NUMBER", "RANDOM")
 
 
@@ -93,7 +93,7 @@ def report_narrowed(
 
 def _find_nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
     """Yield each MIN or MAX of a number with a nested one: both words, both numbers."""
-    stack: list[tuple[str, int | None]] = []  # operation behind each value, and its number
+    stack: list[tuple[str, int | None]] = []  # the operation after each value, and its number
     for op, number in value:
         if op == "NUMBER":
             stack.append((op, number))

@@ -240,7 +240,7 @@ def _can_change(condition: ir.Expression) -> bool:
 
 
 def _only_stop(branch: ir.If) -> ir.Stop | None:
-    """Return the S of an IF that does nothing else with the motors, and has no ELSE."""
+    """Return the S of an IF that uses the motors only for it, and has no ELSE."""
     if len(branch.arms) != 1 or branch.has_else:
         return None
     stop: ir.Stop | None = None

@@ -1,6 +1,6 @@
 """Warns of numbers that nobody means: degrees, centimetres, milliseconds, `F(80, 2)`, `LOOP(0)`.
 
-Only numbers that are written are looked at, and variables that are set once.
+Looks only at literal numbers and at variables that are set once.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def check_clock(
 
 
 def _clock_span(statement: ir.Statement | ir.Task, limit: str, context: LintContext) -> Span:
-    """Return the place of a comparison of the clock as written, or else its statement."""
+    """Return the place of a comparison of the clock as written, or its statement."""
     pattern = rf"(?i)\bTIME\b[ \t]*[<>=]+[ \t]*{limit}\b|\b{limit}[ \t]*[<>=]+[ \t]*TIME\b"
     clock_match = re.compile(pattern).search(context.source.text, *statement.span)
     return Span(*clock_match.span()) if clock_match else statement.span
@@ -120,8 +120,8 @@ def _check_named_time(move: Move, context: LintContext) -> list[Diagnostic]:
 def _check_time(move: Move, context: LintContext) -> list[Diagnostic]:
     """Return the warnings about the numbers of a move or a wait by its time.
 
-    It is one thing at most, and for `R(03, 2)` what is said of its power, too. With UNTIL a long
-    time is only how long it may last.
+    It is one thing at most, and for `R(03, 2)` what is said of its power, too. With UNTIL, a long
+    time is only a limit.
     """
     time, power, kit = known_value(move.time), known_value(move.power), context.kit
     text, is_ended = context.source[move.span], move.until is not None
@@ -281,7 +281,8 @@ def check_act(act: Act, body_context: BodyContext, context: LintContext) -> None
 
 
 def report_swapped_rounds(context: LintContext) -> None:
-    """`ROUND(1, DISTANCE)`: a whole number is rounded, to as many decimals as something else."""
+    """`ROUND(1, DISTANCE)`: a whole number is rounded, and the other value gives the number of
+    decimals."""
     tokens = [token for token in context.scan.tokens if token.kind is not NEWLINE]
     for k, token in enumerate(tokens[:-_TOKENS_TO_SECOND_VALUE]):
         if token.text != "ROUND":

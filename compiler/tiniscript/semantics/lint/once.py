@@ -1,7 +1,8 @@
 """Warns of a key or a stick that is read only once: `SI|IF(KEY_UP);F(1, 60);ENDIF`.
 
-Nobody holds it at just that moment. What repeats reads it again: a loop, a WHEN, UNTIL; a DEF may
-be called in one. After a loop or a move that waits for the remote control somebody may hold it.
+Nobody presses it at exactly that moment. Code that repeats reads it again: a loop, a WHEN, UNTIL,
+or a DEF called in one. After a loop or a move that waits for the remote control somebody may hold
+it.
 """
 
 from __future__ import annotations

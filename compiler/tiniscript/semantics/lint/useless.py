@@ -59,11 +59,11 @@ def report_never_reached(body: ir.Body, body_context: BodyContext, context: Lint
 
 
 def report_instructions_in_notes(context: LintContext) -> None:
-    """`F(2, 80)//R(1, 60)`: instructions that stand in a note.
+    """`F(2, 80)//R(1, 60)`: instructions in a comment.
 
-    Only a note that is a row of calls with numbers, or that has such a call after a `;`, is taken
-    for a slip, and only after an instruction, where a `;` would do: a whole line may be set aside,
-    and after a header or `SI|` a note tells what comes.
+    Only a comment that is a row of calls with numbers, or has such a call after a `;`, counts as a
+    slip, and only after an instruction, where a `;` would work: a whole line may be commented out
+    on purpose, and after a header or `SI|` a comment describes what follows.
     """
     source, tokens = context.source, context.scan.tokens
     short_comments = [
@@ -104,7 +104,7 @@ def _report_all_notes(notes: Sequence[Token], context: LintContext) -> None:
 def swallowed_instructions(note: str) -> list[str]:
     """Return the instructions after the words of a note: `// voy; W(2) // compro`.
 
-    None if a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
+    None if a bracket is outside a whole instruction: `// L va; R(1, 60) es derecha`.
     """
     first_part, *other_parts = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
     instructions = [
@@ -163,10 +163,10 @@ def _is_forever(loop: ir.Loop | ir.While) -> bool:
 
 
 def report_empty_blocks(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
-    """`LOOP(4)`, `END_LOOP`, and the moves below: beside what was probably meant to be in it.
+    """`LOOP(4)`, `END_LOOP`, and the moves below: show what was probably meant to be in it.
 
-    Nothing is said of an endless LOOP or a WHILE, which wait, nor of a block with a note inside or
-    after its end.
+    There is no warning for an endless LOOP or a WHILE, which wait, nor for a block with a comment
+    inside or after its end.
     """
     source = context.source
     for k, statement in enumerate(body):

@@ -16,8 +16,8 @@ constexpr uint8_t kNoChannel = 0xff;
 constexpr uint8_t kFromSupply = 1 << REFS0;  // the highest count is the supply's voltage
 constexpr uint8_t kChannels = 8;             // three bits select these; more need a bit elsewhere
 
-// The channel of the chip's own 1.1 V reference. It varies from 1.0 to 1.2 V between chips, so what
-// counts as 4.0 V here is 3.6 to 4.4 V.
+// The channel of the chip's own 1.1 V reference. It varies from 1.0 to 1.2 V between chips, so the
+// limit of 4.0 V here is really 3.6 to 4.4 V.
 #ifdef MUX5
 constexpr uint8_t kBandGap = 0x1e;
 #else
@@ -25,7 +25,7 @@ constexpr uint8_t kBandGap = 0x0e;
 #endif
 constexpr uint16_t kMostCount = 281;  // 1024 * 1.1 V / 4.0 V: the supply is too low above it
 // The reference has a high resistance, so the converter's capacitor needs 1 to 2 ms to follow. Only
-// the last of these conversions (104 us each) counts.
+// the last of these conversions (104 us each) is used.
 constexpr uint8_t kSupplyTries = 24;
 
 #ifdef tiniscript_has_tasks
@@ -47,7 +47,7 @@ struct Converter {
   uint8_t measured;       // the channel of the last conversion, or kNoChannel
   uint8_t tries;          // conversions of the reference still to come
   bool is_supply_wanted;  // somebody asked in this turn of the main loop
-  // Where there are tasks, values wait for all that ask.
+  // With tasks, values wait for all tasks that ask.
   Channels bit;           // of `measured`; 0: it is old
   Channels fresh;         // have been measured
   Channels old;           // had been at the last tick: they are forgotten at the next

@@ -2,7 +2,7 @@
 //
 // Replaces `init`, `millis` and `micros` of the Arduino core, as far as a robot needs them, in less
 // flash and with a shorter interrupt. So this folder has its own `main`, which calls `setup` and
-// `loop` as the core's does.
+// `loop` as that of the core does.
 
 #pragma once
 

@@ -17,8 +17,8 @@
 
 namespace tiniscript {
 
-// `Record` has `heard` (of type `EchoState`), `rose_us`, `fell_us` and `again_us`. Saves what it
-// changes and returns from the interrupt.
+// `Record` has `heard` (of type `EchoState`), `rose_us`, `fell_us` and `again_us`. Saves the
+// registers that it changes and returns from the interrupt.
 template <class Record, class EchoState>
 tini_always_inline void on_echo_edge(Record* record, Echo echo, uint8_t glitch_us) {
   asm volatile(

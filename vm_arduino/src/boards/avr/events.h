@@ -1,7 +1,7 @@
-// Interrupts tell the machine of an event: something else needs the processor.
+// Interrupts notify the machine of an event: other code needs the processor.
 //
-// The machine returns at the next jump back. So it may run as long as nothing happens, and the main
-// loop costs little. `vm/execute_avr.S` tests the bit.
+// The machine returns at the next jump back. So the machine may run until something happens, and
+// the main loop costs little. `vm/execute_avr.S` tests the bit.
 
 #pragma once
 
@@ -14,7 +14,7 @@ namespace tiniscript {
 // A byte has arrived, or a millisecond has passed.
 inline void signal_event() { GPIOR0 |= 1 << tini_event_bit; }
 
-// The main loop now looks at everything: what is to be done has come by interrupts.
+// The main loop now checks everything: interrupts have brought the work to do.
 inline void poll_events() { GPIOR0 &= static_cast<uint8_t>(~(1 << tini_event_bit)); }
 
 }  // namespace tiniscript

@@ -19,6 +19,6 @@ inline __attribute__((always_inline)) void call_in_frame(void (*function)()) {
 
 }  // namespace tiniscript
 
-// Defines the handler of `vector`: it calls `function`, which takes and returns nothing.
+// Defines the handler of `vector`: it calls `function`, which has neither arguments nor a result.
 #define tiniscript_interrupt(vector, function) \
   ISR(vector, ISR_NAKED) { tiniscript::call_in_frame(function); }

@@ -1,8 +1,8 @@
 // Pins of an ATmega328P or ATmega2560, and PWM on them, by direct register access.
 //
-// With pins known at compile time, most of this is one instruction. A change of a register that an
-// interrupt also changes runs with interrupts off: the interrupt that turns the motors off may come
-// at any time, and its write must not be undone.
+// With pins known at compile time, most of this compiles to one instruction. A change of a register
+// that an interrupt also changes runs with interrupts off: the interrupt that turns the motors off
+// may come at any time, and its write must not be undone.
 
 #pragma once
 

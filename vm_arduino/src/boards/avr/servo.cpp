@@ -27,7 +27,7 @@ struct Pulse {
 volatile Pulse pulses[kServoCount];
 uint8_t turn = kGap;  // index of the servo whose pulse is under way
 
-// Where there is only one servo, the compiler knows.
+// With only one servo, the compiler knows which one.
 tini_always_inline uint8_t now_served() { return kServoCount == 1 ? 0 : turn; }
 
 // Ends a pulse and starts the next one. In between a stop may come in, unless it changes pulses.
@@ -70,7 +70,8 @@ void servo_begin() {
   TIMSK1 = 1 << OCIE1A;
 }
 
-// Not inlined: what calculates the pulse would move in between, where interrupts are off.
+// Not inlined: otherwise the calculation of the pulse would move in between, where interrupts are
+// off.
 tini_noinline void servo_set(uint8_t number, uint16_t pulse_us, uint8_t frames) {
   const CriticalSection critical;
   pulses[number].ticks = static_cast<uint16_t>(pulse_us * kTicksPerUs);

@@ -110,7 +110,7 @@ void look_at_line() {
 }  // namespace
 
 void uart_begin(uint32_t baud) {
-  begin_pull_up(kReceive);  // stays high if nothing is connected
+  begin_pull_up(kReceive);  // stays high if unconnected
   UCSR0A = _BV(U2X0);
   UBRR0 = static_cast<uint16_t>((F_CPU / 4 / baud - 1) / 2);  // rounded
   UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);                         // 8N1
@@ -129,8 +129,8 @@ LineErrors uart_errors() { return {framing, overrun}; }
 
 namespace {
 
-// What comes after the look for a stop. A byte with a framing error is 0 here: only that the line is
-// bad is known.
+// The work that follows the look for a stop. A byte with a framing error is 0 here: only that the
+// line is bad is known.
 void receive(uint8_t byte, uint8_t status) {
   low_turns = 0;
   if ((status & (_BV(DOR0) | _BV(FE0))) != 0) {
@@ -148,7 +148,7 @@ void receive(uint8_t byte, uint8_t status) {
 
 }  // namespace tiniscript
 
-// Looks for a stop before it saves what the rest may change.
+// Looks for a stop before it saves the registers that the rest may change.
 ISR(uart_receive_vect, ISR_NAKED) {
   asm volatile(
       "push r30\n\tpush r31\n\tpush r24\n\tin r24, __SREG__\n\tpush r24\n\tpush r22\n\t"
@@ -173,8 +173,8 @@ ISR(uart_receive_vect, ISR_NAKED) {
 #define tini_let_stop_in ""
 #endif
 
-// Does `firmware_next_tx_byte`; in assembly, because a stop waits for it. Where nothing is left, its
-// own interrupt goes off.
+// Does `firmware_next_tx_byte`; in assembly, because a stop waits for it. If no bytes are left, its
+// own interrupt is switched off.
 ISR(uart_send_vect, ISR_NAKED) {
   using namespace tiniscript;
   asm volatile(

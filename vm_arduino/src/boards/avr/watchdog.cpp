@@ -33,7 +33,7 @@ bool has_hung;  // before the last reset; not yet reported
 // Survives a restart. After power-on its contents are random: `mark` says whether it counts.
 struct Record {
   uint32_t mark;
-  Place place;  // zeros if nothing ran
+  Place place;  // zeros if no program ran
 };
 
 Record last __attribute__((section(".noinit")));
@@ -55,7 +55,7 @@ tini_noinline uint32_t hung_mark() { return kHung ^ last.place.program ^ last.pl
 
 }  // namespace
 
-// Records what the watchdog interrupts.
+// Records the code that the watchdog interrupts.
 extern "C" void tiniscript_note_hang() __attribute__((used, noinline));
 void tiniscript_note_hang() {
   if (last.mark != kAlive) return;
@@ -64,8 +64,8 @@ void tiniscript_note_hang() {
 }
 
 // Turns the watchdog off before memory is set up, because it may still run with a short timeout.
-// After a hang with interrupts off, the state of what ran is still intact here and is recorded.
-// Naked because there is no stack frame yet; `main` follows, so nothing calls it.
+// After a hang with interrupts off, the state of that code is still intact here and is recorded.
+// Naked because there is no stack frame yet; `main` follows, so it is never called.
 extern "C" void tiniscript_watchdog_off() __attribute__((naked, used, section(".init3")));
 void tiniscript_watchdog_off() {
   flags = MCUSR;

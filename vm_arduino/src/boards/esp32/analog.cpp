@@ -22,8 +22,8 @@ bool analog_read(uint8_t channel, int32_t* value) {
 
 void analog_forget() {}
 
-// The brown-out detector restarts the chip before its flash is written wrongly, and a write of NVS
-// that is cut leaves what was there before.
+// The brown-out detector restarts the chip before its flash is written wrongly, and an interrupted
+// write of NVS leaves the old content.
 Supply analog_supply() { return Supply::kEnough; }
 
 void analog_tick() {}

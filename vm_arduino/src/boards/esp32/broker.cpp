@@ -5,8 +5,8 @@
 // tiniscript/CLASS/ID/out/PEER  bytes for it; none at all: another client has the robot
 // tiniscript/CLASS/stop         zeros stop all robots of the class
 //
-// Who drives is the link's business: a broker, and who publishes there, is a stranger. A retained
-// message is one that was said before, so none of them is taken.
+// The link decides who drives: a broker, and anyone who publishes there, is a stranger. A retained
+// message is an old one, so none of them is accepted.
 
 #ifdef ARDUINO_ARCH_ESP32
 
@@ -47,9 +47,9 @@ uint32_t since_ms;  // of the phase
 uint32_t heard_ms;
 uint32_t said_ms;
 
-Peer peer;  // who has the robot; empty: nobody
+Peer peer;  // the client that has the robot; empty: none
 uint32_t peer_ms;
-Peer refused;  // who is to be told that another client has it
+Peer refused;  // the client to notify that another one has the robot
 
 size_t out_length;
 size_t out_sent;
@@ -80,7 +80,7 @@ class Topic {
   size_t length_ = 0;
 };
 
-// What follows `start` in a topic, or nullptr.
+// The rest of a topic after `start`, or nullptr.
 const char* rest_of(const char* topic, const char* start) {
   while (*start != 0) {
     if (*topic++ != *start++) return nullptr;
@@ -106,7 +106,8 @@ bool is_stop(const uint8_t* payload, size_t length) {
 }
 
 // The stop in a message of somebody of whom no other one is known. It begins with text, or with
-// frames if it has a zero, and ends where a line does. What a frame holds is no stop of a stranger.
+// frames if it has a zero, and ends where a line does. The content of a frame is not a stop of a
+// stranger.
 StopKind find_stop(const uint8_t* payload, size_t length) {
   bool is_framed = false;
   for (size_t k = 0; k < length; k++) {
@@ -133,7 +134,7 @@ void set_phase(Phase next) {
   since_ms = now_ms();
 }
 
-// `why` stays until there is something else to say: each of the next tries may end so, too.
+// `why` stays until there is another reason: each of the next tries may end in the same way.
 void hang_up(WifiState why = WifiState::kSearching) {
   line_end();
   part();
@@ -185,7 +186,7 @@ void subscribe() {
   out_sent = 0;
 }
 
-// It says that it is there when it hears those who are told.
+// It reports its presence when it hears those to be told.
 void announce() {
   set_phase(Phase::kReady);
   broker_note(WifiState::kReady);
@@ -202,8 +203,8 @@ void pass_on(const uint8_t* bytes, size_t length) {
   for (size_t k = 0; k < length; k++) pipe().put(bytes[k], static_cast<uint16_t>(now_ms()));
 }
 
-// A message of a client. Who has the robot keeps it until it leaves or is silent; a stop of anybody
-// is a stop.
+// A message of a client. A client that has the robot keeps it until it leaves or is silent; a stop
+// from anybody is a stop.
 void on_peer(const char* who, const uint8_t* payload, size_t length) {
   const bool is_taken = peer[0] != 0 && !is_same(who, peer) && now_ms() - peer_ms < kPeerMs;
   if (is_taken) {

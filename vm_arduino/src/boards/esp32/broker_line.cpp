@@ -15,7 +15,7 @@ sockaddr_in place;
 int connection = kNoSocket;
 bool is_shaking;
 
-// Where the broker's name says that it is, or where a computer has found it.
+// The address is that of the broker's name, or the one that a computer has found.
 void look_up() {
   place = {};
   place.sin_family = AF_INET;

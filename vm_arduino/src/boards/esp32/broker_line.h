@@ -17,7 +17,7 @@ bool line_begin(const BrokerSettings& settings);
 // why there is no TLS.
 WifiState line_connect();
 
-// As those of `tls.h`.
+// The same as in `tls.h`.
 int line_receive(uint8_t* bytes, size_t room);
 int line_send(const uint8_t* bytes, size_t length);
 

@@ -15,13 +15,13 @@ namespace {
 constexpr uint8_t kDateBytes = 4;
 
 KeptSettings<BrokerSettings> kept("broker");
-BrokerSettings wanted;  // the main loop's: what has come so far
+BrokerSettings wanted;  // the main loop's: received so far
 bool lacks_memory;      // the main loop's: for the broker's task
 uint8_t state;          // a WifiState, written by the broker's task
 
 void clear() { __builtin_memset(&wanted, 0, sizeof wanted); }
 
-// A class is a part of topics: nothing in it has a meaning there.
+// A class is a part of topics: it has no special characters for them.
 bool is_class(const char* name) {
   for (; *name != 0; name++) {
     const bool is_letter = *name >= 'a' && *name <= 'z';
@@ -131,7 +131,7 @@ Answer broker_forget() {
 
 void broker_note_memory(bool has_memory) { lacks_memory = !has_memory; }
 
-// What it says of those before is over when the main loop learns that it has taken these.
+// Its remarks on earlier ones end when the main loop learns that it has taken these.
 bool broker_changed(BrokerSettings* broker_settings) {
   if (!kept.is_new()) return false;
   broker_note(WifiState::kSearching);

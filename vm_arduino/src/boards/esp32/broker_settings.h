@@ -1,4 +1,5 @@
-// Where the robot's MQTT broker is, how the robot signs in there, and whom it trusts: kept in NVS.
+// The address of the robot's MQTT broker, how the robot signs in there, and whom it trusts: kept in
+// NVS.
 //
 // The main loop sets it; the task of the broker uses it.
 
@@ -12,7 +13,8 @@
 
 namespace tiniscript {
 
-// As in NVS. Texts end with a 0; without a class there is no broker. With a date there is TLS.
+// The layout in NVS. Texts end with a 0; without a class there is no broker. With a date, there is
+// TLS.
 struct BrokerSettings {
   uint8_t address[4];  // where the broker was when a computer looked
   uint16_t port;
@@ -30,7 +32,7 @@ struct BrokerSettings {
   bool is_sound() const;
 };
 
-// The main loop's. `broker_load` reads once what NVS has.
+// The main loop's. `broker_load` reads the data of NVS once.
 void broker_load();
 bool broker_is_set();
 WifiReport broker_report();

@@ -17,7 +17,7 @@ inline void begin_echo(Echo echo, void (*handler)()) {
   gpio_intr_disable(gpio_of(echo.pin));
 }
 
-// Between the pin and the echo is a divider, so the pin cannot pull it low.
+// A divider is between the pin and the echo, so the pin cannot pull the echo low.
 inline void revive(Echo) {}
 
 inline bool release(Echo) { return false; }

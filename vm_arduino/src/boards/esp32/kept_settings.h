@@ -48,7 +48,7 @@ class KeptSettings {
     return Answer::kOk;
   }
 
-  // Not over a reset.
+  // It does not survive a reset.
   void use(const Settings& settings) {
     {
       const CriticalSection critical;

@@ -1,8 +1,8 @@
 // Bluetooth LE: the Nordic UART service, with the robot's name in the advertisement.
 //
-// The stack's task tells what is written to the robot, and who connects and leaves, with the number
-// of its connection; the task of this radio sends notifications. That one asks nothing of the core's
-// objects: these change in the stack's task, and no lock is around them.
+// The stack's task reports data written to the robot, and clients that connect and leave, with the
+// number of the connection; the task of this radio sends notifications. It uses none of the core's
+// objects: they change in the stack's task, without a lock.
 
 #ifdef ARDUINO_ARCH_ESP32
 
@@ -34,7 +34,7 @@ constexpr uint16_t kNobody = 0xffff;
 
 // The stack's task writes these, the radio's reads them.
 uint16_t mtu = kLeastMtu;
-uint16_t client = kNobody;  // who has the place: the number of its connection
+uint16_t client = kNobody;  // the client with the place: the number of its connection
 uint8_t interface;
 bool has_subscribed;
 uint8_t clients;  // so far
@@ -80,7 +80,7 @@ void part() {
   publish(&client, kNobody);
 }
 
-// Who comes has the place if it is free, or if nothing was heard for long of who has it.
+// A newcomer gets the place if it is free, or if its holder has been silent for long.
 void on_connect(uint8_t its_interface, uint16_t found) {
   const uint32_t now_ms = static_cast<uint32_t>(millis());
   if (client != kNobody && now_ms - heard_ms < kPlaceMs) return server->disconnect(found);
@@ -99,8 +99,8 @@ void on_mtu(uint16_t found) {
   publish(&mtu, found < kLeastMtu ? kLeastMtu : found > kMostMtu ? kMostMtu : found);
 }
 
-// The core has done its part by then. The stack advertises no more once somebody has come: then
-// nobody else could.
+// The core has done its part by then. The stack stops advertising after a connection: then no other
+// client could connect.
 void on_event(esp_gatts_cb_event_t event, esp_gatt_if_t its_interface,
               esp_ble_gatts_cb_param_t* its) {
   switch (event) {
@@ -154,7 +154,7 @@ void low_energy_turn() {
     return;
   }
   const uint8_t found = published(clients);
-  if (found != its_client) length = 0;  // what waits is for one before
+  if (found != its_client) length = 0;  // the waiting bytes are for an earlier client
   its_client = found;
   if (!pipe().is_connected()) return;
   const size_t most = static_cast<size_t>(published(mtu) - kMtuHead);

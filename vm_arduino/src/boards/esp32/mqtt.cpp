@@ -111,7 +111,7 @@ MqttEvent MqttReader::take(uint8_t byte) {
   }
 }
 
-// What a broker may send to this client. It has asked for QoS 0.
+// Messages that a broker may send to this client. It has asked for QoS 0.
 MqttEvent MqttReader::begin_packet() {
   at_ = 0;
   length_ = 0;
@@ -169,7 +169,7 @@ MqttEvent MqttReader::end_packet() {
   return payload_[1] == 0 ? MqttEvent::kAccepted : MqttEvent::kRefused;
 }
 
-// What was asked for has QoS 0: a broker grants that or nothing.
+// We asked for QoS 0: a broker grants that or nothing.
 MqttEvent MqttReader::end_subscription() const {
   const uint8_t* const grants = payload_ + 2;
   for (size_t k = 0; k < kGrants; k++) {

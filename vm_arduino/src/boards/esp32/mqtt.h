@@ -1,7 +1,7 @@
 // MQTT 3.1.1 as a robot speaks it: writes the packets of a client, and reads those of a broker.
 //
-// All messages have QoS 0: the link repeats what is lost. Knows no sockets and no time. A message
-// that is longer than its room is skipped, whatever its length.
+// All messages have QoS 0: the link repeats lost ones. Knows no sockets and no time. A message that
+// is longer than its room is skipped, whatever its length.
 
 #pragma once
 

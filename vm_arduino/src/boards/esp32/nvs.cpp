@@ -1,10 +1,10 @@
 // Implements `nvm.h` on an ESP32: each slot of the store is some entries of NVS.
 //
-// The head of a slot (generation and marks) is a number, written at once. Its body is blobs of 1,024
-// bytes, of which one at a time is in RAM: the bytes that are written wait there, and the first one
-// that is read again, or another blob, has them all written. So what is read is in flash, and a
-// program takes a few writes instead of one for each byte. NVS leaves an entry as it was when the
-// power fails, or writes it, or loses it; the store stands all three.
+// The head of a slot (generation and marks) is a number, written at once. Its body is blobs of
+// 1,024 bytes, of which one at a time is in RAM: the bytes that are written wait there, and the
+// first one that is read again, or another blob, has them all written. So flash has everything that
+// is read, and a program takes a few writes instead of one for each byte. NVS leaves an entry as it
+// was when the power fails, or writes it, or loses it; the store stands all three.
 //
 // A write may stop the chip for 50 ms, and up to 400, as long as a page is erased: `kWritesStopTheChip`
 // lets the store wait until the motors are off.
@@ -51,7 +51,7 @@ Key blob_key() {
   return {{'b', static_cast<char>('0' + its_slot), static_cast<char>('a' + its_number), 0}};
 }
 
-// Where the body of a slot ends at the latest.
+// The last possible end of the body of a slot.
 uint16_t room_of(uint8_t slot) {
   if (slot >= kFirstOwnerSlot) return kOwnerBytes;
   return slot < 2 ? kProgramSlot - kBodyAt : kRecordBytes;

@@ -1,7 +1,7 @@
 // Pins of an ESP32 or ESP32-C3, and PWM on them.
 //
 // LEDC makes the PWM, and the GPIO matrix joins it to a pin. Off means: the matrix joins the pin to
-// its GPIO register, which is low. So a stop asks nothing of LEDC, whatever that does.
+// its GPIO register, which is low. So a stop does not depend on LEDC.
 
 #pragma once
 
@@ -53,7 +53,7 @@ inline bool is_there(Pin pin) { return pin.number != kNoPin.number; }
 
 inline gpio_num_t gpio_of(Pin pin) { return static_cast<gpio_num_t>(pin.number); }
 
-// By registers, not by a function: that is in flash, which may be out of reach in a panic.
+// It uses registers instead of a function, which is in flash and may be out of reach in a panic.
 tini_always_inline void write(Pin pin, bool is_high) {
 #ifdef GPIO_OUT1_W1TS_REG
   if (pin.number >= 32) {

@@ -1,10 +1,12 @@
-// What connects the task of a radio with the main loop: bytes in both directions, and who has left.
+// Connects the task of a radio with the main loop: bytes in both directions, and the departure of
+// clients.
 //
-// Each direction has one writer and one reader, on different cores: the writer publishes what it
-// has written with its index, so neither waits and no lock is needed. That a client has left comes
-// in the row of its bytes, so that none of the next one's is taken for its own. The rings of a
-// transport come from the heap with its first client, and stay. What finds no room is lost and
-// counted, but no stop is: it reaches the main loop beside the ring. So does one that waits in it.
+// Each direction has one writer and one reader, on different cores: the writer publishes its bytes
+// with its index, so neither waits and no lock is needed. The departure of a client is queued among
+// its bytes, so that no byte of the next client is taken for its own. The rings of a transport come
+// from the heap with its first client, and stay. Bytes without room are lost and counted, but no
+// stop is lost: it reaches the main loop outside the ring. The same applies to a stop that waits in
+// it.
 
 #pragma once
 
@@ -19,7 +21,7 @@ namespace tiniscript {
 template <class Item, uint16_t kPlaces>
 class Ring {
  public:
-  // The writer's: how many more find room; false if none does.
+  // The writer's: how many more bytes find room; false if none does.
   uint16_t room() const {
     const uint16_t first = __atomic_load_n(&first_, __ATOMIC_ACQUIRE);
     return static_cast<uint16_t>((first + kPlaces - behind_ - 1) % kPlaces);
@@ -40,7 +42,7 @@ class Ring {
     __atomic_store_n(&first_, first, __ATOMIC_RELEASE);
     return true;
   }
-  // Leaves out what is before a place that `end` has given, if that is still to come.
+  // Leaves out all bytes before a place that `end` has given, if that is still to come.
   void drop_to(uint16_t place) {
     const uint16_t behind = __atomic_load_n(&behind_, __ATOMIC_ACQUIRE);
     const uint16_t dropped = static_cast<uint16_t>((place + kPlaces - first_) % kPlaces);
@@ -48,7 +50,7 @@ class Ring {
     if (dropped <= kept) __atomic_store_n(&first_, place, __ATOMIC_RELEASE);
   }
 
-  // Anybody's: the place of what will be put next.
+  // Anybody's: the place of the next byte.
   uint16_t end() const { return __atomic_load_n(&behind_, __ATOMIC_ACQUIRE); }
 
  private:
@@ -57,7 +59,7 @@ class Ring {
   Item items_[kPlaces];
 };
 
-// How many times one has told another something. It wraps around to 0.
+// How many times one task has notified the other. It wraps around to 0.
 class Tally {
  public:
   // The writer's.
@@ -83,8 +85,8 @@ class Pipe {
   // The radio's task calls `take`. The three before it are called by that or by one other task, the
   // Bluetooth stack's.
 
-  // Somebody is connected: what was meant for the one before is gone. False: there is no memory, and
-  // nobody hears.
+  // A client is connected: bytes meant for the one before are discarded. False: there is no memory,
+  // and no reader.
   bool begin() {
     if (rings_ == nullptr) {
       Rings* const rings = static_cast<Rings*>(__builtin_calloc(1, sizeof(Rings)));
@@ -98,8 +100,9 @@ class Pipe {
     return true;
   }
 
-  // A byte of the client. The main loop does not see a stop that has lost bytes, or whose state has:
-  // what stops by all bytes and not by those that find room is a stop beside the ring.
+  // A byte of the client. The main loop does not see a stop that has lost bytes, or whose state
+  // has: if all bytes make a stop, and those that found room do not, the stop goes outside the
+  // ring.
   void put(uint8_t byte, uint16_t now_ms) {
     has_parted_ = false;
     Rings* const its = rings();
@@ -124,10 +127,10 @@ class Pipe {
         passed_.begin();
       }
     }
-    has_parted_ = true;  // further ones change nothing until a byte comes
+    has_parted_ = true;  // further ones have no effect until a byte comes
   }
 
-  // A stop of which the main loop gets no byte. `only_running`: it stops what runs, if anything does.
+  // A stop of which the main loop gets no byte. `only_running`: it stops a running program only.
   void stop(bool only_running = false) { (only_running ? silent_stops_ : stops_).add(); }
 
   // The next byte for the client.
@@ -144,11 +147,11 @@ class Pipe {
 
   bool is_connected() const { return __atomic_load_n(&is_connected_, __ATOMIC_ACQUIRE); }
 
-  // Whether the client has shown a key: the main loop says it, the radio's task asks.
+  // Whether the client has shown a key: the main loop sets it, the radio's task reads it.
   void note_key(bool has_key) { __atomic_store_n(&has_key_, has_key, __ATOMIC_RELAXED); }
   bool has_key() const { return __atomic_load_n(&has_key_, __ATOMIC_RELAXED); }
 
-  // What has come: a byte, or kParted.
+  // The next event: a byte, or kParted.
   bool take_rx(uint16_t* item) {
     Rings* const its = rings();
     if (its == nullptr || !its->in.take(item)) return false;
@@ -156,19 +159,19 @@ class Pipe {
     return true;
   }
 
-  // Whether a stop waits in what is still to come, or one for what runs.
+  // Whether a stop waits in the unread bytes, or one for the current run.
   bool has_stop() const { return waits(stop_at_); }
   bool has_run_stop() const { return waits(run_stop_at_); }
 
-  bool has_room() const { return rings()->out.room() != 0; }  // of somebody who is connected
+  bool has_room() const { return rings()->out.room() != 0; }  // of a connected client
   void put_tx(uint8_t byte) { rings()->out.put(byte); }
 
-  // How many bytes were lost. It wraps around to 0.
+  // The number of lost bytes. It wraps around to 0.
   uint8_t lost() const { return lost_.count(); }
 
-  // Whether a stop has come since the last call that the main loop does not see in the bytes.
+  // Whether a stop that the main loop does not see in the bytes has come since the last call.
   bool take_stop() { return stops_.take(); }
-  bool take_silent_stop() { return silent_stops_.take(); }  // one for what runs
+  bool take_silent_stop() { return silent_stops_.take(); }  // one for the current run
 
   static constexpr uint16_t kParted = 0x100;
 
@@ -194,10 +197,10 @@ class Pipe {
   uint16_t followed_;  // the reader's: the last one that it has gone to
   bool is_connected_;
   bool has_key_;
-  bool has_parted_;  // the radio's: nothing has come since
-  uint32_t put_;          // the radio's: what has found room in all, of bytes and partings
+  bool has_parted_;  // the radio's: no byte has come since
+  uint32_t put_;          // the radio's: total number of queued bytes and partings
   uint32_t stop_at_;      // how much of that ends with the last stop
-  uint32_t run_stop_at_;  // or with the last one for what runs
+  uint32_t run_stop_at_;  // or with the last one for the current run
   uint32_t taken_;        // the main loop's: how much it has taken
   StopFinder all_;     // in all bytes of the client
   StopFinder passed_;  // in those that found room

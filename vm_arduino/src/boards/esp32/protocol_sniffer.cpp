@@ -41,7 +41,7 @@ size_t skip_blanks(Text line, size_t at) {
   return at;
 }
 
-// Whether these letters are at a place; upper and lower case are the same.
+// Whether these letters are at a place, in upper or lower case.
 bool is_at(Text line, size_t at, const char* word) {
   for (; *word != 0; word++, at++) {
     if (!line.has(at) || lower(line.bytes[at]) != lower(static_cast<uint8_t>(*word))) return false;

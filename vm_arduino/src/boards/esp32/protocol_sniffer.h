@@ -1,5 +1,5 @@
 // Decides by the first bytes of a connection whether its client may be meant for a robot, as
-// `virtual/protocol_sniffer.py` does: what begins like HTTP, TLS or STUN may be a web page's.
+// `virtual/protocol_sniffer.py` does: bytes that begin like HTTP, TLS or STUN may be a web page's.
 
 #pragma once
 

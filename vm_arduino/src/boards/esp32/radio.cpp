@@ -44,7 +44,7 @@ bool has_broker;
 bool has_broker_failed;  // to begin its task
 uint32_t broker_failed_ms;
 
-// A task: what the radio makes it wait for, it waits for alone.
+// A task: when the radio blocks, only this task waits.
 void run(void* of) {
   const Radio& radio = *static_cast<const Radio*>(of);
   if (radio.begin != nullptr) radio.begin();
@@ -61,15 +61,15 @@ bool begin(const Radio& radio) {
 }
 
 // Both kinds of Bluetooth begin the same controller and the same stack, without a lock: this task
-// begins one after the other. What a serial port sends makes it wait, so that has a task, too.
+// begins one after the other. Sending to a serial port blocks, so that has its own task, too.
 void begin_bluetooth() {
   const bool has_port = serial_port_begin();
   low_energy_begin();
   if (has_port) begin(kSerialPortRadio);
 }
 
-// The broker has a task of its own: looking its name up waits, and TLS calculates, for seconds. Who
-// uses no broker has no stack taken by it.
+// The broker has a task of its own: looking its name up waits, and TLS calculates, for seconds. A
+// user without a broker loses no stack to it.
 void begin_broker() {
   if (!has_begun || has_broker || !broker_is_set()) return;
   const uint32_t now_ms = static_cast<uint32_t>(millis());
@@ -80,8 +80,8 @@ void begin_broker() {
   broker_note_memory(has_broker);
 }
 
-// On a chip with one core the main loop would leave the idle task no turn, and that frees what tasks
-// leave behind.
+// On a chip with one core, the main loop would leave no time for the idle task, which frees what
+// tasks leave behind.
 void rest() {
   const uint32_t now_ms = static_cast<uint32_t>(millis());
   if (portNUM_PROCESSORS > 1 || now_ms - rested_ms < kRestMs) return;
@@ -132,8 +132,8 @@ void stop(Transport transport) {
 
 }  // namespace
 
-// A stop that is not in the bytes comes before what still waits from before it. So does one that
-// waits: of what it belongs to, the receiver decides when it comes.
+// A stop outside the bytes takes effect before older bytes that still wait. The same applies to a
+// waiting one: the receiver decides what it belongs to when it arrives.
 void radio_poll() {
   for (uint8_t place = kFirst; place < kTransports; place++) {
     const Transport transport = static_cast<Transport>(place);
@@ -147,7 +147,7 @@ void radio_poll() {
   }
 }
 
-// What is meant for nobody is gone.
+// Bytes meant for nobody are discarded.
 void radio_send() {
   rest();
   for (uint8_t place = kFirst; place < kTransports; place++) {

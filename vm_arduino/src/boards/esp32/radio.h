@@ -1,7 +1,7 @@
-// The radios of an ESP32: a task and a pipe for each transport, beside the main loop.
+// The radios of an ESP32: a task and a pipe for each transport, in addition to the main loop.
 //
 // The tasks are on core 0, where the core has its radio stacks; the main loop is on core 1, and
-// takes bytes from pipes. So what a radio waits for stops neither motors nor the other radios. An
+// takes bytes from pipes. So a radio that waits delays neither motors nor the other radios. An
 // ESP32-C3 has one core: there the tasks take turns with the main loop.
 
 #pragma once
@@ -17,8 +17,8 @@ namespace tiniscript {
 // Silence after which a client's place goes to another one that comes; never before.
 constexpr uint32_t kPlaceMs = 10000;
 
-// What the main loop calls: begins the radios when the robot knows its name; takes what they have
-// received; gives them what is to be sent.
+// Called by the main loop: these begin the radios when the robot knows its name, take what they
+// have received, and give them what is to be sent.
 void radio_tick();
 void radio_poll();
 void radio_send();
@@ -26,7 +26,8 @@ void radio_send();
 // Bytes that found no room. It wraps around to 0.
 uint8_t radio_lost();
 
-// What the tasks are made of: what begins them is called once in a task, `turn` every millisecond.
+// Each task consists of an initialization, called once in the task, and `turn`, called every
+// millisecond.
 const RadioName& radio_name();
 Pipe& radio_pipe(Transport transport);
 

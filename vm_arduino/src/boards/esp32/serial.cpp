@@ -1,9 +1,9 @@
-// The link over USB: UART 0, behind the USB chip of the board.
+// The link over USB: UART 0, through the USB chip of the board.
 //
 // The driver of the core takes bytes in its interrupt, and the main loop hands them to the firmware
-// in each turn, with those of the radios. A break, however long, comes as one byte 0, and is told
-// once: what the line does then only its pin says. Where a board has no USB chip, `Serial` may be the
-// USB of an ESP32-C3 itself.
+// in each turn, with those of the radios. A break of any length arrives as one byte 0, and is
+// reported once: only its pin shows the level of the line meanwhile. On a board without a USB chip,
+// `Serial` may be the USB of an ESP32-C3 itself.
 
 #ifdef ARDUINO_ARCH_ESP32
 
@@ -23,7 +23,7 @@ namespace tiniscript {
 
 namespace {
 
-constexpr size_t kRoomBytes = 1280;  // what a computer may have under way, and more
+constexpr size_t kRoomBytes = 1280;  // more than a computer may have under way
 
 #ifdef CONFIG_IDF_TARGET_ESP32C3
 constexpr Pin kReceive = {20};
@@ -56,7 +56,7 @@ uint8_t zeroed;      // of the spoiled bytes, those that have counted as a zero
 uint8_t waited_ms;   // for the first of the others
 uint8_t watched;     // errors before the line was last seen high
 uint8_t low_ms;      // since then, after an error and without a byte
-bool was_high;       // since the reset or since the line was last held low; else it has no sender
+bool was_high;       // since the reset or the last time the line was held low; else no sender
 
 void on_error(hardwareSerial_error_t error) {
   switch (error) {
@@ -76,8 +76,8 @@ void on_error(hardwareSerial_error_t error) {
   }
 }
 
-// What is sent waits in its FIFO alone. Behind a ring the core would always say that there is room,
-// and a byte without room would make the main loop wait.
+// Bytes to send wait only in its FIFO. With a ring, the core would always report room, and a byte
+// without room would block the main loop.
 // The driver tells no framing errors but breaks, until it is asked.
 inline void begin_port(HardwareSerial& port, uint32_t baud) {
   port.onReceiveError(on_error);
@@ -85,7 +85,7 @@ inline void begin_port(HardwareSerial& port, uint32_t baud) {
   uart_enable_intr_mask(UART_NUM_0, UART_FRM_ERR_INT_ENA);
 }
 
-// The chip's own USB: it knows no errors of a line, and must not wait where nobody reads.
+// The chip's own USB: it has no line errors, and must not wait without a reader.
 template <class Port>
 void begin_port(Port& port, uint32_t baud) {
   port.setTxBufferSize(kRoomBytes);
@@ -97,8 +97,9 @@ void take(uint8_t byte) {
   firmware_on_rx_byte(Transport::kCable, byte, static_cast<uint16_t>(millis()));
 }
 
-// Each spoiled byte counts as a zero. Which byte it is the driver does not say: the zero comes after
-// the first one that follows, so that nothing of a line or frame with an error in it is done.
+// Each spoiled byte counts as a zero. The driver does not say which byte it is: the zero comes
+// after the first byte that follows, so that no part of a line or frame with an error in it is
+// executed.
 void take_zeros() {
   waited_ms = 0;
   for (; zeroed != spoiled; zeroed = static_cast<uint8_t>(zeroed + 1)) take(0);

@@ -1,6 +1,6 @@
-// Bluetooth with a serial port (SPP), of an ESP32; its successors have none.
+// Bluetooth with a serial port (SPP) of an ESP32; its successors lack it.
 //
-// The core's own task calls what is sent to the robot, and who connects and leaves; the task of this
+// The core's own task delivers received bytes, connections and disconnections; the task of this
 // radio sends.
 
 #ifdef ARDUINO_ARCH_ESP32
@@ -18,13 +18,13 @@ namespace {
 
 BluetoothSerial port;
 // The core's task alone.
-uint32_t handle;    // of the client; 0: nobody is there
+uint32_t handle;    // of the client; 0: none
 uint32_t heard_ms;  // when something was heard of the client, or it came
 
 Pipe& pipe() { return radio_pipe(Transport::kSerialPort); }
 
-// The core sends a second client away, and the first one stays. The next try of the second one finds
-// the place free, if nothing was heard for long of the first one.
+// The core sends a second client away, and the first one stays. The next try of the second one
+// finds the place free, if the first one has been silent for long.
 void on_client(uint32_t found) {
   const uint32_t now_ms = static_cast<uint32_t>(millis());
   if (handle == 0) {
@@ -45,7 +45,7 @@ void on_event(esp_spp_cb_event_t event, esp_spp_cb_param_t* its) {
   }
 }
 
-// In the place of the core's queue, which has 512 places and drops what finds none.
+// This replaces the core's queue, which has 512 places and drops what does not fit.
 void on_data(const uint8_t* bytes, size_t length) {
   heard_ms = static_cast<uint32_t>(millis());
   for (size_t k = 0; k < length; k++) pipe().put(bytes[k], static_cast<uint16_t>(heard_ms));
@@ -59,7 +59,7 @@ bool serial_port_begin() {
   return port.begin(radio_name().name);
 }
 
-// `write` waits while the peer takes nothing, up to a second: this task alone does.
+// `write` blocks while the peer accepts no bytes, up to a second: only this task waits.
 void serial_port_turn() {
   uint8_t bytes[64];
   size_t length = 0;

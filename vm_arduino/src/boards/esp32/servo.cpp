@@ -24,7 +24,7 @@ struct Pulse {
 
 Pulse pulses[kServoCount];  // any task changes them, in a critical section
 
-// The new pulse begins with the next frame, so none is cut.
+// The new pulse begins with the next frame, so no pulse is cut.
 void pulse(uint8_t number, uint16_t us) {
   pulses[number].us = us;
   write_duty(kServos[number], ((uint32_t{us} << kServoBits) + kFrameUs / 2) / kFrameUs);

@@ -1,4 +1,4 @@
-// Sockets of lwIP that never wait, and what they say when there is nothing to do yet.
+// Sockets of lwIP that never block, and their results when there is no data yet.
 
 #pragma once
 
@@ -11,7 +11,7 @@ namespace tiniscript {
 
 constexpr int kNoSocket = -1;
 
-// Whether what has just failed may be done later.
+// Whether the failed operation may succeed later.
 inline bool may_come_later() { return errno == EAGAIN || errno == EWOULDBLOCK; }
 
 }  // namespace tiniscript

@@ -1,8 +1,8 @@
 // Finds stops in the bytes of a client: typed ones and runs of four zeros.
 //
-// For whoever sees bytes that the receiver does not get: a radio's task and the broker's. Has the
-// receiver's modes and laws (`../../link/receiver.h`), and nothing of its packets. Knows neither
-// whether something runs nor whether a frame is whole.
+// For code that sees bytes which the receiver does not get: a radio's task and the broker's. It has
+// the receiver's modes and laws (`../../link/receiver.h`), but none of its packets. It knows
+// neither whether a program runs nor whether a frame is whole.
 
 #pragma once
 
@@ -14,11 +14,11 @@
 
 namespace tiniscript {
 
-// What a byte completes; the greater one counts.
+// What a byte completes; the greater value wins.
 enum class StopKind : uint8_t {
   kNothing,
   kInFrame,  // a stop of its packet, if that is no whole frame
-  kOfRun,    // a stop of what runs
+  kOfRun,    // a stop of the current run
   kStop,
 };
 
@@ -38,7 +38,7 @@ class StopFinder {
     return mode_ == Mode::kText ? put_text(byte) : put_packet(byte);
   }
 
-  // Whether what has come of a line stops what runs, if silence follows.
+  // Whether the beginning of a line stops the current run, if silence follows.
   bool is_at_stop() const {
     return line_ == Line::kHeld || (mode_ != Mode::kFrame && is_typed());
   }

@@ -1,6 +1,6 @@
 // TCP over WiFi, by sockets that never wait.
 //
-// Nothing of a connection reaches the robot before its first bytes are those of a robot's client: a
+// No byte of a connection reaches the robot before its first bytes are those of a robot's client: a
 // web page can make a browser connect to any address.
 
 #ifdef ARDUINO_ARCH_ESP32
@@ -76,8 +76,9 @@ void listen() {
   }
 }
 
-// A place for a new client: a free one, or that of who has shown no key, the one first that has not
-// said yet what it is; so nobody keeps out an owner's stop. Owners keep theirs while they speak.
+// A place for a new client: a free one, or that of a client without a key, preferably one that has
+// not identified itself yet; so an owner's stop is never kept out. Owners keep theirs while they
+// speak.
 Client* free_place() {
   Client* evicted = nullptr;
   uint32_t most = 0;
@@ -119,8 +120,8 @@ void pass_on(Client* client, const uint8_t* bytes, size_t length) {
   for (size_t k = 0; k < length; k++) pipe.put(bytes[k], static_cast<uint16_t>(now_ms()));
 }
 
-// Looks at the first bytes, and lets the client in or hangs up. A stop among them that the main loop
-// does not see, or not yet, lets nobody in.
+// Looks at the first bytes, and lets the client in or hangs up. A stop among them that the main
+// loop does not see, or not yet, admits no client.
 void look(Client* client, const uint8_t* bytes, size_t length) {
   StopKind most = StopKind::kNothing;
   for (size_t k = 0; k < length; k++) {
@@ -147,8 +148,8 @@ void look(Client* client, const uint8_t* bytes, size_t length) {
   pass_on(client, bytes + more, length - more);
 }
 
-// A second of silence ends a typed stop while something runs, and a line begins after it. It lets
-// nobody in.
+// A second of silence ends a typed stop while something runs, and a line begins after it. It admits
+// no client.
 void end_silence(Client* client) {
   if (client->finder.is_at_stop()) radio_pipe(client->transport).stop(true);
   client->finder.begin();

@@ -1,5 +1,5 @@
-// The robot has no clock. A computer says what day it is when it sets the broker, so a certificate
-// that has ended by then is refused; one that ends later is not noticed.
+// The robot has no clock. A computer sends the date when it sets the broker, so a certificate that
+// has expired by then is refused; a later expiry is not noticed.
 
 #ifdef ARDUINO_ARCH_ESP32
 

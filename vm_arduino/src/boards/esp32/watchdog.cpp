@@ -27,7 +27,7 @@ constexpr uint32_t kHung = 0x93c5e21b;  // value of `mark` while the record coun
 // Survives a restart. After power-on its contents are random: `mark` says whether it counts.
 struct Record {
   uint32_t mark;
-  Place place;  // zeros if nothing ran
+  Place place;  // zeros if no program ran
 };
 
 RTC_NOINIT_ATTR Record last;
@@ -159,8 +159,8 @@ bool watchdog_take_hang(Place* place) {
 
 Reset watchdog_reset_cause() { return cause; }
 
-// Before a radio is on, what `esp_random` says may be the same in two chips. The last bytes of their
-// addresses are not, and the last digits of an id are in a robot's name.
+// Before a radio is on, `esp_random` may return the same values on two chips. The last bytes of
+// their addresses are not, and the last digits of an id are in a robot's name.
 uint32_t watchdog_seed() {
   const uint32_t address = static_cast<uint32_t>(ESP.getEfuseMac() >> 16);
   return esp_random() ^ __builtin_bswap32(address);

@@ -30,7 +30,7 @@ constexpr uint32_t kYoungMs = 20000;      // a restart so soon after WiFi began 
 constexpr uint8_t kMostRestarts = 3;      // in a row: then WiFi rests
 constexpr uint8_t kRests = 0x80;          // flag of a mode
 
-// As in NVS. Texts end with a 0.
+// The layout in NVS. Texts end with a 0.
 struct Settings {
   uint8_t kept_mode;
   char network[kNetworkBytes + 1];
@@ -80,7 +80,7 @@ constexpr uint32_t kRestarts = 0x7f;
 RTC_NOINIT_ATTR uint32_t starts;  // changed in a critical section
 
 KeptSettings<Settings> kept("wifi");
-Settings wanted;  // the main loop's: what has come so far
+Settings wanted;  // the main loop's: received so far
 
 uint8_t state;     // a WifiState; these two are written by the network's task
 uint32_t address;  // its bytes in their order
@@ -118,7 +118,7 @@ bool count_restart() {
   return is_often;
 }
 
-// Has what came kept: a new beginning.
+// Has the received settings saved: a new beginning.
 Answer keep() {
   const Answer answer = kept.keep(wanted);
   if (answer != Answer::kOk) return answer;
@@ -141,20 +141,20 @@ void leave() {
   if (is_announced) MDNS.end();
   is_announced = false;
   __atomic_store_n(&is_associated, false, __ATOMIC_RELAXED);
-  WiFi.mode(WIFI_OFF);  // and nothing else: softAPdisconnect would start an access point first
+  WiFi.mode(WIFI_OFF);  // and no more: softAPdisconnect would start an access point first
   set_state(used.rests() ? WifiState::kRests : WifiState::kOff);
   __atomic_store_n(&address, 0U, __ATOMIC_RELAXED);
   set_young(false, kRestarts);
 }
 
-// There may be no memory for it beside Bluetooth.
+// There may be no memory for it in addition to Bluetooth.
 void host() {
   is_host = WiFi.mode(WIFI_AP) && WiFi.softAP(used.network, used.password);
   if (!is_host) set_state(WifiState::kRefused);
 }
 
-// Of an authentication that is over the core does not notice: its status stays, and `begin` does
-// nothing then.
+// The core does not notice an authentication that has ended: its status stays, and `begin` then
+// does nothing.
 void join_again(wl_status_t status) {
   if (status == WL_CONNECTED) {
     WiFi.reconnect();
@@ -163,7 +163,7 @@ void join_again(wl_status_t status) {
   }
 }
 
-// Whether the time has come for the next try, which then counts as made.
+// Whether it is time for the next try, which then counts as made.
 bool begin_try() {
   const uint32_t now_ms = static_cast<uint32_t>(millis());
   if (now_ms - tried_ms < kJoinAgainMs) return false;
@@ -209,7 +209,7 @@ void wifi_load() {
   WiFi.onEvent(on_connected, ARDUINO_EVENT_WIFI_STA_CONNECTED);
   WiFi.onEvent(on_disconnected, ARDUINO_EVENT_WIFI_STA_DISCONNECTED);
   WiFi.persistent(false);  // the core would keep the password a second time
-  WiFi.setAutoReconnect(false);  // it would scan without a pause, beside Bluetooth: we try again
+  WiFi.setAutoReconnect(false);  // it would scan without a pause, despite Bluetooth: we retry
   kept.load();
   Settings its = kept.now();
   const bool has_restarted_too_often = count_restart();

@@ -1,6 +1,6 @@
 // The robot's WiFi: which network it joins or is, kept in NVS, and whether it is there.
 //
-// The main loop sets it; the task of the network does what it says.
+// The main loop sets it; the task of the network acts on it.
 
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace tiniscript {
 
-// The main loop's, once: reads what NVS has.
+// The main loop's, once: reads the data of NVS.
 void wifi_load();
 
 // The network's task: joins the network or opens it, again after a change. Returns whether the
