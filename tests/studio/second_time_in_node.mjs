@@ -306,6 +306,147 @@ const PARTS = {
     };
   },
 
+  // Work that is given back is at every moment in the teacher's list, on the pupil's screen or in My programs: whatever the
+  // pupil answers, whoever writes over it, in a group or not, when looks and answers are lost, the page is loaded again or
+  // the browser has no room. A page asks once; what it puts on the screen goes only when somebody takes it away; and the
+  // teacher sees what is on the screen.
+  async returning() {
+    playsNavigator({});
+    const { EditorState } = await import(pathToFileURL(`${sources}/../node_modules/@codemirror/state/dist/index.js`).href);
+    let entries = 0;
+    return async (chance, isGood) => {
+      const ends = new Set();
+      const kept = new Set(); // the teacher's list
+      const given = []; // all that was ever given, each its text
+      const has = {}; // what the class knows of the page
+      let screen = 'F(1)', groupText = 'G(1)';
+      let isCalm = false; // nothing is lost
+      let asked = []; // by the page that is loaded
+      let shown = ''; // given work that nobody has taken off the screen
+      let told = ''; // what the page is to say
+      let page, work, loadVersions, textOf;
+      const isLaw = (when) => {
+        const places = loadVersions().map(({ text }) => text);
+        for (const text of given) if (!kept.has(text) && screen !== text && !places.includes(text)) throw new Error(`${when}: ${text} is nowhere`);
+        if (shown && screen !== shown) throw new Error(`${when}: ${shown} has gone off the screen by itself`);
+        if (new Set(asked).size !== asked.length) throw new Error(`${when}: the page asks again: ${asked}`);
+        if (page.byId('note').textContent !== (told && textOf(told))) throw new Error(`${when}: the page says ${page.byId('note').textContent}, and not ${told}`);
+      };
+      const puts = (text) => {
+        shown = '';
+        screen = text;
+        if (document.documentElement.dataset['group']) groupText = text;
+      };
+      const loads = async (stores) => {
+        page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
+        for (const [name, pairs] of Object.entries(stores)) for (const [key, value] of pairs) window[name].setItem(key, value);
+        Object.assign(document.documentElement.dataset, { class: '', state: 'stale', image: '' });
+        delete document.documentElement.dataset['group'];
+        playsFetch(async () => { throw new Broken(); });
+        await learns(page);
+        asked = [];
+        shown = told = '';
+        playsFetch((_, { body }) => answersTo(JSON.parse(body)));
+        const { Pupil } = await page.load('class/pupil.js');
+        const { Programs } = await page.load('programs/programs.js');
+        ({ loadVersions } = await page.load('programs/versions.js'));
+        ({ text: textOf } = await page.load('page/texts.js'));
+        work = { get text() { return screen; }, robot: 'tinibot', name: '' };
+        const view = { state: EditorState.create(), dispatch() {} };
+        const python = {
+          async ask({ do: what }) {
+            await later(chance.below(400));
+            if (what === 'group_begin') screen = groupText; // in place of whatever is there
+            return { version: 1, changes: [], ids: [], pending: [], since: 0, epoch: '', told: 0, why: '', count: 0, kept: { name: 'page' } };
+          },
+        };
+        const programs = new Programs({ python, work, put: ({ text }) => { puts(text); shown = text; told = 'class_given'; }, makePicture() {} });
+        globalThis.confirm = () => {
+          isLaw('while it asks');
+          asked.push([...kept][0]);
+          const isYes = chance() < 0.5;
+          if (!isYes && window.localStorage.room) told = 'class_given_kept';
+          ends.add(isYes ? 'yes' : 'no');
+          return isYes;
+        };
+        new Pupil({
+          panel: { isFree: true, connectByHost() {}, endWitness() {}, onGroupEvent() {} }, work, python,
+          editor: { setUndoHandler() {}, extend: () => view },
+          views: { isBusy: false, showMates() {}, join() {} },
+          keepProgram: () => programs.storeVersion(), putProgram: (program) => programs.replaceProgram({ ...program, name: '' }),
+          clearProgram() {}, newestRun: async () => '',
+        });
+        const [join] = page.byId('class_pupil').children;
+        for (let k = 0; !join.hidden && k < 50; k += 1) { // one may be lost
+          join.dispatchEvent(new Event('submit', { cancelable: true }));
+          await passes(chance.below(2500));
+        }
+      };
+      const travels = () => later(isCalm ? 5 : 5 + chance.below(900));
+      const answersTo = async (request) => {
+        if (request.do === 'group') {
+          await later(400);
+          return answers({ saw: 1, ran: ['class', 1], runs: [], others: [], changes: [] });
+        }
+        await travels();
+        const lost = !isCalm && chance() < 0.25 ? chance.of(['look', 'answer']) : '';
+        if (lost) ends.add('lost');
+        if (lost === 'look') throw new Broken();
+        let answer = { token: 'token' };
+        if (request.do === 'group_join') answer = { group: 'red' };
+        if (request.do === 'here') {
+          const { do: _, took, ...fields } = request;
+          Object.assign(has, fields);
+          if (took && kept.has(took.key)) {
+            kept.delete(took.key);
+            has.text = took.text;
+            isLaw('the class has forgotten it');
+          }
+          const [current] = kept;
+          answer = { groups: [{ name: 'red', members: [] }], driver: '', place: -1, waiting: 0, robots: 0, robot: '', left_s: 0, name: 'Ana', hand: false, ...(current && { given: { key: current, text: current, robot: 'tinibot', lessons: [] } }) };
+        }
+        await travels();
+        if (lost) throw new Broken();
+        return answers(answer);
+      };
+      const box = () => page.byId('class').children[0];
+      const acts = {
+        gives: () => {
+          const text = `W(${(entries += 1)})`;
+          given.push(text);
+          kept.add(text);
+        },
+        joins: () => {
+          shown = '';
+          box().children[1].dispatchEvent(new Event('submit', { cancelable: true }));
+        },
+        leaves: () => box().children[5].click(),
+        mate: () => { if (document.documentElement.dataset['group']) puts(`M(${(entries += 1)})`); },
+        writes: () => puts(`F(${(entries += 1)})`),
+        full: () => { window.localStorage.room = chance.of([0, Infinity]); },
+        reload: () => loads({ sessionStorage: [...window.sessionStorage], localStorage: [...window.localStorage] }),
+      };
+      await loads({ sessionStorage: [], localStorage: [] });
+      for (let k = isGood ? 4 : 4 + chance.below(16); k > 0; k -= 1) {
+        const act = chance.of(['gives', ...Object.keys(acts)]);
+        ends.add(act);
+        await acts[act]();
+        isLaw(act);
+        for (let step = chance.of([0, 1, 1, 3, 12]); step > 0; step -= 1) {
+          await passes(chance.below(300));
+          isLaw(act);
+        }
+      }
+      isCalm = true;
+      window.localStorage.room = Infinity;
+      await passes(3000 + 2000 * given.length);
+      isLaw('at the end');
+      if (kept.size) throw new Error(`${[...kept]} are not taken`);
+      if (has.text !== screen) throw new Error(`the teacher sees ${has.text}, and it is ${screen}`);
+      return { ends: [...ends], seen: [] };
+    };
+  },
+
   // Pictures of pupils' programs.
   async pictures() {
     let story = null;

@@ -27,6 +27,7 @@ ENDS = {
     "stopping": {"confirm", "over"},
     "flashing": {"good", "port", "firmware", "flash", "meet", "cancel"},
     "pupil": {"removed"},
+    "returning": {"yes", "no", "lost", "reload", "joins", "leaves", "mate", "full"},
     "pictures": {"made", "none"},
     "worker": {"good", "failed"},
     "checking": {"changed", "checked"},

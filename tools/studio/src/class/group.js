@@ -59,6 +59,8 @@ export class Group {
     this.#showState('');
   }
 
+  get isJoining() { return this.#membership.isJoining; }
+
   /** The page is in the class. */
   enter() {
     this.#sideButton.hidden = false;

@@ -17,7 +17,7 @@ export class Membership {
   #listener;
   /** @type {SharedEditor | null} */
   #sharedEditor = null;
-  #isJoining = false;
+  isJoining = false; // until the group's program is on the screen
 
   /** @param {import('./classroom.js').Page} page @param {MembershipListener} listener */
   constructor(page, listener) {
@@ -42,8 +42,8 @@ export class Membership {
 
   /** @param {Record<string, unknown>} request @param {{name: string}} [storedPage] */
   async join(request, storedPage) {
-    if (this.#isJoining || this.#sharedEditor) return;
-    this.#isJoining = true;
+    if (this.isJoining || this.#sharedEditor) return;
+    this.isJoining = true;
     try {
       const { work, python, editor, views, panel } = this.#page;
       this.#page.keepProgram();
@@ -83,7 +83,7 @@ export class Membership {
     } catch {
       this.#listener.say('class_silent');
     } finally {
-      this.#isJoining = false;
+      this.isJoining = false;
     }
   }
 

@@ -18,6 +18,7 @@ import { clockText } from './wall.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 import { CLASS, isRobot } from '../page/words.js';
+import { storeVersion } from '../programs/versions.js';
 import { forgetAll, storeText, loadText } from '../page/kept.js';
 
 const TOKEN_KEY = 'tiniscript.pupil';
@@ -34,7 +35,6 @@ function newStayState() {
     isHandWanted: /** @type {boolean | null} */ (null), // help, told at the next look
     sentFields: /** @type {Record<string, string>} */ ({}), // what the teacher's page knows
     takenWork: /** @type {GivenWork | null} */ (null), // the work that was given last
-    refusedKey: '', // the key of work that is not to replace the program of the group
     runNumber: 0, // the newest question for a run
     isTakenUnconfirmed: false, // the class has yet to hear that this is here
     isPolling: false,
@@ -172,7 +172,7 @@ export class Pupil {
       if (stay !== this.#stayState) return;
       if (stay.wantsRobot === wantsRobot) stay.wantsRobot = null;
       if (stay.isHandWanted === isHandWanted) stay.isHandWanted = null;
-      stay.sentFields = fields;
+      stay.sentFields = takenWork ? {} : fields; // the class has the taken work now, whatever was sent before
       if (answer.over) {
         this.#endClass(answer.over === 'erased');
         return;
@@ -211,24 +211,21 @@ export class Pupil {
   }
 
   /**
-   * Takes work that the teacher gives back, once: it is given until the class has heard of that. A pupil who does not want
-   * it in place of the group's program gets it when the page is in no group.
+   * Takes work that the teacher gives back, once: it is given until the class has heard of that. It is in My programs before
+   * the class hears it, for a group may keep its own program, and anybody in it may replace the one on the screen.
    * @param {GivenWork | undefined} work
    */
   #takeGiven(work) {
-    if (!work) return;
+    if (!work || this.#group.isJoining) return; // the group's program is about to replace what is on the screen
     const stay = this.#stayState;
-    if (stay.takenWork?.key !== work.key) {
-      if (stay.refusedKey === work.key && pageState.groupName.value) return;
-      if (!this.#page.putProgram({ text: work.text, robot: isRobot(work.robot) ? work.robot : this.#work.robot })) {
-        stay.refusedKey = work.key;
-        return;
-      }
-      stay.takenWork = work;
-      for (const name of work.lessons) storeDone(name);
-      element('note', HTMLElement).textContent = text('class_given');
-    }
-    stay.isTakenUnconfirmed = true;
+    const program = { text: work.text, robot: isRobot(work.robot) ? work.robot : this.#work.robot, name: '' };
+    const isNew = stay.takenWork?.key !== work.key;
+    const isShown = isNew && this.#page.putProgram(program);
+    const isKept = stay.isTakenUnconfirmed = storeVersion(program);
+    if (!isNew) return;
+    stay.takenWork = work;
+    for (const name of work.lessons) storeDone(name);
+    if (isShown || isKept) element('note', HTMLElement).textContent = text(isShown ? 'class_given' : 'class_given_kept');
   }
 
   /** @param {boolean} isHandUp */
