@@ -3266,7 +3266,7 @@ const PARTS = {
 
   // One program after another as blocks and as text, by whoever changes which of both and whenever Python answers: what is
   // done to blocks becomes text unless somebody has typed since they were made, what is typed stays, and in a group all of
-  // it does; undo comes after what was done before it; and when nobody does anything, both are the same program.
+  // it does but what is refused; undo comes after what was done before it; and when nobody does anything, both are the same program.
   async writing() {
     let blocks = null;
     let wrong = '';
@@ -3390,6 +3390,7 @@ const PARTS = {
     };
     const work = { view: 'blocks', level: 'few' };
     let group = null;
+    let isRefused = false; // what is done to blocks next
     /** Others of it write, too. */
     const makeGroup = () => ({
       base: [],
@@ -3405,8 +3406,13 @@ const PARTS = {
         if (group !== this) return null;
         const { base } = this;
         this.base = given;
+        if (isRefused) { // somebody else was first, and the text is as it was
+          isRefused = false;
+          mine = mine.filter((line) => base.includes(line) || !given.includes(line));
+          return { is_shown: editor.text === textOf(form), text: textOf(form), places: [] };
+        }
         editor.put([...linesOf(editor.text).filter((line) => given.includes(line) || !base.includes(line)), ...given.filter((line) => !base.includes(line))].join('\n'));
-        return { is_shown: editor.text === textOf(form), places: [] };
+        return { is_shown: editor.text === textOf(form), text: textOf(form), places: [] };
       },
       settle: () => later(late()),
       chooseLine() { if (group !== this) fails('a group that was left hears where somebody is'); },
@@ -3492,6 +3498,7 @@ const PARTS = {
         [group, mine, hasTouched] = [makeGroup(), [], false];
         views.join(group);
       },
+      refuses: () => { isRefused = true; },
       leaves() {
         if (group) [group, mine, hasTouched] = [null, [], false];
         views.join(null);
@@ -3539,6 +3546,7 @@ const PARTS = {
         past = [];
         mine = [];
         count = 0;
+        isRefused = false;
       }
       const all = [];
       asked_ms = now();

@@ -163,7 +163,8 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
     for editor in editors:
         page = editor.python[0][1]
         assert page.base.checksum() == program.tree.checksum()
-        assert page.drafts or "\n".join(page.text) + "\n" == text_of(program.tree)
+        page.give_up()  # what is incomplete is nobody else's
+        assert not page.pending_changes and page.lines == text_of(program.tree).split("\n")[:-1]
 
 
 @pytest.mark.parametrize("seed", range(20))

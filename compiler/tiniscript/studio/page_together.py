@@ -94,7 +94,7 @@ def step(fields: Json, data: bytes) -> Json:
     answer = _answer(_newest, text, carets)
     if printed_form is not None:
         is_shown = _text(_newest) == printed_form.text
-        answer |= {"places": printed_form.places, "is_shown": is_shown}
+        answer |= {"text": printed_form.text, "places": printed_form.places, "is_shown": is_shown}
     return answer
 
 

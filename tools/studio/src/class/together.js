@@ -33,7 +33,8 @@ const DECISION_LIMIT_MS = 2000; // for what was done before an undo
  * @property {number} told how many changes were refused
  * @property {string} why
  * @property {number} count of own changes
- * @property {boolean} [is_shown] whether the text is that of the blocks which it was asked with
+ * @property {string} [text] of the blocks which it was asked with
+ * @property {boolean} [is_shown] whether the whole text is that
  * @property {[number, number, number, number][]} [places] of these
  * @property {{name: string}} kept
  */

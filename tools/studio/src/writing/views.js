@@ -369,8 +369,9 @@ export class Views {
       }
       this.#shownForm = formText;
       const answer = await group.writeBlocks(form, ids);
-      if (!answer?.is_shown) return;
-      this.#shownText = this.#page.editor.text;
+      if (!answer) return;
+      this.#shownText = answer.is_shown ? this.#page.editor.text : answer.text ?? null; // blocks with what was refused are stale, also where the text is as before
+      if (!answer.is_shown) return;
       this.#blocks.setRanges(ids, answer.places ?? []);
       this.#markBlocks();
       await this.#waitForHand();
