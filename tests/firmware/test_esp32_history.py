@@ -21,7 +21,7 @@ from tests.machines.esp32 import Esp32Robot, Kept
 from tests.support.bytes_around import PIECES
 from tests.support.campaign import each_seed, make_options
 from tests.support.compared_answers import answer_without_counts, first_difference, without_counts
-from tests.support.esp32_radio import Bytes, Client, End, talk
+from tests.support.esp32_radio import Bytes, Client, End, radios, talk
 from tests.support.esp32_wifi import join_network, remote, remote_with_wrong_key, school_in_reach
 from tests.support.images import image_of
 from tests.support.owners import Keys
@@ -150,7 +150,7 @@ def a_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
 def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
     """Connect one or two guests; return everything that can be observed."""
     robot = scene.robot
-    states: list[object] = []
+    states: list[object] = [radios(robot).sockets]
     robot.did.clear()
     scene.nonce = 100
     guests: list[Guest] = []

@@ -12,10 +12,12 @@ from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import (
     LEAST_MTU,
     Bytes,
+    Client,
     End,
     LowEnergy,
     Network,
     SerialPort,
+    radios,
     session,
     takes,
     talk,
@@ -27,6 +29,7 @@ from tests.support.robot_on_esp32 import AWAY, TRANSPORTS, Ends, Make, upload_te
 from tests.support.robot_on_host import actions_of
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
+from tiniscript.link.session import Session
 from tiniscript.link.typed_stop import is_typed_stop, stops_at_once
 
 drawn = pytest.mark.sampled(of="places of clients", keep=1)
@@ -293,6 +296,46 @@ def test_who_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:
         end.leave()
         talk(robot, [], 5)
         assert actions_of(robot)[-1] == "MOTORS 0 0"
+
+
+PLACES = 2  # kClients of tcp_clients.cpp
+SAYINGS = (b"", b"X", b"SI|F(60, 80", b"\0\5\7\7", b"\0" + bytes(STOP_BYTES), b"GET / HTTP/1.1\r\n")
+
+
+@pytest.mark.sampled("seed")
+@pytest.mark.parametrize("seed", range(10))
+def test_whoever_has_no_place_in_a_network_is_hung_up_on(seed: int) -> None:
+    """And whoever has one is told what it asked, whoever had it before."""
+    rng = random.Random(seed)
+    robot, end, _ = far_owner(keys := Keys())
+    end.leave()
+    talk(robot, [], AUTHORITY_MS)
+    sockets = radios(robot).sockets  # that listens
+    guests: list[tuple[Network, Client]] = []
+    owners: list[tuple[Network, Session]] = []
+    for number in range(15):
+        end = Network(robot)
+        if rng.random() < 0.6:
+            guests.append((end, Bytes(rng.choice(SAYINGS))))
+        else:
+            owners.append((end, remote(robot, keys if rng.random() < 0.7 else None, 20 + number)))
+            guests.append(owners[-1])
+        talk(robot, guests, rng.choice((5, 30, 300, 1200)))
+        for end, who in owners:
+            request = who.clear()  # with a key, whoever has one
+            for _ in range(3000):
+                if request.outcome is None and not end.has_ended:
+                    talk(robot, guests, 1)
+            assert end.has_ended or request.outcome
+        for end, _ in guests:
+            end.take()
+        if rng.random() < 0.2:
+            guests[-1][0].leave()
+            guests[-1][0].has_ended = True
+            talk(robot, [], 5)
+        guests = [guest for guest in guests if not guest[0].has_ended]
+        owners = [owner for owner in owners if not owner[0].has_ended]
+        assert len(guests) == radios(robot).sockets - sockets <= PLACES
 
 
 def has_client(robot: Esp32Robot) -> bool:

@@ -1,5 +1,7 @@
 """An ESP32 behaves on a network or a broker like a fresh one, whatever happened before: a
 rejection, incomplete or damaged settings, or a connection cut anywhere.
+
+`python -m tests.firmware.test_esp32_second_settings 200` tries more settings and places.
 """
 
 from __future__ import annotations
@@ -8,14 +10,16 @@ import random
 import socket
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from functools import partial
+from functools import lru_cache, partial
 from struct import pack
 from typing import Any
 
 import pytest
 
-from tests.machines.esp32 import Esp32Robot, Kept
-from tests.support.esp32_radio import in_reach, radios, talk
+from tests.machines.esp32 import EXTERNAL, PANIC, POWER_ON, Esp32Robot, Kept
+from tests.support.campaign import each_seed, make_options
+from tests.support.compared_answers import first_difference
+from tests.support.esp32_radio import Network, in_reach, port_of, radios, talk
 from tests.support.esp32_wifi import (
     HOTSPOT,
     SCHOOL,
@@ -25,10 +29,12 @@ from tests.support.esp32_wifi import (
     remote,
     school_in_reach,
     state,
+    wifi_reply_of,
 )
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import Ends, upload_text, wait_for_outcome
 from tiniscript.link import wifi
+from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import AUTHORITY_MS
 from tiniscript.link.session import Session
@@ -48,7 +54,7 @@ AGAIN_MS = 4000  # between two tries at a broker, at most
 # -- networks -----------------------------------------------------------------------------------
 
 
-def sent_away(reason: int, robot: Esp32Robot, network: wifi.Network) -> None:
+def refused(robot: Esp32Robot, network: wifi.Network, reason: int = 15) -> None:
     robot.radio("x", bytes([reason]))
     let_in(robot, OTHERS if network == SECOND else SECOND)
 
@@ -79,34 +85,129 @@ ENDS: dict[str, Callable[[Esp32Robot, wifi.Network], None]] = {
     "joined": let_in,
     "joined late": let_in_late,
     "searched for long": searched_long,
-    **{f"refused for {reason}": partial(sent_away, reason) for reason in (15, 202, 203, 204)},
+    "refused": refused,
 }
 
 
-def states(robot: Esp32Robot, owner: Session, network: wifi.Network) -> tuple[set[str], Any]:
-    """Join a network; return all reported states, and the final settings."""
-    ends: Ends = [(None, owner)]
-    assert wait_for_outcome(robot, ends, owner.join(network)) == "OK"
-    talk(robot, ends, 2)
-    states_seen = {state(robot, owner)[1] for _ in range(20)}
-    asked = radios(robot)
-    return states_seen, (state(robot, owner), asked.network, asked.password, asked.is_access_point)
+# -- whatever was set before ---------------------------------------------------------------------
+
+NETWORKS = (SCHOOL, SECOND, HOTSPOT)
+RESETS = (POWER_ON, EXTERNAL, PANIC)
+LOOK_MS, FIRST_LOOK_MS = 730, 300  # no look is near the time of a try or of a lease
 
 
-@pytest.mark.sampled("second")
-@pytest.mark.parametrize("second", [*ENDS][:5])
-@pytest.mark.parametrize("first", ENDS)
-def test_a_second_network_is_joined_as_a_first_one(first: str, second: str) -> None:
-    robot, owner = make_owned_robot(Keys())
-    ENDS[second](robot, SECOND)
-    _, fresh = states(robot, owner, SECOND)
-    robot, owner = make_owned_robot(Keys())
-    ENDS[first](robot, SCHOOL)
-    states(robot, owner, SCHOOL)
-    ENDS[second](robot, SECOND)
-    states_seen, state = states(robot, owner, SECOND)
-    assert state == fresh
-    assert ("REFUSED" in states_seen) == second.startswith("refused"), states_seen
+@lru_cache(maxsize=1)
+def owned() -> tuple[Kept, RobotKey]:
+    """Return the memory of a robot that has an owner and no network, and the owner's key."""
+    keys = Keys()
+    robot, _ = make_owned_robot(keys)
+    return robot.read_kept(), keys.stored_keys[0]
+
+
+class Life:
+    """A robot with an owner on its cable, in a place with or without a network."""
+
+    def __init__(self) -> None:
+        self.nonce = 10
+        self.place = "out of reach", SCHOOL
+        self.guests: list[Network] = []
+        self.boot(owned()[0], POWER_ON)
+
+    def boot(self, kept_memory: Kept, reset: int) -> None:
+        self.robot = Esp32Robot(kept_memory=kept_memory, reset=reset)
+        self.move_to(*self.place)
+        self.robot.wait(400)
+        self.nonce += 1
+        keys = Keys()
+        keys.stored_keys = [owned()[1]]
+        self.owner = remote(self.robot, keys, self.nonce)
+
+    def restart(self, reset: int) -> None:
+        kept_memory = self.robot.read_kept()
+        self.robot.close()
+        self.boot(kept_memory, reset)
+
+    def move_to(self, end: str, network: wifi.Network) -> None:
+        self.place = end, network
+        let_in(self.robot, network)
+        ENDS[end](self.robot, network)
+
+    def use(self, network: wifi.Network | None) -> None:
+        owner = self.owner
+        request = owner.join(network) if network else owner.forget_wifi()
+        assert wait_for_outcome(self.robot, [(None, owner)], request) == "OK"
+
+    def step(self, rng: random.Random) -> None:
+        """Something changes: the settings, the place, the memory, the power; or a client comes."""
+        what, network = rng.randrange(10), rng.choice(NETWORKS)
+        if what < 4:
+            self.move_to(rng.choice([*ENDS]), network)
+            self.use(network)
+        elif what == 4:
+            self.use(rng.choice((network, None)))
+        elif what == 5:
+            self.move_to(rng.choice([*ENDS]), network)
+        elif what == 6:
+            self.robot.radio("H", bytes([rng.randrange(2)]))
+        elif what == 7:
+            self.robot.radio("X")
+        elif what == 8:
+            self.restart(rng.choice(RESETS))
+        elif port_of(self.robot):
+            self.guests.append(Network(self.robot))
+            self.guests[-1].send(rng.choice((b"", b"X", b"PING|check_connection\n")))
+        self.robot.wait(rng.choice((2, 50, 1000, TRY_MS, 25_000)))
+
+    def looks(self, count: int) -> list[object]:
+        """Return all that can be seen of the radio, again and again, from new settings on."""
+        began_ms = self.robot.now_ms
+        talk(self.robot, [], 2)
+        joins = radios(self.robot).joins
+        seen: list[object] = []
+        for number in range(count):
+            self.robot.wait(began_ms + FIRST_LOOK_MS + number * LOOK_MS - self.robot.now_ms)
+            asked = radios(self.robot)
+            its = wifi_reply_of(self.robot, [(None, self.owner)], self.owner)
+            told = wifi.MODES[its.mode], wifi.STATES[its.state], its.network, wifi.address(its)
+            asked = asked._replace(joins=asked.joins - joins)
+            seen.append((told, asked, bool(port_of(self.robot))))
+        return seen
+
+    def restarts_until_it_rests(self) -> int:
+        for count in range(4):
+            if state(self.robot, self.owner)[1] == "RESTS":
+                return count
+            self.restart(PANIC)
+        return 4
+
+
+def check_radio(seed: int) -> str:
+    rng = random.Random(seed)
+    before, end = [*ENDS][seed // 5 % 5], [*ENDS][seed % 5]  # each one after each
+    old = Life()
+    for _ in range(rng.choice((1, 2, 5))):
+        old.step(rng)
+    old.robot.radio("H", b"\0")
+    old.move_to(before, SCHOOL)
+    old.use(rng.choice((SCHOOL, SCHOOL, HOTSPOT)))
+    old.robot.wait(rng.choice((50, 1000, TRY_MS)))
+    last = rng.choice((SECOND, SECOND, SECOND, HOTSPOT, None))
+    count = rng.choice((3, 3, 25, 60))  # up to 2 s, 18 s and 44 s
+    seen = []
+    for life in (old, Life()):
+        life.move_to(end, last or SCHOOL)
+        life.use(last)
+        seen.append([*life.looks(count), life.restarts_until_it_rests()])
+    assert seen[0] == seen[1], first_difference(*seen)
+    return end if last and not last.is_access_point else "else"
+
+
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(10))
+def test_after_any_history_a_radio_does_what_a_fresh_one_does(part: int) -> None:
+    """It joins, is announced, listens, tries again, and is told, at the same times."""
+    for seed in range(part * 5, part * 5 + 5):
+        check_radio(seed)
 
 
 @pytest.mark.sampled("reason")
@@ -114,9 +215,10 @@ def test_a_second_network_is_joined_as_a_first_one(first: str, second: str) -> N
 def test_who_is_let_in_at_last_was_not_refused(reason: int) -> None:
     """With a weak signal, the robot may have joined and be waiting for its address."""
     robot, owner = make_owned_robot(Keys())
-    sent_away(reason, robot, SCHOOL)
-    states_seen, _ = states(robot, owner, SCHOOL)
-    assert "REFUSED" in states_seen
+    refused(robot, SCHOOL, reason)
+    assert wait_for_outcome(robot, [(None, owner)], owner.join(SCHOOL)) == "OK"
+    talk(robot, [], 2)
+    assert state(robot, owner) == ("STATION", "REFUSED")
     let_in_late(robot, SCHOOL)
     robot.wait(TRY_MS + 1000)
     assert state(robot, owner) == ("STATION", "SEARCHING")
@@ -358,3 +460,7 @@ def test_a_connection_that_is_cut_anywhere_is_made_again(
         limit_ms = 3 * AGAIN_MS + 6000
         assert comes_back(robot, owner, cut_broker, limit_ms), cut_after
         assert cut_broker.cuts == count
+
+
+if __name__ == "__main__":
+    each_seed(check_radio, make_options(200, 10_000))

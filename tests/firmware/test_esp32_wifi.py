@@ -7,7 +7,15 @@ from typing import Any
 
 import pytest
 
-from tests.machines.esp32 import BROWN_OUT, EXTERNAL, POWER_ON, TASK_WATCHDOG, Esp32Robot, Kept
+from tests.machines.esp32 import (
+    BROWN_OUT,
+    EXTERNAL,
+    PANIC,
+    POWER_ON,
+    TASK_WATCHDOG,
+    Esp32Robot,
+    Kept,
+)
 from tests.support.esp32_radio import (
     Bytes,
     LowEnergy,
@@ -353,8 +361,6 @@ def test_a_client_that_takes_nothing_stops_nobody() -> None:
 
 
 # -- a chip that restarts whenever WiFi begins --------------------------------------------------
-
-PANIC = 4  # value of esp_reset_reason_t
 
 
 def restart(robot: Esp32Robot, reset: int, lived_ms: int) -> Esp32Robot:

@@ -44,7 +44,7 @@ SIMULATED = (
 )  # extras that are not programs of their own
 HAS_TLS = Path("/usr/include/mbedtls/ssl.h").exists()
 TLS = ("-lmbedtls", "-lmbedx509", "-lmbedcrypto") if HAS_TLS else ()
-POWER_ON, EXTERNAL, TASK_WATCHDOG, BROWN_OUT = 1, 2, 6, 9  # esp_reset_reason_t
+POWER_ON, EXTERNAL, PANIC, TASK_WATCHDOG, BROWN_OUT = 1, 2, 4, 6, 9  # esp_reset_reason_t
 CLOSED, NUMBERS, BLOBS = 1, 2, 3  # faults of NVS: NvsFault in `simulated_chip.h`
 US_PER_CM = 58.309  # echo time per centimetre
 

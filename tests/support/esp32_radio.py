@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Sequence
-from struct import pack
+from struct import pack, unpack
 from typing import NamedTuple, Protocol
 
 from tests.machines.esp32 import Esp32Robot
@@ -150,6 +150,7 @@ class Radios(NamedTuple):
     password: str
     is_access_point: bool
     joins: int
+    sockets: int  # that are open
 
 
 def radios(robot: Esp32Robot) -> Radios:
@@ -160,7 +161,7 @@ def radios(robot: Esp32Robot) -> Radios:
         texts.append(text.decode())
     advertised_text, serial_port, host, instance, service, network, password = texts
     return Radios(advertised_text, serial_port, host, instance, service, network, password,
-                  bool(answer[0]), int.from_bytes(answer[1:5], "little"))  # fmt: skip
+                  *unpack("<?II", answer))  # fmt: skip
 
 
 def port_of(robot: Esp32Robot) -> int:

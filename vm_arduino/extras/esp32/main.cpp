@@ -265,7 +265,8 @@ void answer_radio(RequestReader* request, Writer* answer) {
         answer->text(each);
       }
       answer->u8(found.is_access_point);
-      return answer->u32(found.joins);
+      answer->u32(found.joins);
+      return answer->u32(found.sockets);
     }
     default:
       abort();

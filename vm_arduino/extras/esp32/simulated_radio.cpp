@@ -95,6 +95,8 @@ std::atomic<size_t> taken{90};  // of what is sent at once: the rest comes later
 std::string near_name;
 std::string near_password;
 uint16_t bound_port;
+int bound_socket = -1;
+bool has_mdns;
 std::map<std::string, std::string> addresses = {{"localhost", "127.0.0.1"}};
 std::map<std::string, uint16_t> waits_ms;  // until a name is looked up
 
@@ -104,6 +106,15 @@ void begin_bluetooth() {
   if (!has_bluetooth) vTaskDelay(kBeginningMs);
   has_bluetooth = true;
   bluetooth_begins = false;
+}
+
+bool begin_mdns(const char* host) {
+  expect(has_network_stack, "the network before WiFi has begun");
+  const Lock lock(guard);
+  if (chip.is_heap_full) return false;
+  settings.host = host;
+  has_mdns = true;
+  return true;
 }
 
 // Of whoever holds the lock.
@@ -343,7 +354,9 @@ uint16_t network_port() {
 
 RadioSettings radio_settings() {
   const Lock lock(guard);
-  return settings;
+  RadioSettings found = settings;
+  found.sockets = static_cast<uint32_t>(sockets);
+  return found;
 }
 
 // -- what the core has --------------------------------------------------------------------------
@@ -555,7 +568,10 @@ bool WiFiClass::mode(wifi_mode_t m) {
   chip.has_wifi = m != WIFI_OFF;
   if (chip.has_wifi) has_network_stack = true;
   look_at_sleep();
-  if (m == WIFI_OFF) settings.network = settings.password = "";
+  if (m == WIFI_OFF) {
+    settings.network = settings.password = "";
+    settings.is_access_point = false;
+  }
   return true;
 }
 
@@ -596,20 +612,10 @@ IPAddress WiFiClass::localIP() { return IPAddress(127, 0, 0, 1); }
 IPAddress WiFiClass::softAPIP() { return IPAddress(192, 168, 4, 1); }
 
 #if ESP_ARDUINO_VERSION_MAJOR >= 3
-bool MDNSResponder::begin(const String& hostName) {
-  expect(has_network_stack, "the network before WiFi has begun");
-  const Lock lock(guard);
-  settings.host = hostName.c_str();
-  return !chip.is_heap_full;
-}
+bool MDNSResponder::begin(const String& hostName) { return begin_mdns(hostName.c_str()); }
 void MDNSResponder::setInstanceName(const String& name) {
 #else
-bool MDNSResponder::begin(const char* hostName) {
-  expect(has_network_stack, "the network before WiFi has begun");
-  const Lock lock(guard);
-  settings.host = hostName;
-  return !chip.is_heap_full;
-}
+bool MDNSResponder::begin(const char* hostName) { return begin_mdns(hostName); }
 void MDNSResponder::setInstanceName(String name) {
 #endif
   const Lock lock(guard);
@@ -618,13 +624,15 @@ void MDNSResponder::setInstanceName(String name) {
 
 bool MDNSResponder::addService(const char* service_name, const char* proto, uint16_t port) {
   const Lock lock(guard);
+  if (!has_mdns) return false;
   settings.service = "_" + std::string(service_name) + "._" + proto + " " + std::to_string(port);
   return true;
 }
 
 void MDNSResponder::end() {
   const Lock lock(guard);
-  settings.service = "";
+  has_mdns = false;
+  settings.host = settings.instance = settings.service = "";
 }
 
 extern "C" {
@@ -636,7 +644,13 @@ void esp_log_level_set(const char* tag, esp_log_level_t level) {
 
 int lwip_accept(int s, struct sockaddr* addr, socklen_t* addrlen) {
   const int found = accept(s, addr, addrlen);
-  if (found >= 0) sockets++;
+  if (found < 0) return found;
+  if (sockets == kMostSockets) {  // it is taken from those that wait, and gone
+    close(found);
+    errno = ENFILE;
+    return -1;
+  }
+  sockets++;
   return found;
 }
 
@@ -650,12 +664,19 @@ int lwip_bind(int s, const struct sockaddr*, socklen_t) {
   if (getsockname(s, reinterpret_cast<sockaddr*>(&place), &length) != 0) return -1;
   const Lock lock(guard);
   bound_port = ntohs(place.sin_port);
+  bound_socket = s;
   return 0;
 }
 
 int lwip_close(int s) {
+  const Lock lock(guard);
   sockets--;
-  return close(s);
+  if (s == bound_socket) {
+    bound_port = 0;
+    bound_socket = -1;
+  }
+  expect(close(s) == 0, "a socket that is closed twice");
+  return 0;
 }
 int lwip_connect(int s, const struct sockaddr* name, socklen_t namelen) {
   return connect(s, name, namelen);

@@ -54,6 +54,7 @@ struct RadioSettings {
   std::string network;  // that it joins or is
   std::string password;
   bool is_access_point;
-  uint32_t joins;  // how many times it, or the core for it, has tried
+  uint32_t joins;    // how many times it, or the core for it, has tried
+  uint32_t sockets;  // that are open
 };
 RadioSettings radio_settings();
