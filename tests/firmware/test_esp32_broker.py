@@ -19,7 +19,12 @@ from tests.support.esp32_broker import (
     until,
 )
 from tests.support.esp32_radio import Bytes, in_reach, talk
-from tests.support.esp32_wifi import join_network, remote, school_in_reach
+from tests.support.esp32_wifi import (
+    join_network,
+    remote,
+    restart_with_school_in_reach,
+    school_in_reach,
+)
 from tests.support.images import image_of
 from tests.support.mosquitto import AtBroker, Mosquitto
 from tests.support.owners import Keys
@@ -113,9 +118,7 @@ def test_a_long_program_and_what_it_shows(broker: Mosquitto) -> None:
 def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
     robot, owner = at(broker, Keys())
     assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
-    restarted_robot = Esp32Robot(kept_memory=robot.read_kept())
-    school_in_reach(restarted_robot)
-    restarted_robot.wait(400)
+    restarted_robot = restart_with_school_in_reach(robot)
     teacher = broker.connect_client()
     until(
         restarted_robot,

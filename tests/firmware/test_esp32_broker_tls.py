@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.machines.esp32 import HAS_TLS, Esp32Robot
+from tests.machines.esp32 import HAS_TLS
 from tests.support.certificates import Authority, der
 from tests.support.esp32_broker import (
     DEAD_MAN_MS,
@@ -26,7 +26,7 @@ from tests.support.esp32_broker import (
     until,
 )
 from tests.support.esp32_radio import announce_computer, talk
-from tests.support.esp32_wifi import join_network, remote, school_in_reach
+from tests.support.esp32_wifi import join_network, remote, restart_with_school_in_reach
 from tests.support.mosquitto import LOCAL, AtBroker, Mosquitto
 from tests.support.network import CuttingNetwork
 from tests.support.owners import Keys
@@ -297,9 +297,7 @@ def test_it_is_kept_and_used_after_a_reset_also_where_another_finds_no_room(room
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(PLAIN)) == "NOT_KEPT"
     talk(robot, [(None, owner)], 100)
     assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
-    restarted_robot = Esp32Robot(kept_memory=robot.read_kept())
-    school_in_reach(restarted_robot)
-    restarted_robot.wait(400)
+    restarted_robot = restart_with_school_in_reach(robot)
     teacher = room.connect()
     until(
         restarted_robot,

@@ -34,6 +34,7 @@ from tests.support.esp32_wifi import (
     join_network,
     make_owned_robot,
     remote,
+    restart_with_school_in_reach,
     school_in_reach,
     state,
     wifi_reply_of,
@@ -80,9 +81,7 @@ def test_what_there_is_no_memory_for_is_announced_later() -> None:
 
 def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
     robot, owner = join_network(Keys())
-    rebooted_robot = Esp32Robot(kept_memory=robot.read_kept())
-    school_in_reach(rebooted_robot)
-    rebooted_robot.wait(400)
+    rebooted_robot = restart_with_school_in_reach(robot)
     assert port_of(rebooted_robot)
     ends: Ends = [(None, owner)]
     assert wait_for_outcome(robot, ends, owner.forget_wifi()) == "OK"

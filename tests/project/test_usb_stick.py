@@ -22,6 +22,7 @@ import pytest
 
 from tests.support import studio
 from tests.support.casefile import ROOT
+from tests.support.needs import need as need_package
 from tools.builds import stick_wheels, usb_stick
 from tools.builds.stick_wheels import PYTHONS, SYSTEMS
 
@@ -83,10 +84,8 @@ def list_installed(root: str, extras: set[str]) -> dict[str, Distribution]:
 @pytest.mark.sampled(of="sticks that pip reads")
 def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
     for needed_module in ("wasmtime", "bleak", "zeroconf", "PIL", "setuptools"):
-        if (
-            find_spec(needed_module) is None
-        ):  # an import of setuptools would replace this one's distutils
-            pytest.skip(f"no package {needed_module}")
+        # An import of setuptools would replace the distutils of this process.
+        need_package("" if find_spec(needed_module) else f"no package {needed_module}")
     wheels = stick / "wheels"
     wheels.mkdir()
     for installed_one in list_installed("tiniscript", {"radio", "virtual"}).values():

@@ -11,6 +11,7 @@ import io
 import re
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -19,6 +20,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
+from tests.support.needs import need
 from tests.support.rows import each_row
 from tests.support.texts import catalogue_texts as said_in
 from tiniscript.base import files
@@ -212,7 +214,7 @@ def test_nothing_but_unix_knows_unix(tmp_path: Path) -> None:
     """Without the modules that Windows lacks, each module can be imported, and commands without a
     robot run."""
     for needed_module in ("wasmtime", "PIL", "bleak", "zeroconf"):
-        pytest.importorskip(needed_module)
+        need("" if find_spec(needed_module) else f"no package {needed_module}")
     (tmp_path / "prog.ts").write_text(PROGRAM)
     completed = subprocess.run(
         [sys.executable, "-c", WITHOUT_UNIX], cwd=tmp_path, capture_output=True, text=True,

@@ -111,6 +111,7 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     becomes(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 80);\nF(1, 80);\n")
     number = page.locator(f"{PROGRAM} .blocklyNumberField").nth(5)
     number.click()
+    assert page.locator(".blocklyWidgetDiv input").get_attribute("inputmode") == "decimal"
     page.keyboard.press("Control+a")
     page.keyboard.type("150")
     page.keyboard.press("Enter")

@@ -184,6 +184,7 @@ def test_who_sees_blocks_is_told_of_blocks(page: Page, language: str) -> None:
         told.add(doing(page))
         page.keyboard.press("ArrowRight")
     assert any(re.search("(was|era) [\\d.]+", each) for each in told)
+    assert not any(re.search(r"\. [^\W\dA-ZÀ-Ý]", each) for each in told), "a small first letter"
     page.click("#why")
     page.click("#view_text")
     hears(page, lambda: re.search(CODE, doing(page)), "code")

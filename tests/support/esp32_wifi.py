@@ -35,6 +35,14 @@ def school_in_reach(robot: Esp32Robot) -> None:
     in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
 
 
+def restart_with_school_in_reach(robot: Esp32Robot) -> Esp32Robot:
+    """Return a robot that has started with what `robot` has kept, and has had time to join."""
+    restarted_robot = Esp32Robot(kept_memory=robot.read_kept())
+    school_in_reach(restarted_robot)
+    restarted_robot.wait(400)
+    return restarted_robot
+
+
 def join_network(keys: Keys, network: wifi.Network = SCHOOL) -> tuple[Esp32Robot, Session]:
     """Return a robot with a network in reach, and its session."""
     robot, owner = make_owned_robot(keys)

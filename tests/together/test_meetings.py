@@ -310,9 +310,19 @@ def program_of(page: Page) -> list[str]:
     return [row.rstrip(";") for row in page.lines]
 
 
+def exchange(two: Two, message: str) -> None:
+    """Send what Ana has changed, send it and lose the answer, or receive what is new."""
+    if message == "send":
+        two.sends(two.ana)
+    elif message == "lose":
+        two.program.submit(two.ana.pending_changes)
+    else:
+        two.hears(two.ana)
+
+
 def story(seed: int, makes_copies: bool) -> list[Any]:
-    """Return the view of Ana's page, continued as a copy each time, or as it is. Changes to the old
-    one belong to nobody."""
+    """Return what Ana's page shows after each step, with a copy in its place each time, or as it
+    is. Nothing hears of what is changed on the old page then."""
     chance, other_chance, two = Random(seed), Random(seed), Two(FLAT)
     seen = list[Any]()
     for _ in range(40):
@@ -328,12 +338,8 @@ def story(seed: int, makes_copies: bool) -> list[Any]:
                 two.sends(two.luz)
             case "undo" | "redo" as does_back:
                 seen.append(two.ana.undo() if does_back == "undo" else two.ana.redo())
-            case "send":
-                two.sends(two.ana)
-            case "lose":
-                two.program.submit(two.ana.pending_changes)
-            case "hear":
-                two.hears(two.ana)
+            case message:
+                exchange(two, message)
         seen.append([two.ana.lines[:], data(two.ana)])
     return [*seen, two.meet()]
 
@@ -354,15 +360,11 @@ def test_what_is_typed_before_and_after_any_reload_is_the_program(seed: int) -> 
             case "edit":
                 edits(two.ana, chance)
                 continue
-            case "send":
-                two.sends(two.ana)
-            case "lose":
-                two.program.submit(two.ana.pending_changes)
-            case "hear":
-                two.hears(two.ana)
             case "reload":
                 kept = json.loads(json.dumps(two.ana.store_data()))
                 two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
+            case message:
+                exchange(two, message)
         assert program_of(two.ana) == typed
     typed = program_of(two.ana)
     two.meet()
