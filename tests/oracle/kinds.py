@@ -40,11 +40,13 @@ class Text:
     def names_after(self, at: int) -> tuple[str, ...]:
         """The names in the brackets that begin here, none if there are none."""
         names = []
-        if self.tokens[at].text == "(":
-            while self.tokens[at].text not in (")", "") and self.tokens[at].kind != "newline":
-                if self.tokens[at].kind == "word":
-                    names.append(self.tokens[at].text)
-                at += 1
+        rest = self.tokens[at:]  # nothing, if the text ends at DEF
+        if rest and rest[0].text == "(":
+            for token in rest:
+                if token.text in (")", "") or token.kind == "newline":
+                    break
+                if token.kind == "word":
+                    names.append(token.text)
         return tuple(names)
 
     def begins(self, at: int) -> bool:
