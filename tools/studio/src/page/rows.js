@@ -14,8 +14,8 @@ export function showRows(container, rows) {
   rows.forEach(([name = '', value = '', barWidth = ''], index) => {
     const row = /** @type {HTMLElement} */ (container.children[index] ?? container.appendChild(makeElement('div', '', makeElement('dt'), makeElement('dd'))));
     row.classList.toggle('wide', name.length > SHORT_NAME_CHARACTERS || barWidth !== '');
-    if (barWidth) row.style.setProperty('--part', barWidth);
-    else row.removeAttribute('style');
+    row.classList.toggle('barred', barWidth !== '');
+    row.style.backgroundSize = barWidth && `${barWidth} 4px, 100% 4px`; // a custom property would have the cells' style computed, too
     [name, value].forEach((cellText, column) => {
       const cell = row.children[column];
       if (cell) setText(cell, cellText);

@@ -14,6 +14,7 @@ import { drawWorld, lightTile, raiseWorld } from '../world/floor.js';
 /** @typedef {import('../world/floor.js').Goal} Goal */
 /** @typedef {import('../page/shapes.js').Pen} Pen */
 
+const STILL_QUERY = matchMedia('(prefers-reduced-motion: reduce)');
 const MARGIN_CM = 4;
 const LEAST_ROBOT_PX = 72; // pixels of a robot that the camera follows,
 const MOST_ROBOT_SHARE = 0.4; // unless that is more of the picture's shorter side
@@ -144,7 +145,7 @@ export class Arena {
 
   /** Shakes the picture, unless this person wants nothing to move. */
   shake() {
-    if (matchMedia('(prefers-reduced-motion: reduce)').matches || this.#canvas.getAnimations().length) return;
+    if (STILL_QUERY.matches || this.#canvas.getAnimations().length) return;
     const offsets = ['0 0', '5px 2px', '-5px -2px', '3px -1px', '0 0'];
     this.#canvas.animate(offsets.map((translate) => ({ translate })), SHAKE_MS);
   }
@@ -270,7 +271,7 @@ export class Arena {
     const [from_ms, until_ms] = this.#beepTimes;
     const isBeeping = state !== null && state.is_running && from_ms <= state.now_ms && state.now_ms < until_ms;
     const face = this.#moods.faceOf(state);
-    const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    const isStill = STILL_QUERY.matches;
     const { name, colour } = pageState.ownRobot.value;
     drawRobot(pen, robot, state, { rolled: this.#rolled_cm, isBeeping, face: isStill ? { ...face, isBlinking: false } : face, colours: COLOURS[colour] ?? COLOURS[0] });
     pen.restore();
