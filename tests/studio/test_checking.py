@@ -16,6 +16,7 @@ from tiniscript.diagnostics.rendering import Message
 from tiniscript.library.compiling import Compilation, compile_source
 from tiniscript.studio import checking, worker
 from tiniscript.studio.description import description
+from tools.builds.page_texts import page_texts
 
 
 def test_a_right_program_has_the_image_of_the_command() -> None:
@@ -23,6 +24,23 @@ def test_a_right_program_has_the_image_of_the_command() -> None:
     assert result.image == compile("SI|F(2, 80)").image
     assert (result.code_bytes, result.findings) == (3, ())
     assert result.places[0] == (0, 1, 4, 1, 12)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_word_that_the_toolbox_offers_is_a_name(language: str) -> None:
+    word = page_texts(language)["new_word"]
+    program = f"SI|DEF {word};F(1, 50);END_DEF;{word}"
+    assert not checking.check(program.encode(), "tinibot", language).findings
+
+
+@pytest.mark.parametrize("robot", robots.names())
+def test_the_sensors_that_a_program_reads_are_named_by_their_numbers(robot: str) -> None:
+    names = [sensor.name for sensor in robots.load(robot).kit.sensors]
+    programs = [f"SHOW({name})" for name in names]
+    for number, program in enumerate(programs):
+        assert checking.check(program.encode(), robot, "en").read_sensors == (number,)
+    all_read = checking.check("\n".join(reversed(programs)).encode(), robot, "en").read_sensors
+    assert all_read == tuple(range(len(names)))
 
 
 @pytest.mark.sampled("first", "part")

@@ -300,7 +300,7 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     row.hover()
     row.locator(".out").click()
     wait_for_status(page, "Ahora no estás en la clase.")
-    row.locator(".see").and_(teacher.locator("[aria-label*='not here']")).wait_for()
+    row.locator(".see").and_(teacher.locator("[aria-label*='gone']")).wait_for()
     row.locator(".out").click()  # nor is the work kept then
     row.wait_for(state="detached")
     page.close()

@@ -236,12 +236,14 @@ def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:
 def test_a_program_without_a_name_is_called_by_its_first_block(start: Page) -> None:
     start.click("#start_write")
     start.click("#view_text")
-    for program in ("SI|F(2.5, 80)", "// a\nSB|LOOP(FOREVER); F(20 CM, 50); END_LOOP", "A = 3"):
+    for program in ("SI|F(2.5, 80)", "// a\nSB|LOOP(FOREVER); F(20 CM, 50); END_LOOP", "A = 3",
+                    "SI|DEF HOP;F(1, 50);END_DEF;L(1, 50)"):  # fmt: skip
         start.click("#bar_new")
         write(start, program)
     start.click("#home")
     names = start.locator("#start_programs strong")
     assert names.all_inner_texts() == [
+        "SI|DEF HOP;F(1, 50);END_DEF;L(1, 50)",
         "A = 3",
         "// a SB|LOOP(FOREVER); F(20 CM, 50); END_LOOP",
         "SI|F(2.5, 80)",
@@ -249,9 +251,16 @@ def test_a_program_without_a_name_is_called_by_its_first_block(start: Page) -> N
     start.click("#start_write")
     start.click("#view_blocks")
     start.click("#home")
-    assert names.all_inner_texts() == ["Program 3", "repeat forever", "forward 2.5 s at 80 %"]
+    assert names.all_inner_texts() == [
+        "turn left 1 s at 50 %", "Program 3", "repeat forever", "forward 2.5 s at 80 %",
+    ]  # fmt: skip
     speak(start, "es")
-    assert names.all_inner_texts() == ["Programa 3", "repite para siempre", "avanza 2.5 s al 80 %"]
+    assert names.all_inner_texts() == [
+        "gira a la izquierda 1 s al 50 %",
+        "Programa 3",
+        "repite para siempre",
+        "avanza 2.5 s al 80 %",
+    ]
 
 
 def test_a_world_that_is_solved_is_celebrated_and_its_stars_are_kept(start: Page) -> None:

@@ -102,10 +102,33 @@ def test_each_show_of_a_run_has_a_row_of_its_own(page: Page) -> None:
     rows = page.locator("#values > div").evaluate_all(
         "rows => rows.map((row) => [...row.children].map((cell) => cell.textContent).join(': '))"
     )
-    assert rows[-4:] == [
+    assert rows[4:8] == [
         "SHOW(X * X) (line 1:8): 4", "SHOW(X * X) (line 1:28): 9", "SHOW: 7", "SHOW(X): 3",
     ]  # fmt: skip
     assert "SHOW 9" in (page.locator("#trace").text_content() or ""), "values alone"
+
+
+def test_what_a_program_reads_comes_before_what_it_does_not(page: Page) -> None:
+    run(page, "X = DISTANCE; SHOW(X)")
+    names = page.locator("#values dt").all_inner_texts()
+    assert names[:3] == ["Time", "Motors", "Collisions"]
+    assert names[3:6] == ["distance sensor", "X", "SHOW(X)"] and len(names) > 6
+    run(page, "SHOW(LIGHT_L)")
+    assert page.locator("#values dt").all_inner_texts()[3:5] == [
+        "left light sensor",
+        "SHOW(LIGHT_L)",
+    ]
+
+
+@pytest.mark.parametrize("text", ["", "SI|", "// F(1)", "SI|;;"])
+def test_an_empty_program_says_so_before_and_after_its_run(page: Page, text: str) -> None:
+    sentence = "The program is empty: put a block or a line into it, then press Run."
+    write(page, text)
+    page.locator("#status", has_text=sentence).wait_for()
+    page.click("#run")
+    page.locator("#doing", has_text=sentence).wait_for()
+    run(page, "SHOW(1)")
+    assert "It has ended." in page.inner_text("#doing")
 
 
 @drawn

@@ -54,8 +54,9 @@ class CheckResult(NamedTuple):
     """`image` is empty for programs with mistakes. `places` map each instruction's start to a range
     of the text, `halts` to the halt of a real robot before it, `shows` to the names of SHOWs, by
     offset; `variables` are in the order of their numbers; `start` is SI, SB or PING, or empty if
-    there are mistakes; `robot` is the target, which the text names if `names_robot`; `remote_words`
-    are those of a remote control that it reads.
+    there are mistakes; `robot` is the target, which the text names if `names_robot`; it reads the
+    sensors of the robot with the numbers `read_sensors`, and the words `remote_words` of a remote
+    control.
     """
 
     image: bytes
@@ -68,6 +69,7 @@ class CheckResult(NamedTuple):
     start: str = ""
     robot: str = ""
     names_robot: bool = False
+    read_sensors: tuple[int, ...] = ()
     remote_words: tuple[str, ...] = ()
 
 
@@ -82,6 +84,7 @@ def check(data: bytes, robot: str, language: str) -> CheckResult:
         return CheckResult(b"", 0, findings, (), robot=profile.name, names_robot=names_robot)
     variables = tuple(map(Variable, compilation.program.variables, compilation.yes_no_flags))
     program_map = source_map.map_of_compiled(compilation)
+    read_sensors, remote_words = _read_devices(compilation, profile.kit)
     statement_offsets = statement_starts(compilation.code)
     halts = tuple(statement_of(statement_offsets, place.offset) for place in program_map.locations)
     return CheckResult(
@@ -95,16 +98,19 @@ def check(data: bytes, robot: str, language: str) -> CheckResult:
         compilation.program.start,
         profile.name,
         names_robot,
-        _remote_words(compilation, profile.kit),
+        read_sensors,
+        remote_words,
     )
 
 
-def _remote_words(compilation: Compilation, kit: Kit) -> tuple[str, ...]:
+def _read_devices(compilation: Compilation, kit: Kit) -> tuple[tuple[int, ...], tuple[str, ...]]:
+    """Return the numbers of the sensors that a program reads, and its words of a remote control."""
     used_devices = compilation.verdict.uses if compilation.verdict is not None else ()
-    read_numbers = {
-        number - len(kit.sensors) for device_kind, number in used_devices if device_kind == "sensor"
-    }
-    return tuple(device.name for k, device in enumerate(REMOTE) if k in read_numbers)
+    read_numbers = {number for device_kind, number in used_devices if device_kind == "sensor"}
+    sensor_count = len(kit.sensors)
+    sensors = tuple(sorted(number for number in read_numbers if number < sensor_count))
+    remote = (device.name for k, device in enumerate(REMOTE, sensor_count) if k in read_numbers)
+    return sensors, tuple(remote)
 
 
 def _show_places(program_map: source_map.SourceMap) -> tuple[tuple[int, Show], ...]:

@@ -56,6 +56,7 @@ def _check(fields: Json, data: bytes) -> Json:
         "start": result.start,
         "robot": result.robot,
         "names_robot": result.names_robot,
+        "sensors": result.read_sensors,
         "remote": result.remote_words,
         "loose": _loose(fields, data) if LOOSE_PREFIX.encode() in data else 0,
     }

@@ -39,6 +39,7 @@ import { watchPromise } from './page/progress.js';
  * @property {string} start SI, SB or PING; empty where there are mistakes
  * @property {string} robot that it was compiled for
  * @property {boolean} names_robot whether the text names it
+ * @property {number[]} sensors numbers of the robot's sensors that it reads
  * @property {string[]} remote words of a remote control that it reads
  * @property {number} loose instructions and values that are joined to nothing
  */

@@ -121,7 +121,7 @@ function makeGroups(usedNames) {
       ...(usedNames.names.length ? usedNames.names.slice(0, MOST_NAMES) : ['X']).map((name) => /** @type {[Level, ToolboxItem]} */ (['usual', makeItem('name', [], name)])),
     ]],
     ['words', [
-      ['usual', makeItem('def', [], 'HOP')],
+      ['usual', makeItem('def', [], text('new_word'))],
       ...usedNames.words.slice(0, MOST_NAMES).map(([name, count]) => /** @type {[Level, ToolboxItem]} */ (['usual', makeCallItem(name, count)])),
     ]],
     ['others', [['usual', makeItem('comment')], ['all', makeItem('start')]]],

@@ -86,9 +86,11 @@ export function versionTitle({ name, text }, number) {
   return name.replace(/\.\w+$/, '') || beginning;
 }
 
-/** Its first instruction. @param {string} text @returns {string} */
+/** Its first instruction that runs: not one of a DEF, if there is another. @param {string} text @returns {string} */
 function firstInstruction(text) {
-  return text.replace(/\/\/.*$/gm, '').replace(/^\s*(?:SI|SB|PING)\s*\|/i, '').split(/[;\n]/).map((line) => line.trim()).find(Boolean) ?? '';
+  const code = text.replace(/\/\/.*$/gm, '').replace(/^\s*(?:SI|SB|PING)\s*\|/i, '');
+  const instructions = [code.replace(/\bDEF\b[^]*?\bEND_?DEF\b/gi, ''), code].flatMap((part) => part.split(/[;\n]/));
+  return instructions.map((line) => line.trim()).find(Boolean) ?? '';
 }
 
 /** Its first lines as one, with no character cut in two. @param {string} text @returns {string} */

@@ -33,7 +33,7 @@ export class Run {
   rows = [];
   /** Where what is recorded ends, by the robot's clock. @type {number | null} */
   end_ms = null;
-  /** What it says of the program. @type {Pick<CheckResult, 'places' | 'shows' | 'variables'>} */
+  /** What it says of the program. @type {Pick<CheckResult, 'places' | 'shows' | 'variables'> & Partial<Pick<CheckResult, 'sensors'>>} */
   program;
   /** The world as it is drawn. @type {import('../world/parts.js').World | null} */
   world;
@@ -56,7 +56,7 @@ export class Run {
 
   /**
    * @param {RunOrigin} origin
-   * @param {Pick<CheckResult, 'places' | 'shows' | 'variables'>} program
+   * @param {Pick<CheckResult, 'places' | 'shows' | 'variables'> & Partial<Pick<CheckResult, 'sensors'>>} program
    * @param {import('../world/parts.js').World | null} world
    */
   constructor(origin, program, world) {

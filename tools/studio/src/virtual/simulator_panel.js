@@ -76,7 +76,7 @@ export class SimulatorPanel {
   #shownValues = new Map();
   /** What each had shown when somebody looks back. @type {Map<string, string>} */
   #pastShownValues = new Map();
-  /** Whose run it is. @type {Pick<CheckResult, 'places' | 'shows' | 'variables'>} */
+  /** Whose run it is. @type {Run['program']} */
   #program = { places: [], shows: [], variables: [] };
   #wasStopped = false;
   /** What the run reads of a remote control; nothing of one that was judged. @type {string[]} */
@@ -711,7 +711,7 @@ export class SimulatorPanel {
     const heldRange = state.is_held && this.#shownRange();
     if (phase === 'paused' && heldRange) return this.#say('robot_held', 'robot_held_block', { line: heldRange.line }, this.#partText(heldRange));
     if (phase === 'paused') return text('robot_paused');
-    if (phase === 'ended') return text('robot_ended');
+    if (phase === 'ended') return text(this.#timeLine.run.program.places.length ? 'robot_ended' : 'program_empty');
     return text(state.is_waiting ? 'robot_waiting' : 'robot_running');
   }
 
@@ -791,13 +791,16 @@ export class SimulatorPanel {
 
   #showValues() {
     const state = this.#shownState;
+    const readSensors = new Set((this.#timeLine.seenState ? this.#timeLine.run.program : this.#program).sensors);
+    const sensorRows = devicesOf(this.#shownRobotName, 'sensor').map((device, index) => [deviceName(device), state ? readingText(device, state.readings[index]?.text ?? '') : '–', percentOfRange(device, state?.readings[index]?.value)]);
     const rows = [
       [text('time'), state ? `${secondsOf(state)} s` : '–'],
       [text('motors'), state ? state.motors.map((power) => `${power} %`).join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
-      ...devicesOf(this.#shownRobotName, 'sensor').map((device, index) => [deviceName(device), state ? readingText(device, state.readings[index]?.text ?? '') : '–', percentOfRange(device, state?.readings[index]?.value)]),
+      ...sensorRows.filter((_, index) => readSensors.has(index)), // first: what the program is about, where there is little room
       ...this.#shownVariables.map(({ name, is_yes_no }, index) => [name, variableText(state?.variables[index], is_yes_no)]),
       ...(this.#timeLine.seenState ? this.#pastShownValues : this.#shownValues),
+      ...sensorRows.filter((_, index) => !readSensors.has(index)),
     ];
     showRows(element('values', HTMLElement), rows);
   }

@@ -66,12 +66,12 @@ export function showRepair(list, findingIndex, finding, repair) {
 }
 
 /** @param {CheckResult} checked @returns {string} */
-export function summaryOf({ findings, bytes, loose: looseCount }) {
+export function summaryOf({ findings, bytes, places, loose: looseCount }) {
   const mistakes = findings.filter((finding) => finding.severity === 'mistake').length;
   const warnings = findings.length - mistakes;
   const parts = [];
   if (mistakes) parts.push(text('mistakes', { count: mistakes }));
-  else if (!looseCount) parts.push(text('right', { bytes }));
+  else if (!looseCount) parts.push(places.length ? text('right', { bytes }) : text('program_empty'));
   if (looseCount) parts.push(text('loose', { count: looseCount }));
   if (warnings) parts.push(text('warnings', { count: warnings }));
   return parts.join(mistakes || looseCount ? ', ' : ' ');
