@@ -32,8 +32,8 @@ Json = dict[str, Any]
 PUPIL_COUNT, RUN_S = 30, 30.0
 MOST_MS, MOST_SHARE_PERCENT = 4, 4
 ROWS = (
-    "one group, until the others have a change: median, 95 of 100",
-    f"{PUPIL_COUNT} pupils, until the others of a group have a change: median, 95 of 100",
+    "one group, until the others receive a change: median, 95 of 100",
+    f"{PUPIL_COUNT} pupils, until the others in a group receive a change: median, 95 of 100",
     f"{PUPIL_COUNT} pupils, share of a core, and memory in all",
 )
 CHANGE_INTERVAL_S = (2.0, 6.0)  # range of time between a pupil's changes

@@ -45,7 +45,7 @@ PATTERN_OF_PART = {
         r"tiniscript_moves|Machine::(take|want|sends|motors|set_motors|drive|end_move|watch|until|block|keep_move)"
         r"|robot_motors",
     "verifier": r"::pass\(|kForm|to_the_end",
-    "the start of a run, and all else: 20 bytes of RAM for each of four more tasks": "",
+    "the start of a run, and everything else: 20 bytes of RAM for each of four more tasks": "",
 }  # fmt: skip
 COUNTING_ROWS = {0: "none", 3: "three"}
 ROWS = (*COUNTING_ROWS.values(), *PATTERN_OF_PART)
