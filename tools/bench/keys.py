@@ -40,7 +40,7 @@ MOST_LOST_MS = HOLD_MS + 3  # the clock and the program look after that time
 ROWS = (
     "stick held, to the motor pins",
     "stick released, to the motor pins",
-    "stick held, to the motor pins, with `examples/remote.ts`, which reads the stick 20 times a second",
+    "stick held, to the motor pins, with `examples/remote.ts`, which reads it 20 times a second",
     f"line lost, to motors off, in {TRY_COUNT} of {TRY_COUNT}",
 )
 FORMATS = (".1f", ".1f", ".1f", ".0f")
