@@ -164,7 +164,7 @@ KINDS: dict[str, CriterionKind] = {
     "obeys": CriterionKind("it obeys the keys: it goes forward for KEY_UP and back for KEY_DOWN, turns for KEY_LEFT and KEY_RIGHT, beeps for KEY_A and KEY_B, and stands still while nothing is held"),
     "ends": CriterionKind("the program ends by itself"),
     "uses": CriterionKind("the text has each of these words `times` times; a DEF counts if it is called, a LOOP if it repeats more than a wait, an UNTIL if it checks something", (TIMES,), words="word"),
-    "needs": CriterionKind("the program needs these words, LOOP, DEF, WHEN or TASK: the robot fails one of the criteria above if each loop runs only once, if the words defined by DEF are left out, or if the other tasks are", words="block"),
+    "needs": CriterionKind("the program needs these words, LOOP, DEF, WHEN or TASK: the robot fails one of the criteria above if each loop runs only once, or if the words defined by DEF or the other tasks are left out", words="block"),
     "moves": CriterionKind("the text has at most `at_most` moves; with `ahead`, turns do not count", (Number("at_most", 1, 1000),), flags=("ahead",)),
 }
 # fmt: on
