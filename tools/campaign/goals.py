@@ -60,7 +60,7 @@ GOALS: tuple[Goal, ...] = (
          "run over all bytes", 1, 1, "tests.firmware.test_cut_uploads", _UPLOADS),
     Goal("undos", "An undo whose answer is lost is not done twice.",
          "robots, four undos each", 10_000, 500, f"{_CHANNEL} {{count}} --undos --seed {{seed}}", _UPLOADS, 1000),
-    Goal("lives", "A live line whose answer is lost is not done twice.",
+    Goal("lives", "A live line whose answer is lost is not run twice.",
          "live lines", 1_000_000, 20_000, "tests.link.test_live_lines {count} --seed {seed}", _UPLOADS),
     Goal("sealed", "A stranger on the line of a robot that seals cannot get anything done, repeated or believed; whatever the computer reports as done is done.",
          "uploads beside a stranger", 10_000, 500, "tests.link.test_sealed_channel {count} --seed {seed}", _UPLOADS, 1000),
