@@ -110,7 +110,7 @@ GOALS: tuple[Goal, ...] = (
          "programs", 100_000, 5_000, "tests.oracle.test_tasks {count} --seed {seed}", (*_COMPILER, *_MACHINE, "tests/oracle"), 10_000),
     Goal("values", "Programs whose DEFs take values, with several tasks that reach the same DEF and DEFs that call each other, do the same on the machines in Python and in C++ and in the interpreter written from the language reference.",
          "programs", 100_000, 10_000, "tests.oracle.test_values {count} --seed {seed}", (*_COMPILER, *_MACHINE, "tests/oracle"), 10_000),
-    Goal("ways", "Programs that move by centimetres and degrees, half of them with tasks, do the same on the machines in Python and in C++ and in the interpreter written from the language reference.",
+    Goal("ways", "Programs that move the robot by centimetres and degrees, half of them with tasks, do the same on the machines in Python and in C++ and in the interpreter written from the language reference.",
          "programs", 100_000, 5_000, "tests.oracle.test_ways {count} --seed {seed}", (*_COMPILER, *_MACHINE, "tests/oracle"), 10_000),
     Goal("page", "From a program's text, and from its blocks, the studio's page makes the same bytecode as tsc compile.",
          "programs", 1_000, 100, "tests.studio.random_in_page {count} --seed {seed}", (*_COMPILER, "tools/studio"), 100),
