@@ -357,7 +357,7 @@ const PARTS = {
           async ask({ do: what }) {
             await later(chance.below(400));
             if (what === 'group_begin') screen = groupText; // in place of whatever is there
-            return { version: 1, changes: [], ids: [], pending: [], since: 0, epoch: '', told: 0, why: '', count: 0, kept: { name: 'page' } };
+            return { version: 1, changes: [], ids: [], drafts: [], pending: [], since: 0, epoch: '', told: 0, why: '', count: 0, kept: { name: 'page' } };
           },
         };
         const programs = new Programs({ python, work, put: ({ text }) => { puts(text); shown = text; told = 'class_given'; }, makePicture() {} });
@@ -1567,7 +1567,7 @@ const PARTS = {
     };
     let late = () => 5;
     let fails = () => false;
-    const answer = { version: 1, changes: [], ids: [], pending: [], since: 0, epoch: '', told: 0, why: '', count: 0, kept: { name: 'page' } };
+    const answer = { version: 1, changes: [], ids: [], drafts: [], pending: [], since: 0, epoch: '', told: 0, why: '', count: 0, kept: { name: 'page' } };
     const python = {
       async ask() {
         await later(late());
@@ -1642,6 +1642,7 @@ const PARTS = {
     const cm = (name) => import(pathToFileURL(`${sources}/../node_modules/@codemirror/${name}/dist/index.js`).href);
     const [{ EditorState, StateEffect, Transaction }, { EditorView }] = [await cm('state'), await cm('view')];
     const { SharedEditor } = await page.load('class/together.js');
+    const { text: textFor } = await page.load('page/texts.js');
     const view = {
       state: EditorState.create(), hasFocus: true, composing: false,
       dispatch(...specs) {
@@ -1710,7 +1711,7 @@ const PARTS = {
         }
       });
       // As much of the worker as knows lines: what was changed is sent until the class has it.
-      const known = { decided: [], lines: [], pending: [], since: 0, ids: 0 };
+      const known = { decided: [], lines: [], pending: [], since: 0, ids: 0, drafts: [] };
       let stepped = 0;
       const versions = new Map([[0, []]]); // what each answer has shown
       let worker = Promise.resolve(); // it does one thing after the other
@@ -1759,7 +1760,8 @@ const PARTS = {
           while (end < Math.min(next.length, text.length) - from && next.at(-1 - end) === text.at(-1 - end)) end += 1;
           const changes = next === text ? [] : [[from, text.length - end, next.slice(from, next.length - end)]];
           versions.set((stepped += 1), isHeld ? versions.get(version) : structuredClone(known.lines));
-          return { version: stepped, changes, ids: linesIn(next).map((line, k) => known.lines[k]?.id ?? ''), pending: structuredClone(known.pending), since: known.since, epoch: key, told: room.refuses, why: 'why', count: 0, kept: { name: `page ${stored ?? ''}${stepped}` } };
+          known.drafts = linesIn(next).map((_, k) => k + 1).filter((k) => (k + stepped) % 4 === 0);
+          return { version: stepped, changes, ids: linesIn(next).map((line, k) => known.lines[k]?.id ?? ''), drafts: known.drafts, pending: structuredClone(known.pending), since: known.since, epoch: key, told: room.refuses, why: 'why', count: 0, kept: { name: `page ${stored ?? ''}${stepped}` } };
         },
       };
       const place = { line: 0, writes: false }; // in the blocks
@@ -1845,11 +1847,12 @@ const PARTS = {
       const lines = linesIn(view.state.doc.toString());
       is(lines, room.lines.map(({ text }) => text), 'the program');
       for (const name of [...mine, ...theirs]) if (lines.filter((line) => line === name).length !== 1) throw new Error(`${name} is ${lines.filter((line) => line === name).length} times in ${lines}`);
-      is(heard.places.map(({ line, said }) => [line, said]), room.others.map(({ at, name, writes: isWriting }) => [room.lines.findIndex(({ id }) => id === at) + 1, isWriting ? `${name} …` : name]).filter(([line]) => line), 'where the others are');
+      const mates = room.others.map(({ at, name, writes: isWriting }) => [room.lines.findIndex(({ id }) => id === at) + 1, isWriting ? `${name} …` : name]).filter(([line]) => line);
+      is(heard.places.map(({ line, said }) => [line, said]), [...mates, ...known.drafts.map((each) => [each, textFor('group_draft')])], 'where the others are, and what no other page has');
       is(heard.others, room.others, 'who is here');
       const line = place.line || view.state.doc.lineAt(view.state.selection.main.head).number;
       if (room.lines[line - 1]) is(room.caret, { at: room.lines[line - 1].id, writes: place.line ? place.writes : false }, 'where this page is');
-      is(marks(), [...heard.places.map(({ line: each }) => each)].sort((a, b) => a - b), 'who is marked in the text');
+      is(marks(), [...heard.places.map(({ line: each }) => each)].sort((a, b) => a - b), 'what is marked in the text');
       is([heard.answers, heard.runs, heard.left, heard.refused > 0 || !room.refuses], [true, room.told, 0, true], 'what was heard');
       const before = view.state.doc.toString(), end = chance.of(['left', 'gone', 'fails']);
       if (end === 'left') shared.end();

@@ -128,7 +128,7 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
     program = SharedProgram(parse_tree(FIRST, lambda: f"i.{next(ids)}"), "e")
     editors = [Editor(name, program) for name in ("m1", "m2")]
     assert {editor.text for editor in editors} == {FIRST}
-    reloads = 0
+    reloads = draft_count = 0
     for _ in range(TURNS):
         editor = chance.choice(editors)
         for _ in range(chance.randint(1, 6)):
@@ -144,6 +144,13 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
             answer = editor.step()
         row = editor.text.split("\n")[editor.line]
         editor.take(answer)
+        page = editor.python[0][1]
+        drafts = {page.lines[number - 1] for number in answer["drafts"]}
+        program_rows = iter(text_of(page.view).split("\n"))
+        assert all(row in program_rows for number, row in enumerate(page.lines, 1)
+                   if row.strip() and number not in answer["drafts"])  # fmt: skip
+        assert drafts <= {row for draft in page.drafts for row in draft.rows}
+        draft_count += len(drafts)
         if editor.is_hot:  # no one else edits the line being typed
             assert editor.text.split("\n")[editor.line] == row
         if chance.random() < 0.1:
@@ -159,7 +166,7 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
         for editor in editors:
             editor.hears()
             editor.take(editor.step())
-    assert program.number > 1 and reloads
+    assert program.number > 1 and reloads and draft_count
     for editor in editors:
         page = editor.python[0][1]
         assert page.base.checksum() == program.tree.checksum()

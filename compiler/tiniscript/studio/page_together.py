@@ -196,6 +196,7 @@ def _answer(state: State, text: str, carets: tuple[int, int] | None) -> Json:
         "version": state.version,
         "changes": changes(text, new_text, carets),
         "ids": page.ids_of_lines(),
+        "drafts": page.lines_of_drafts(),
         "pending": [data_of_change(change) for change in page.pending_changes[:MOST_CHANGES]],
         "since": -1 if page.is_astray else page.number,
         "epoch": page.epoch,

@@ -660,6 +660,11 @@ class Page:
             ids.append(keys[-1][0] if keys else "")
         return ids
 
+    def lines_of_drafts(self) -> list[int]:
+        """Return the lines, from 1, that no other page has, but for blank ones."""
+        lines = enumerate(self._visible_lines(), 1)
+        return [number for number, item in lines if item.draft and (item.text or "").strip()]
+
     def _anchor(self, key_above: Key | None, present_keys: set[Key]) -> Key | None:
         """Return the line after which a draft is whose line above has gone."""
         if key_above is None or key_above in present_keys:

@@ -6,6 +6,7 @@
 import { Annotation, ChangeSet, StateEffect, StateField, Transaction } from '@codemirror/state';
 import { Decoration, EditorView, WidgetType } from '@codemirror/view';
 import { makeElement } from '../page/made.js';
+import { text } from '../page/texts.js';
 import { HeardNews } from './heard.js';
 import { post } from '../robot/host.js';
 import { ConnectionFailure, pause } from '../robot/transport.js';
@@ -27,6 +28,7 @@ const DECISION_LIMIT_MS = 2000; // for what was done before an undo
  * @property {number} version
  * @property {[number, number, string][]} changes of the text that it was asked with
  * @property {string[]} ids of the lines
+ * @property {number[]} drafts lines that no other page has
  * @property {{uid: string}[]} pending
  * @property {number} since
  * @property {string} epoch
@@ -98,8 +100,9 @@ const othersField = StateField.define({
   provide: (field) => EditorView.decorations.from(field),
 });
 
-// Dark enough for white letters, as beside white and beside black; the last one is the teacher's.
-const COLORS = ['#0b4f9e', '#8a3c00', '#0d6040', '#7a2fb8', '#a3145c'];
+// Dark enough for white letters, as beside white and beside black; the last but one is the teacher's.
+const COLORS = ['#0b4f9e', '#8a3c00', '#0d6040', '#7a2fb8', '#a3145c', '#4c535e'];
+const DRAFT_COLOR = COLORS.length - 1;
 const baseTheme = EditorView.baseTheme({
   '.cm-beside': { boxShadow: 'inset 4px 0 var(--mate)' },
   '.cm-mate': { marginLeft: '1ch', padding: '0 6px', borderRadius: '6px', backgroundColor: 'var(--mate)', color: '#fff', fontSize: '0.85em' },
@@ -137,7 +140,7 @@ export class SharedEditor {
   /** @type {Other[]} */
   #otherPupils = [];
   /** @type {PythonAnswer} */
-  #pythonState = { version: 0, changes: [], ids: [], pending: [], since: -1, epoch: '', told: 0, why: '', count: 0, kept: { name: '' } };
+  #pythonState = { version: 0, changes: [], ids: [], drafts: [], pending: [], since: -1, epoch: '', told: 0, why: '', count: 0, kept: { name: '' } };
   /** @type {{line: number, writes: boolean} | null} */
   #blocksLine = null; // of the blocks
   #sentCaret = '';
@@ -180,7 +183,6 @@ export class SharedEditor {
   end() {
     if (this.#isOver) return;
     this.#isOver = true;
-    this.#otherPupils = [];
     this.#showOthers();
     this.#editor.setUndoHandler(null);
   }
@@ -298,9 +300,14 @@ export class SharedEditor {
     if (answer.told > refusedBefore && this.#pythonState.version > 1) this.#listener.refused(answer.why);
   }
 
+  /** Shows where the others are, and what no other page has. */
   #showOthers() {
-    const places = this.#otherPupils.map((other) => ({ line: this.#pythonState.ids.indexOf(other.at) + 1, other })).filter(({ line }) => line > 0);
-    this.#view.dispatch({ effects: setOthersEffect.of(places) });
+    const { ids, drafts } = this.#pythonState;
+    const mates = this.#otherPupils.map((other) => ({ line: ids.indexOf(other.at) + 1, other })).filter(({ line }) => line > 0);
+    const draft = { name: text('group_draft'), mark: DRAFT_COLOR, at: '', writes: false };
+    const places = this.#isOver ? [] : [...mates, ...drafts.map((line) => ({ line, other: draft }))];
+    const { doc, selection } = this.#view.state, typedLine = this.#isLineTyped ? doc.lineAt(selection.main.head).number : 0;
+    this.#view.dispatch({ effects: setOthersEffect.of(places.filter(({ line, other }) => other !== draft || line !== typedLine)) });
     this.#listener.places(places.map(({ line, other: { name, mark: colorIndex, writes } }) => ({ line, color: COLORS[colorIndex] ?? '', said: writes ? `${name} …` : name })));
   }
 
