@@ -1713,7 +1713,7 @@ const PARTS = {
       // As much of the worker as knows lines: what was changed is sent until the class has it.
       const known = { decided: [], lines: [], pending: [], since: 0, ids: 0, drafts: [] };
       let stepped = 0;
-      const versions = new Map([[0, []]]); // what each answer has shown
+      const versions = new Map([[0, { shown: [], has: structuredClone(known) }]]); // what each answer has shown, and what was known then
       let worker = Promise.resolve(); // it does one thing after the other
       const python = {
         async ask({ do: what, from: version, news, caret, hot, back, kept: stored }, bytes) {
@@ -1723,7 +1723,9 @@ const PARTS = {
           if (isBroken) throw new Broken();
           if (what === 'group_begin') news = [];
           else {
-            const shown = versions.get(version), written = linesIn(text), had = shown.map((each) => each.text); // what this page has made its text of
+            const { shown, has } = versions.get(version);
+            Object.assign(known, structuredClone(has), { ids: known.ids }); // of an answer that was not used nothing stays
+            const written = linesIn(text), had = shown.map((each) => each.text); // what this page has made its text of
             let from = 0, to = 0;
             while (from < Math.min(written.length, had.length) && written[from] === had[from]) from += 1;
             while (to < Math.min(written.length, had.length) - from && written.at(-1 - to) === had.at(-1 - to)) to += 1;
@@ -1759,7 +1761,7 @@ const PARTS = {
           while (from < Math.min(next.length, text.length) && next[from] === text[from]) from += 1;
           while (end < Math.min(next.length, text.length) - from && next.at(-1 - end) === text.at(-1 - end)) end += 1;
           const changes = next === text ? [] : [[from, text.length - end, next.slice(from, next.length - end)]];
-          versions.set((stepped += 1), isHeld ? versions.get(version) : structuredClone(known.lines));
+          versions.set((stepped += 1), { shown: isHeld ? versions.get(version).shown : structuredClone(known.lines), has: structuredClone(known) });
           known.drafts = linesIn(next).map((_, k) => k + 1).filter((k) => (k + stepped) % 4 === 0);
           return { version: stepped, changes, ids: linesIn(next).map((line, k) => known.lines[k]?.id ?? ''), drafts: known.drafts, pending: structuredClone(known.pending), since: known.since, epoch: key, told: room.refuses, why: 'why', count: 0, kept: { name: `page ${stored ?? ''}${stepped}` } };
         },
