@@ -253,7 +253,7 @@ def about_text(name: str, english_name: str, forms: Iterable[str], rule: str) ->
     """Return the header of a new language."""
     return (
         f"name = {quote(name)}  # what it calls itself\n"
-        f"english_name = {quote(english_name)}  # by which Windows may know it\n"
-        f"forms = [{', '.join(map(quote, forms))}]  # of a text that counts\n"
-        f"which_form = {quote(rule)}  # has the number n: the place in forms, from 0\n"
+        f"english_name = {quote(english_name)}  # the name that Windows may use\n"
+        f"forms = [{', '.join(map(quote, forms))}]  # the forms of a text with a number\n"
+        f"which_form = {quote(rule)}  # the form for the number n: its place in forms, from 0\n"
     )

@@ -187,7 +187,7 @@ def limit_table() -> str:
         ("procedures", limits.DEFS, "", by_both_format.format("TOO_MANY_DEFS")),
         ("open blocks of one routine", limits.NEST_WORDS, for_blocks, by_depth),
         ("open joins", limits.JOINS, "", by_depth),
-        ("between two checks of an UNTIL", limits.CHECK_MS, "ms", "nothing: it is always so"),
+        ("between two checks of an UNTIL", limits.CHECK_MS, "ms", "nothing: it is fixed"),
     )
     return table(("what", "at most", "", "rejected by"), rows)
 

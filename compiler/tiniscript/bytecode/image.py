@@ -48,10 +48,10 @@ FIELDS = (
     Field("isa_minor",     "B",  1, "and its own minor version or an earlier one."),
     Field("start",         "B",  1, "How the program starts: 0 `SI`, 1 `SB`, 2 `PING`."),
     Field("header_length", "B",  1, "Bytes before the code, 15 to 255."),
-    Field("devices",       "H",  2, "A [hash](#devices) of those that the code uses; 0 for none."),
+    Field("devices",       "H",  2, "A [hash](#devices) of the code's devices; 0 for none."),
     Field("code_length",   "H",  2, "Bytes of code that follow the header, 0 to 32767."),
     Field("checksum",      "I",  4, "CRC-32 (zlib) of all bytes before and after it."),
-    Field("needs",         "B",  1, "What the machine must have: 1 for tasks, 2 for ways to go."),
+    Field("needs",         "B",  1, "Required: 1 for tasks, 2 for moves by distance or angle."),
 )
 HEADER_BYTES = sum(field.size for field in FIELDS)
 

@@ -47,7 +47,7 @@ RULES = {
     "STACK_OVERFLOW":  (26, "More than 16 values on the stack."),
     "STACK_NOT_EMPTY": (27, "Values are left between two instructions, or a join is reached with more or fewer than one."),
     "BAD_TARGET":      (28, "A jump forward leads out of the block around it, or out of the code."),
-    "MISSED_TARGET":   (29, "A jump leads to where no instruction begins, or to one that it may not reach."),
+    "MISSED_TARGET":   (29, "A jump leads to where no instruction begins, or to one that it must not reach."),
     "BAD_LOOP_START":  (30, "A jump back does not lead to the beginning of its loop."),
     "BAD_LOOP_END":    (31, "A BREAK or a loop's head names an end that is not after the loop."),
     "NOT_OPEN":        (32, "ELSE, AGAIN, NEXT, BREAK, UNTIL, LOOK, RETURN or the end of a task, without the instruction that it belongs to."),

@@ -337,7 +337,7 @@ enum class Rule : uint8_t {
   kStackOverflow = 26,  // More than 16 values on the stack.
   kStackNotEmpty = 27,  // Values are left between two instructions, or a join is reached with more or fewer than one.
   kBadTarget = 28,  // A jump forward leads out of the block around it, or out of the code.
-  kMissedTarget = 29,  // A jump leads to where no instruction begins, or to one that it may not reach.
+  kMissedTarget = 29,  // A jump leads to where no instruction begins, or to one that it must not reach.
   kBadLoopStart = 30,  // A jump back does not lead to the beginning of its loop.
   kBadLoopEnd = 31,  // A BREAK or a loop's head names an end that is not after the loop.
   kNotOpen = 32,  // ELSE, AGAIN, NEXT, BREAK, UNTIL, LOOK, RETURN or the end of a task, without the instruction that it belongs to.
@@ -356,7 +356,7 @@ enum class Fault : uint8_t {
   kNone = 0,  // It runs.
   kOverflow = 1,  // A result is outside -2147483.648 to 2147483.647.
   kDivideByZero = 2,  // A division or a remainder by 0.
-  kNoPower = 3,  // A move by `way` would never end at its power.
+  kNoPower = 3,  // At its power, a move by `way` would never end.
   kStuck = 4,  // Neither wheel turns in a move that the robot measures.
   kStuckLeft = 5,  // In such a move, the left wheel does not turn, but the right one does.
   kStuckRight = 6,  // In such a move, the right wheel does not turn, but the left one does.
@@ -369,7 +369,7 @@ enum class ControlRole : uint8_t {
   kEnd = 1,  // ends the program
   kValue = 2,  // part of an expression
   kJoin = 3,  // part of an expression; if the left side decides the result, it jumps to `to`
-  kRead = 4,  // takes a reading; goes between instructions and in the check of an UNTIL
+  kRead = 4,  // takes a reading; stands between instructions or in the check of an UNTIL
   kUntil = 5,  // ends the check of an UNTIL
   kPlain = 6,  // an instruction: leaves the stack empty
   kWatch = 7,  // begins the check of an UNTIL

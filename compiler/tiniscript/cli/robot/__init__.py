@@ -1,1 +1,1 @@
-"""Code that the verbs with a robot share."""
+"""Code shared by the verbs that talk to a robot."""
