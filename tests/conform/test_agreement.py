@@ -96,7 +96,7 @@ def is_for(name: str, run: Run, answer: list[str]) -> bool:
 # -- the oracles --------------------------------------------------------------------------------
 
 # A run that the interpreter cannot read.
-UNREAD = "text: The dashes and spaces that phones put in are read"
+UNREAD = "text: The dashes and spaces that phones insert are accepted"
 
 
 def test_the_oracles_say_the_same() -> None:

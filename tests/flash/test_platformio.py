@@ -76,7 +76,7 @@ def test_a_test_case_that_fails_is_one_and_has_its_name(native: Path) -> None:
     with change_file(broken_path, ('"0 SHOW 2\\n0 MOTORS 0 0\\n0 DONE\\n")', '"0 SHOW 3\\n")')):
         log = pio(native, "test", "-e", "native").gives(1).out
     names = re.findall(r"^FAILED: (.*)$", log, re.MULTILINE)
-    assert "accepted: ELSE after ELSE, where the condition is FALSE" in names
+    assert "accepted: ELSE after ELSE when the condition is FALSE" in names
     assert f"{len(names)} failed, " in log.splitlines()[-1] + log.splitlines()[-2], log
 
 
