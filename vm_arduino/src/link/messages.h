@@ -82,7 +82,7 @@ constexpr uint16_t kReadings = 4096;
 
 enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.
-  kPing = 2,  // Asks whether the robot is there; also the heartbeat. With any byte, it also asks where the program is.
+  kPing = 2,  // Asks whether the robot is there; also the heartbeat. With a one-byte payload, it also asks which instruction the program has reached.
   kStatus = 3,  // Asks what the robot is doing, what its last fault was, and how well it receives.
   kFetch = 4,  // Asks for the stored program's image, starting at `offset`. `length` is the length of the whole image.
   kStop = 5,  // Does the same as the stop sequence, but gets an answer.
@@ -93,18 +93,18 @@ enum class Message : uint8_t {
   kData = 11,  // Sends the bytes after the checksum, starting at `offset`. The robot accepts only DATA that begins at `next`.
   kCommit = 12,  // Ends a longer program, with its image's checksum.
   kName = 14,  // Names the robot, in UTF-8. The answer is OK once the name is saved; until then it is SAVING or LOW_SUPPLY: ask again.
-  kTrim = 15,  // Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. OK as for NAME.
-  kClaim = 16,  // Gives the robot a key after its button has been held: `which` of KEYS. Without a key, it removes that key. OK as for NAME.
+  kTrim = 15,  // Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. Answers OK as NAME does.
+  kClaim = 16,  // Gives the robot the key number `which` after its button has been held. Without a key, it removes that key. Answers OK as NAME does.
   kAuthenticate = 17,  // Without a tag, it asks for a challenge. With a tag, it shows a key of the robot.
   kIdentify = 18,  // Makes the robot blink and play the tune of its id.
   kUndo = 19,  // Brings back the previous program. The running program ends; no program starts.
   kText = 20,  // Sets whether lines of text may drive a robot with an owner, until power-off.
-  kWifi = 21,  // Sets, forgets or reports the robot's WiFi: `step` of WIFI_STEPS. It must be sealed. OK as for NAME.
+  kWifi = 21,  // Sets, forgets or reports the robot's WiFi, in several steps. It must be sealed. Answers OK as NAME does.
   kBegin = 22,  // Begins a longer program, with the fields of its image's header before the checksum.
   kAbort = 23,  // Drops the program that was begun.
   kKeys = 24,  // Sends the state of a remote control: a bit for each key that is held, and its pad. Also a heartbeat.
   kBreak = 25,  // Sets all places where the running program halts or, if none is running, the one that the robot holds: offsets of 16 bits.
-  kResume = 26,  // Continues a halted program: `how` of RESUMES.
+  kResume = 26,  // Continues a halted program; `how` says how far.
   kReadVariables = 27,  // Asks for the variables of the running program, starting with the variable `first`: 32 bits each.
   kReadTasks = 28,  // Asks for the tasks of the running program, and where each of them is.
   kTellReadings = 29,  // Sets whether the robot sends READING to this session.
@@ -258,7 +258,7 @@ enum class WifiStep : uint8_t {
   kBrokerUser = 7,  // The robot's user name at the broker.
   kBrokerPassword = 8,  // The next part of the robot's password at the broker.
   kUseBroker = 9,  // The robot connects to that broker, now and after each reset, or to none.
-  kTellBroker = 10,  // Changes nothing. The reply is about the broker: `mode` 1 if there is one, its address, and in `network` the class.
+  kTellBroker = 10,  // Changes nothing. The reply is about the broker: `mode` is 1 if there is one, the address is the broker's, and `network` is the class.
   kBrokerName = 11,  // The next part of the broker's name, as in its certificate. If the name is not found, the address is used.
   kBrokerTls = 12,  // Use TLS with the broker. The text is today's date, as 20261121 (32 bits): a certificate that expired earlier is refused.
   kBrokerTrust = 13,  // The next part of the certificate, in DER, that signs the broker's certificate.

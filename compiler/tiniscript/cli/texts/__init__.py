@@ -1,4 +1,4 @@
-"""The sentences of `tsc` itself, in the person's language; those about programs are in `diagnostics`.
+"""The sentences of `tsc` itself, in the user's language; those about programs are in `diagnostics`.
 
 Knows how values are put into a sentence, and which language a person has.
 """
