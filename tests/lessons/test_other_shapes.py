@@ -203,7 +203,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
         "wrong": {
             "DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 - DIFFERENCE, 35 + DIFFERENCE)": "here it ended before the robot could move",
-            "LOOP(FOREVER); D = (LIGHT_L - LIGHT_R) / 10; M(8 - D, 8 + D); W(0.05); END_LOOP": "When time ran out after 25.0 s, the robot was still on its way, 43 cm from the lamp",
+            "LOOP(FOREVER); D = (LIGHT_L - LIGHT_R) / 10; M(8 - D, 8 + D); W(0.05); END_LOOP": "When time ran out after 25.0 s, the robot was still 43 cm from the lamp",
         },
     },
     11: {
@@ -252,11 +252,11 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "SI|DEF BLINK; LED(TRUE); W(0.2); LED(FALSE); W(0.2); END_DEF\nTASK; LOOP(22); BLINK; END_LOOP; END_TASK\nF(5, 60); L(0.51, 60); F(3.33, 60)": "",
         },
         "rote": {
-            "SI|LOOP(3)\n  LED(TRUE); W(0.3)\n  LED(FALSE); W(0.3)\nEND_LOOP\nF(1, 60)": "The robot stopped 125 cm before the middle of the hospital. Make it go further.",
+            "SI|LOOP(3)\n  LED(TRUE); W(0.3)\n  LED(FALSE); W(0.3)\nEND_LOOP\nF(1, 60)": "The robot stopped 125 cm before the middle of the hospital. Make it drive further.",
             "SI|LOOP(13); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.19); END_LOOP; S; L(0.51, 60); LOOP(9); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.17); END_LOOP; S\nTASK; BEEP(0.1, 440); END_TASK": "The program solves the task just as well without the TASK. Use TASK for a part of the task.",
         },
         "wrong": {
-            "SI|F(4, 60); L(0.51, 60); F(2, 60)\nTASK; LOOP(12); LED(TRUE); W(0.2); LED(FALSE); W(0.2); END_LOOP; END_TASK": "The robot stopped 40 cm before the middle of the hospital. Make it go further.",
+            "SI|F(4, 60); L(0.51, 60); F(2, 60)\nTASK; LOOP(12); LED(TRUE); W(0.2); LED(FALSE); W(0.2); END_LOOP; END_TASK": "The robot stopped 40 cm before the middle of the hospital. Make it drive further.",
         },
     },
     15: {

@@ -34,7 +34,7 @@ def test_a_return_and_its_uses_are_one_mistake(
     assert text[slice(*diagnostic.span)] == word
     full_message = message(diagnostic, Source(text), "en")
     assert full_message.code == "TS051"
-    assert f"RESULT = {result} here, DOUBLE(4) on a line" in full_message.fix
+    assert f"RESULT = {result} here. Later, write DOUBLE(4) on a line" in full_message.fix
 
 
 @pytest.mark.parametrize("use", USES)

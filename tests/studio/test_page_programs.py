@@ -113,7 +113,7 @@ def test_a_program_gets_a_name(page: Page) -> None:
 def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
     write(page, "SI|F(1, 34)")
     share(page)
-    for address, note in (("https://school.example/studio/", "sees the program on this page, at"),
+    for address, note in (("https://school.example/studio/", "sees the program on the page at"),
                           ("http://192.168.1.9:8000/", "on this network")):  # fmt: skip
         page.fill("#public", address)
         page.locator("#public").blur()

@@ -352,7 +352,7 @@ def test_a_change_that_cannot_be_made_any_more_is_told_in_a_sentence(
     luz.locator(".cm-content").evaluate("(it) => it.blur()")
     until(lambda: "BEEP" in program_of(shared_class), "the class has hers")
     ana.context.set_offline(False)
-    wait_for_note(ana, "Somebody else changed that part first, so your last change is not there.")
+    wait_for_note(ana, "Somebody else changed that part first, so your last change was not made.")
     for page in two:
         has(page, "F(1, 80);", "LOOP(3);", "B(1, 40);", "BEEP(1, 440);", "END_LOOP;", "S;")
 
