@@ -579,7 +579,10 @@ def test_the_work_of_a_class_is_saved_opened_and_given_back(
     texts = {pupil["name"]: pupil["text"] for pupil in json.loads(file.read_text())["pupils"]}
     assert texts["Ana"] == "F(1, 77)"
     write(ana, "F(1, 33)")
-    for name, says in (("bad.json", "bad.json is not a file of saved class work"), ("class.json", "Opened. ")):
+    for name, says in (
+        ("bad.json", "bad.json is not a file of saved class work"),
+        ("class.json", "Opened. "),
+    ):
         (tmp_path / "bad.json").write_text('{"tiniscript_class": 1, "pupils": [{"name": 5}]}')
         teacher.click("#class_settings")
         teacher.set_input_files("#class_window input[type=file]", tmp_path / name)

@@ -282,7 +282,7 @@ def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     offered_element.wait_for(state="hidden")
     press_margin(other, 2)
     offered_element.click()
-    wait_for_message(other, "but the robot no longer reads typed text")
+    wait_for_message(other, "but no longer reads typed text")
     assert other.locator("html[data-robot=none]").count() == 1
     assert other.locator("#flash_halts").is_checked()
     assert other.input_value("#flash_board") == "uno"

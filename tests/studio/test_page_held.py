@@ -285,7 +285,7 @@ def test_who_stops_while_the_compiler_is_held_has_no_run_when_it_comes(visits: P
     held_robot = Held(page, "**/pyodide.asm.mjs")
     page.goto(visits.address)
     page.click("[data-begin=dance]")
-    page.locator("#doing", has_text="STOP cancels.").wait_for()
+    page.locator("#doing", has_text="Press STOP to cancel.").wait_for()
     page.click("#stop")
     hears(page, lambda: "compiler" not in page.locator("#doing").inner_text(), "it waits no more")
     held_robot.let_go()
