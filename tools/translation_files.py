@@ -105,8 +105,8 @@ class Translation:
         """Return the texts of a key with their translations, or none if that is impossible."""
         texts = self.own_files[name].texts.get(key, [])
         group = [without_translation(entry) for entry in self.groups[name].get(key, [])]
-        unknown = [UNKNOWN_HASH] * len(texts)
-        hashes = [*self.seen.get(f"{name} {key}", []), *unknown][: len(texts)]
+        unknown_hashes = [UNKNOWN_HASH] * len(texts)
+        hashes = [*self.seen.get(f"{name} {key}", []), *unknown_hashes][: len(texts)]
         return [] if assign_translations(group, texts, hashes) else group
 
     def _note(self, name: str, key: str, hashes: list[str]) -> None:
@@ -126,12 +126,16 @@ class Translation:
             if name == NAMES_CATALOGUE or translation_file.problems:
                 continue
             for key in translation_file.texts:
-                fitting = {pattern for pattern in patterns if fnmatchcase(key, pattern)}
-                unused_names -= fitting
+                fitting_patterns = {pattern for pattern in patterns if fnmatchcase(key, pattern)}
+                unused_names -= fitting_patterns
                 if group := self.pair_texts(name, key):
                     hashes_to_note = (
                         UNKNOWN_HASH,
-                        *[entry.seen_hash for entry in group if fitting and entry.seen_hash],
+                        *[
+                            entry.seen_hash
+                            for entry in group
+                            if fitting_patterns and entry.seen_hash
+                        ],
                     )
                     self._note(
                         name,

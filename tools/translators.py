@@ -162,8 +162,10 @@ def _forms_by(names: list[str], rule: str) -> list[str]:
     return [names[form_index(number)] for number in range(NUMBERS_TRIED)]
 
 
-def _cldr_categories(count: int, rule: str, of_cldr: Callable[[int], str]) -> list[str]:
+def _cldr_categories(count: int, rule: str, category_of_number: Callable[[int], str]) -> list[str]:
     """Return the CLDR names of a gettext rule's forms, or none if a form has no number."""
     form_index = c2py(rule)
-    category_of = {form_index(number): of_cldr(number) for number in range(NUMBERS_TRIED)}
+    category_of = {
+        form_index(number): category_of_number(number) for number in range(NUMBERS_TRIED)
+    }
     return [category_of[k] for k in range(count)] if category_of.keys() == {*range(count)} else []

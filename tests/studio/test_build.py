@@ -37,7 +37,7 @@ OTHERS = ("block", "blockly", "editor", "tip")  # keys of other tables, which fo
 
 @pytest.fixture(scope="module")
 def page() -> Path:
-    need(studio.why_stale())
+    need(studio.unusable_reason())
     return studio.PAGE
 
 
@@ -221,24 +221,26 @@ def change_sources_in(monkeypatch: pytest.MonkeyPatch, step: str) -> None:
     )
 
 
-@pytest.mark.parametrize("step", ["check_types", "bundle", "put_own_files", "write_service_worker"])
+@pytest.mark.parametrize(
+    "step", ["check_types", "bundle", "write_own_files", "write_service_worker"]
+)
 def test_a_page_whose_sources_change_while_it_is_built_is_not_used(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
 ) -> None:
     (tmp_path / studio.STAMP).write_text("{}")
-    for name in ("check_types", "bundle", "put_own_files", "write_service_worker"):
+    for name in ("check_types", "bundle", "write_own_files", "write_service_worker"):
         monkeypatch.setattr(studio, name, lambda *_: None)
-    studio.build_again(tmp_path)
-    assert not studio.why_stale(tmp_path)
+    studio.rebuild(tmp_path)
+    assert not studio.unusable_reason(tmp_path)
     change_sources_in(monkeypatch, step)
-    studio.build_again(tmp_path)
-    assert "is out of date: the sources" in studio.why_stale(tmp_path)
+    studio.rebuild(tmp_path)
+    assert "is out of date: the sources" in studio.unusable_reason(tmp_path)
 
 
 def test_a_page_of_other_sources_is_not_used(tmp_path: Path) -> None:
-    assert studio.COMMAND in studio.why_stale(tmp_path)
+    assert studio.COMMAND in studio.unusable_reason(tmp_path)
     (tmp_path / studio.STAMP).write_text('{"sources": "others"}')
-    assert "is out of date: the sources" in studio.why_stale(tmp_path)
+    assert "is out of date: the sources" in studio.unusable_reason(tmp_path)
     assert studio.main(["--check", "-o", str(tmp_path)]) == 2
 
 

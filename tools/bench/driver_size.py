@@ -74,8 +74,8 @@ def main() -> int:
                 if "greater than maximum allowed" not in str(error):
                     print(error, file=sys.stderr)
                     return 2
-                smaller, _ = building.SMALLER_FIRMWARE[ENVIRONMENT]
-                flash = flash_with(driver, project, smaller)
+                smaller_environment, _ = building.SMALLER_FIRMWARE[ENVIRONMENT]
+                flash = flash_with(driver, project, smaller_environment)
                 note = "without tasks"
             first_flash = first_flash or flash
             difference_text = f"{flash - first_flash:+,}" if not note else ""

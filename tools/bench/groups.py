@@ -62,9 +62,9 @@ class Pupil:
     """Hears of changes in one thread, and makes some in another."""
 
     def __init__(self, address: str, code: str, number: int) -> None:
-        joined = Client(address).ask("join", code=code, name=f"P{number}")
-        self._listener = Client(address, joined["token"])
-        self._sender = Client(address, joined["token"])
+        join_answer = Client(address).ask("join", code=code, name=f"P{number}")
+        self._listener = Client(address, join_answer["token"])
+        self._sender = Client(address, join_answer["token"])
         self.group = f"G{number // MOST_MEMBERS}"
         answer = self._sender.ask("group_join", name=self.group, text=PROGRAM)
         self._page = Page.of(answer["page"], answer)

@@ -63,13 +63,13 @@ class Hand:
     def __exit__(self, *signal_arguments: object) -> None:
         self._board.close()
 
-    def change(self, pressed_state: RemoteState) -> float:
+    def measure_change_ms(self, pressed_state: RemoteState) -> float:
         """Return the ms from a change of the held keys to the last change of the pins."""
         begin_cycle, event_count = self._begin()
         self._hold(pressed_state)
         return self._ms_from(begin_cycle, event_count, pressed_state != NOTHING_PRESSED)
 
-    def lose(self) -> float:
+    def measure_loss_ms(self) -> float:
         """Return the ms from where a line is lost, over which somebody drives, to motors off."""
         self._hold(PAD_AHEAD, RECONNECT_MS)
         begin_cycle, event_count = self._begin()
@@ -110,11 +110,15 @@ class Hand:
 def measure(firmware: Path, baud: int) -> list[list[float]]:
     """Return the ms of each try, by row."""
     with Hand(firmware, baud, PAD_PROGRAM) as hand:
-        changes = [(hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED)) for _ in range(TRY_COUNT)]
-        losses = [hand.lose() for _ in range(TRY_COUNT)]
+        changes = [
+            (hand.measure_change_ms(PAD_AHEAD), hand.measure_change_ms(NOTHING_PRESSED))
+            for _ in range(TRY_COUNT)
+        ]
+        losses = [hand.measure_loss_ms() for _ in range(TRY_COUNT)]
     with Hand(firmware, baud, EXAMPLE.read_text(encoding="utf-8")) as hand:
         example_ms = [
-            (hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED))[0] for _ in range(TRY_COUNT)
+            (hand.measure_change_ms(PAD_AHEAD), hand.measure_change_ms(NOTHING_PRESSED))[0]
+            for _ in range(TRY_COUNT)
         ]
     return [*map(list, zip(*changes, strict=True)), example_ms, losses]
 

@@ -53,7 +53,7 @@ SYMBOL = re.compile(r"\d+ (\d+) (\w) (.*)")
 
 
 def main() -> int:
-    if why := uno.missing() or avr_bench.why_missing():
+    if why := uno.missing() or avr_bench.missing_reason():
         print(why, file=sys.stderr)
         return 2
     try:

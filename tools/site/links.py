@@ -1,7 +1,7 @@
 """Checks that every link of the finished site leads somewhere, and that no page loads files from
 other sites.
 
-Knows HTML files in a folder. Sphinx looks at the links inside of one half; this looks at all of
+Knows HTML files in a folder. Sphinx looks at the links inside of one language; this looks at all of
 them, as a browser would follow them.
 """
 

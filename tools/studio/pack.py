@@ -55,14 +55,14 @@ ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 Files = dict[str, bytes]
 
 
-def imports_of(source: bytes, name: str, is_package: bool, everywhere: bool) -> set[str]:
+def imports_of(source: bytes, name: str, is_package: bool, includes_functions: bool) -> set[str]:
     """Return the modules that a module names in its imports."""
     tree = ast.parse(source)
     skipped_asts: set[ast.AST] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
             skipped_asts |= {inner_node for part in node.body for inner_node in ast.walk(part)}
-        elif not everywhere and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+        elif not includes_functions and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             skipped_asts |= set(ast.walk(node))
     imports: set[str] = set()
     for node in ast.walk(tree):
@@ -222,19 +222,19 @@ def pack(start_modules: list[str], package: str, cobs: str, library_path: str, t
         {**compile_all(packer.own_files), **data_of(package, DATA_PATTERNS)},
     )
     packer.add(LESSONS_MODULE)  # its archive contains the standard modules that these need
-    lessons = {
+    lesson_sources = {
         name: source for name, source in packer.own_files.items() if name not in packed_names
     }
-    packed_names |= set(lessons)
+    packed_names |= set(lesson_sources)
     packer.add(TOGETHER_MODULE)
-    together = {
+    together_sources = {
         name: source for name, source in packer.own_files.items() if name not in packed_names
     }
     data = data_of(package, LESSON_DATA_PATTERNS)
     data |= {name: text_on_page(page.decode()).encode() for name, page in data.items()
              if name.endswith(".md")}  # fmt: skip
-    write_archive(f"{target}/lessons.zip", {**compile_all(lessons), **data})
-    small_files = {name: small_source(source) for name, source in together.items()}
+    write_archive(f"{target}/lessons.zip", {**compile_all(lesson_sources), **data})
+    small_files = {name: small_source(source) for name, source in together_sources.items()}
     write_archive(f"{target}/together.zip", small_files)
     write_archive(f"{target}/python.zip", compile_all(packer.standard_files))
     own_count, standard_count = len(packer.own_files), len(packer.standard_files)
