@@ -16,7 +16,7 @@ from tests.support.needs import need
 from tiniscript.base.languages import SOURCE_LANGUAGE, languages, merged_catalogue, plural_text
 from tiniscript.flash import ready
 from tiniscript.studio import building, serving
-from tiniscript.studio.block_kinds import KINDS, PLAIN, SAYS
+from tiniscript.studio.block_kinds import BLOCK_TEXTS, KINDS, PLAIN_TEXTS
 from tiniscript.studio.serving import POLICY
 from tools import CannotMake
 from tools.builds import studio
@@ -105,9 +105,9 @@ def test_every_block_says_something_and_nothing_else_does() -> None:
     words = [*KINDS, *(word for kind in KINDS.values() for word in kind.words)]
     words += [unit for kind in KINDS.values() for unit in kind.units.values()]
     words += ["seconds", "SI", "SB", "PING", "elseif", "else"]
-    blocks = {f"block/{word}" for word in words if not SAYS.get(word)}
+    blocks = {f"block/{word}" for word in words if not BLOCK_TEXTS.get(word)}
     blocks_with_text = {key for key in keys if key.startswith("block/")}
-    assert blocks_with_text - {f"block/{word}" for word in PLAIN} == blocks
+    assert blocks_with_text - {f"block/{word}" for word in PLAIN_TEXTS} == blocks
     tips = {key.partition("/")[2] for key in keys if key.startswith("tip/")}
     buttons = {"more", "less", "more_values", "less_values"}
     assert tips <= {*KINDS, "program", *buttons} and len(tips) > 25

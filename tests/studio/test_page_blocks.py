@@ -51,7 +51,7 @@ from tiniscript.base.limits import PARAMETERS
 from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.studio.block_form import data_of, kinds_in
-from tiniscript.studio.block_kinds import KINDS, PLAIN
+from tiniscript.studio.block_kinds import KINDS, PLAIN_TEXTS
 from tiniscript.studio.block_reading import read_blocks
 from tools.builds.page_texts import page_texts
 from tools.builds.studio import BLOCKLY, unusable_reason
@@ -543,7 +543,7 @@ def test_every_word_that_has_a_block_can_be_dragged_out(
     page: Page, pytestconfig: pytest.Config
 ) -> None:
     """This includes starting blocks with several parts. A grey block is unreadable text."""
-    kinds = set(KINDS) - {"grey"} - ({"plain"} if not PLAIN else set())
+    kinds = set(KINDS) - {"grey"} - ({"plain"} if not PLAIN_TEXTS else set())
     with_names = "SI|SPEED = 5;\nDEF HOP;\n  F(1, SPEED);\nEND_DEF;\nHOP;\n"
     page.select_option("#robot", "grabber")
     start(page, with_names, "all")

@@ -389,7 +389,7 @@ class Session(Requester):
         if self._pending is not None and not self._is_heartbeat():
             press.interrupted = InterruptedExchange(self._pending, self._transmission)
         self._pending, self._has_pressed = press, True
-        press.deadline_ms = self._deafness_time_ms(now_ms)
+        press.deadline_ms = self._loss_due_ms(now_ms)
         self._advance(None, now_ms)
 
     def _send_keys(self) -> Exchange[PingReply]:
@@ -407,7 +407,7 @@ class Session(Requester):
         if interrupted_exchange is not None:
             self._go_on(interrupted_exchange)
 
-    def _deafness_time_ms(self, now_ms: int) -> int:
+    def _loss_due_ms(self, now_ms: int) -> int:
         """Return the time at which the link is lost without an answer to a heartbeat."""
         if now_ms - self._talked_ms > 2 * HEARTBEAT_MS:
             self._unanswered_since_ms = None  # no frame was sent for a while
@@ -422,7 +422,7 @@ class Session(Requester):
             heartbeat_ms = self._heartbeat_ms()
             if heartbeat_ms is None or now_ms < self._talked_ms + heartbeat_ms:
                 return
-            limit_ms = self._deafness_time_ms(now_ms) - now_ms
+            limit_ms = self._loss_due_ms(now_ms) - now_ms
             self._pending = PendingExchange(self._heartbeat(), limit_ms, is_own=True)
         self._pending.deadline_ms = now_ms + self._pending.limit_ms
         self._advance(None, now_ms)
@@ -773,8 +773,8 @@ class Session(Requester):
         if has_ended and is_at_rest and self._reading_count != reading_count:
             # Readings of a run come before its end, but after each reply, because other requests
             # come first.
-            again = self._query_again(has_ended, False, run)
-            self._queue.append(PendingExchange(again, DEAF_MS, is_own=True))
+            repeated_query = self._query_again(has_ended, False, run)
+            self._queue.append(PendingExchange(repeated_query, DEAF_MS, is_own=True))
             return reply
         is_told = self._state.has_ended(run)  # an event may have arrived meanwhile
         if reply.status == OK and has_ended and self._state.run == run and not is_told:

@@ -35,8 +35,8 @@ from tiniscript.recovery.meanings import (
     ASKING_WORDS,
     CALL_WORDS,
     FULL_TURN,
-    NEAR,
     NEAR_CM,
+    NEAR_COST,
     WORD_OF_END,
     Lexeme,
     Names,
@@ -50,7 +50,7 @@ from tiniscript.recovery.notes import note_edits
 from tiniscript.recovery.rewrites import join_one_name
 from tiniscript.recovery.writing import PLAIN_SIGNS, instruction_at, split_note
 from tiniscript.syntax.lexer import NUMBER, WORD
-from tiniscript.syntax.operators import SUMS
+from tiniscript.syntax.operators import ARITHMETIC_SIGNS
 
 _COMPARISON_SENSES = {
     "<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>": ">", "!=": "<>",
@@ -68,7 +68,7 @@ _COUNTED_WORDS = frozenset((
     "TRUE", "FALSE", "TIME", "FOREVER",
 ))  # fmt: skip
 # Phrases without their own word: `repeat until` is WHILE, `void loop` is FOREVER.
-_COUNTED_AS = {
+_SUBSTITUTES_OF_WORD = {
     "LOOP": ("WHILE", "BREAK", "FOREVER"), "WHILE": ("BREAK", "UNTIL"), "UNTIL": ("WHILE", "BREAK"),
     "FOREVER": ("TRUE", "LOOP", "WHILE"), "TRUE": ("FOREVER",), "S": ("BREAK", "UNTIL"),
     "IF": ("WHEN",), "WHEN": ("IF", "UNTIL"), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
@@ -125,8 +125,8 @@ class Amount(NamedTuple):
     line: int
 
 
-MOST_LOOKS = 40  # most losses examined in one text, and most characters examined in each
-MOST_CHARACTERS_LOOKED_AT = 100_000
+MOST_EXAMINED_LOSSES = 40  # most losses examined in one text, and most characters examined in each
+MOST_EXAMINED_CHARACTERS = 100_000
 MOST_LAYERS = 8
 
 
@@ -223,7 +223,7 @@ def _losses_of_sure_repairs(
     return {key: loss for key, loss in loss_of_diagnostic.items() if is_only_joint or any(loss)}
 
 
-def which_keep_all(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[bool]:
+def are_lossless(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[bool]:
     """Return for each diagnostic whether its edits alone keep everything that was written."""
     return [not loss.losses for loss in _losses(diagnostics, text, kit)]
 
@@ -236,7 +236,7 @@ def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diff
     """
     edits = [edits_of(diagnostic) or () for diagnostic in diagnostics]
     changing_keys = [k for k, edits_of_one in enumerate(edits) if edits_of_one]
-    looks_left = min(MOST_LOOKS, MOST_CHARACTERS_LOOKED_AT // (len(text) + 1))
+    looks_left = min(MOST_EXAMINED_LOSSES, MOST_EXAMINED_CHARACTERS // (len(text) + 1))
     differences = [NO_DIFFERENCE] * len(edits)
     groups = deque([k] for k in changing_keys)
     if len(groups) > looks_left:
@@ -288,13 +288,13 @@ def _split_difference(joint: Difference, parts: Sequence[str]) -> list[Differenc
     """Return the losses of several edits in these parts: the text that they contain."""
     if len(parts) == 1:
         return [joint]
-    own_losses = [[loss for loss in joint.losses if loss in part] for part in parts]
+    losses_by_part = [[loss for loss in joint.losses if loss in part] for part in parts]
     is_complete = not joint.additions and {*joint.losses} == {
-        loss for losses in own_losses for loss in losses
+        loss for losses in losses_by_part for loss in losses
     }
     return [
         Difference(losses, []) if losses or is_complete else UNKNOWN_DIFFERENCE
-        for losses in own_losses
+        for losses in losses_by_part
     ]
 
 
@@ -320,13 +320,13 @@ def _unmentioned_losses(diagnostic: Diagnostic, losses: Sequence[str], text: str
     }
     kept_words = {*_COUNTED_TOKEN.findall(new_text)}
     is_only_cut = kept_words <= removed_words and diagnostic.code not in _NAMING_CODES
-    unmentioned = []
+    unmentioned_losses = []
     for loss in losses:
         unit_match = _NUMBER_WITH_UNIT.fullmatch(loss) if diagnostic.repair else None
         is_lost_unit = unit_match is not None and unit_match[1].upper() not in new_text
         if is_lost_unit or (is_only_cut and loss.upper() in removed_words - kept_words):
-            unmentioned.append(loss)
-    return unmentioned
+            unmentioned_losses.append(loss)
+    return unmentioned_losses
 
 
 def name_samples(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
@@ -337,7 +337,7 @@ def name_samples(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list
     shows an example anyway, nothing changes.
     """
     written_numbers: set[float] | None = None
-    named = []
+    named_diagnostics = []
     for diagnostic in diagnostics:
         fix = diagnostic.values.get("fix", "")
         samples = [] if diagnostic.values.get("example") else _possible_samples(fix)
@@ -352,8 +352,8 @@ def name_samples(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list
         )
         gap = "samples" if ", " in samples_text else "sample"
         values = {**diagnostic.values, gap: samples_text} if samples_text else diagnostic.values
-        named.append(diagnostic._replace(values=values))
-    return named
+        named_diagnostics.append(diagnostic._replace(values=values))
+    return named_diagnostics
 
 
 def _count_numbers(diagnostic: Diagnostic, text: str) -> int:
@@ -482,7 +482,9 @@ class _Statement:
     def _concepts_of(self, token: Lexeme) -> set[str]:
         concepts = {self._sure_word(token), lexicon_concept(token.text) or ""}
         concepts |= {
-            meaning.concept for meaning in self.names.meanings(token.text) if meaning.cost <= NEAR
+            meaning.concept
+            for meaning in self.names.meanings(token.text)
+            if meaning.cost <= NEAR_COST
         }
         return {"S" if concept == "STOP" else concept for concept in concepts}
 
@@ -749,7 +751,7 @@ class _Statement:
             is_first_value = left.text == ")" or self._has_value(left)
             is_other_value = self._has_value(token_after if right.text == "(" else right)
             is_plain = left.kind is NUMBER and right.kind is NUMBER
-            if sign.text in SUMS and is_first_value and is_other_value and not is_plain:
+            if sign.text in ARITHMETIC_SIGNS and is_first_value and is_other_value and not is_plain:
                 sign_counts[sign.text] += 1
         return sign_counts
 
@@ -956,7 +958,7 @@ def _lost_words(statement: _Statement, repaired_statement: _Statement) -> Iterat
             (
                 repaired_statement.sure_word_counts[replacement]
                 - statement.sure_word_counts[replacement]
-                for replacement in _COUNTED_AS.get(word, ())
+                for replacement in _SUBSTITUTES_OF_WORD.get(word, ())
             ),
             default=0,
         )
@@ -972,8 +974,8 @@ def _lost_questions(statement: _Statement, repaired_statement: _Statement) -> It
     lost_senses = _count_senses(statement) - (repaired_statement.note_words - statement.note_words)
     new_senses = _count_senses(repaired_statement)
     turner_counts = (
-        {word: counted.sure_word_counts[word] for word in _QUESTION_TURNERS}
-        for counted in (statement, repaired_statement)
+        {word: each_statement.sure_word_counts[word] for word in _QUESTION_TURNERS}
+        for each_statement in (statement, repaired_statement)
     )
     negations = (statement.negations, repaired_statement.negations)
     may_turn = (

@@ -20,9 +20,9 @@ from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import meanings, rewrites, rows
 from tiniscript.recovery.meanings import (
     CALL_WORDS,
-    KNOWN,
+    KNOWN_COST,
     LONG_TIME_S,
-    NEAR,
+    NEAR_COST,
     REMEMBERED_LINES,
     Lexeme,
     Meaning,
@@ -294,7 +294,7 @@ class _Search:
 
     def _apply_patterns(self, reading: Reading, failure: Failure | None) -> Iterator[Reading]:
         """Apply the rows that touch a place; without a place, those that come before all others."""
-        encoded_words = rewrites.Encoded(reading.tokens, self.names)
+        encoded_words = rewrites.EncodedLine(reading.tokens, self.names)
         for row in rewrites.rows_to_try(encoded_words, is_first=failure is None):
             for match in encoded_words.matches(row.pattern):
                 start, end = encoded_words.span(match)
@@ -330,12 +330,12 @@ class _Search:
             is_function = padded_texts[k] in ("(", ",", *SIGNS) and padded_texts[k + 2] == "("
             is_misspelt = is_function and not lexicon_concept(token.text)
             suggestion = nearest(token.text, FUNCTIONS) if is_misspelt else None
-            guesses = (Meaning(suggestion, KNOWN),) if suggestion else ()
+            guesses = (Meaning(suggestion, KNOWN_COST),) if suggestion else ()
             word_meanings = guesses or self.names.meanings(token.text)
             if _has_unlikely_time(tokens, k, word_meanings[0].concept if word_meanings else ""):
                 continue
             for concept, cost in word_meanings:
-                cost = NEAR if token.text[-1].isdigit() else cost
+                cost = NEAR_COST if token.text[-1].isdigit() else cost
                 if (
                     concept == "TIME"
                     and k > 1

@@ -25,7 +25,7 @@ NO_WIRING = Wiring("", {}, {})
 
 
 class PinUse(NamedTuple):
-    """A use of a pin: the path of the key, and the ability that it needs, one of `NEEDS`.
+    """A use of a pin: the path of the key, and the ability that it needs, one of `ABILITIES`.
 
     `shield` is the shield's name of the pin, if the shield decides the pin.
     """

@@ -51,7 +51,7 @@ MOST_MEMBERS = 4
 MOST_GROUPS = 30
 MOST_FOUNDED = 3  # groups with a program, by one pupil
 MOST_HELD_S = 8.0  # longest time that a request is held; slower connections are closed
-LOOK_S = 0.2  # interval between two looks at the robot's events
+POLL_INTERVAL_S = 0.2  # interval between two looks at the robot's events
 GONE_S = 20.0  # a page silent for longer loses its place
 MOST_CHANGES = 50  # most changes in a request
 CHANGE_BYTES = 64_000  # most bytes of a change as JSON; a whole program is smaller
@@ -301,7 +301,7 @@ class Groups:
             and not group.runs.news_after(run_position, member.token)[1]
             and (left_s := end_s - monotonic()) > 0
         ):  # a robot's thread, which must not wait, wakes nobody
-            group.condition.wait(min(left_s, LOOK_S))
+            group.condition.wait(min(left_s, POLL_INTERVAL_S))
 
     def _decide(self, group: Group, member: Member, changes: list[object]) -> bool:
         """Decide on changes; return whether all of them were looked at. Raises BadRequest."""
@@ -393,14 +393,14 @@ class Groups:
     def history_lines(self, group: Group) -> list[str]:
         """Return the newest of that, one a line, as the teacher's page shows it."""
         with group.condition:
-            deeds = [
+            actions = [
                 (
                     group.name_of_page.get(_page_name(taken_change), "?"),
                     ", ".join(map(_operation_text, taken_change.operations)),
                 )
                 for taken_change in reversed(group.program.taken_changes[-MOST_HISTORY_LINES:])
             ]
-        return [f"{who}: {did}" for who, did in deeds]
+        return [f"{who}: {action}" for who, action in actions]
 
     def end(self) -> None:
         """Forget all groups, and their stored data."""

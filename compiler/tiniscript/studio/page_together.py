@@ -11,7 +11,7 @@ from difflib import SequenceMatcher
 from typing import Any, NamedTuple
 
 from tiniscript.studio.block_form import Form, from_data, in_order
-from tiniscript.studio.block_printing import Printed, format_blocks
+from tiniscript.studio.block_printing import PrintedForm, format_blocks
 from tiniscript.studio.block_reading import split_loose
 from tiniscript.syntax.formatter import BEFORE_COMMENT
 from tiniscript.together.form import Refused, data_of_change
@@ -75,7 +75,7 @@ def step(fields: Json, data: bytes) -> Json:
     rows, loose = split_loose(text_rows)
     page.type(rows, caret, is_line_edited)
     page.flush()
-    printed_form: Printed | None = None
+    printed_form: PrintedForm | None = None
     if "blocks" in fields and blocks is not None:
         form = from_data(fields["blocks"]["form"])
         printed_form = format_blocks(form)
@@ -131,7 +131,11 @@ def _write_blocks(page: Page, shown_blocks: ShownBlocks, form: Form, ids: list[s
 
 
 def _owners(
-    rows: list[str], printed_form: Printed, form: Form, ids: list[str], shown_blocks: ShownBlocks
+    rows: list[str],
+    printed_form: PrintedForm,
+    form: Form,
+    ids: list[str],
+    shown_blocks: ShownBlocks,
 ) -> list[str]:
     """Return the instruction of each line of changed blocks; new lines have none."""
     tree = shown_blocks.page.view

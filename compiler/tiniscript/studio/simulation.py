@@ -138,13 +138,13 @@ class Simulation:
             if self.held_at is not None:
                 break
             if not self._is_held_midway and self._upload.outcome is not None:
-                self._let_in()
+                self._apply_inputs()
             self._computer.wait(1)
             self._is_held_midway = self.held_at is not None
             self._score.update(self.robot)
         self._take_events()
 
-    def _let_in(self) -> None:
+    def _apply_inputs(self) -> None:
         """Pass a person's waiting inputs to the robot."""
         inputs, self._waiting_inputs = self._waiting_inputs, []
         for event in inputs:

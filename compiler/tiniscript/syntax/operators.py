@@ -23,7 +23,7 @@ BINARY: Final = {
 }  # fmt: skip
 COMPARISONS = frozenset(sign for _, sign in COMPARATORS)
 SIGNS = frozenset(sign for sign in BINARY if not sign.isalpha())
-SUMS = SIGNS - COMPARISONS  # + - * / %
+ARITHMETIC_SIGNS = SIGNS - COMPARISONS  # + - * / %
 SIGN_OF: Final = {name: sign for sign, (_, name) in BINARY.items()}
 # The comparison that is TRUE when another is not.
 OPPOSITES: Final = {

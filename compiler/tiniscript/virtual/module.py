@@ -51,7 +51,7 @@ _NOTE_KINDS = (("motors", 2), ("read", 2), ("beep", 2), ("show", 3), ("set", 2),
          ("release", 0), ("light", 1), ("on_finish", 0), ("on_fault", 0),
          ("actuators_off", 0), ("steer", 2), ("edges", 0))  # fmt: skip
 _ASKING_KINDS = (2, 13)  # kinds of questions that expect a number
-_CLOCK = 1 << 32
+_CLOCK_MODULUS_MS = 1 << 32
 _NOTE_NUMBERS = 5  # numbers of 32 bits
 
 
@@ -175,7 +175,7 @@ class Firmware:
         """Return the offset before which the program is paused, or None."""
         if not self.is_watched:
             return None
-        offset = self.call("held_at") % _CLOCK
+        offset = self.call("held_at") % _CLOCK_MODULUS_MS
         return None if offset == NO_OFFSET else offset
 
     @property
@@ -229,6 +229,6 @@ class Firmware:
         for k in range(self._notes_index, self._notes_index + count * _NOTE_NUMBERS, _NOTE_NUMBERS):
             now_ms, kind, *values = numbers[k : k + _NOTE_NUMBERS]
             handler, value_count = self._handlers[kind - 1]
-            result = handler(now_ms % _CLOCK, *values[:value_count])
+            result = handler(now_ms % _CLOCK_MODULUS_MS, *values[:value_count])
             if kind in _ASKING_KINDS:
                 numbers[self._reading_index] = result

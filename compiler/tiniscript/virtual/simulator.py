@@ -84,7 +84,7 @@ class Simulator:
         self._heartbeat = Heartbeat()
         self._wall_s = self._traffic_s = monotonic()
         self._owed_ms = 0.0  # robot's time of less than one millisecond, carried over
-        self._visits = 0
+        self._visit_count = 0
         self._last_byte = b""  # byte of the client
         self._release_ms: int | None = None
         self._waiting_push_ms = 0  # duration of a press that has to wait
@@ -126,8 +126,8 @@ class Simulator:
         elapsed_s = min(wall_s - self._wall_s, MOST_DELAY_S)
         self._wall_s = wall_s
         data = b"" if is_full else self.transports.receive()
-        if self.transports.visit_count != self._visits:
-            self._visits = self.transports.visit_count
+        if self.transports.visit_count != self._visit_count:
+            self._visit_count = self.transports.visit_count
             self._heartbeat.forget()
             if self._last_byte not in b"\0\r\n":  # ends an unfinished line of the previous client
                 self.to_robot.send_bytes(b"\0", self.robot.now_ms)

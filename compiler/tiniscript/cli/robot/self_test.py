@@ -42,7 +42,7 @@ SIDES = ("left", "right")
 READING_COUNT = 3
 SONAR = "hc_sr04"  # a driver: one that hangs is read as 0
 NOTICEABLE_PARTS = 50  # the fraction of its range by which a hand must change a reading
-STAND_LINE = "W(2)"
+WAIT_LINE = "W(2)"
 BUZZER_HEARD, BUZZER_AGAIN = 1, 3  # answers about the buzzer
 ANSWERED_FAILURES = (
     "plain",
@@ -125,7 +125,7 @@ class SelfTest(Conversation):
         """Check that no disc counts edges after the wheels have come to rest."""
         edges_before = self.connection.request(lambda session: session.status()).values.noise
         try:
-            self.run_line(STAND_LINE)
+            self.run_line(WAIT_LINE)
         except CommandError as error:
             if error.key not in ANSWERED_FAILURES:
                 raise
