@@ -220,8 +220,8 @@ def test_every_need_has_a_pin_and_the_link_none(chip: Chip) -> None:
     every = chip.digital_pins | chip.reading_pins | chip.analog_pins
     assert not every & chip.link_pins
     assert set(chip.timer_of_pwm_pin) <= chip.digital_pins
-    assert all(chip.can(pin, "input") for pin in chip.digital_pins | chip.reading_pins)
-    missing = {need for need in ABILITIES if not any(chip.can(pin, need) for pin in every)}
+    assert all(chip.has_ability(pin, "input") for pin in chip.digital_pins | chip.reading_pins)
+    missing = {need for need in ABILITIES if not any(chip.has_ability(pin, need) for pin in every)}
     assert missing == ({"count"} if chip.name == "esp32c3" else set())
     assert all(chip.pin_number(_parse_key(chip.pin_name(pin))) == pin for pin in every)
 

@@ -33,7 +33,7 @@ WAYS = {
 def run_to_score(text: str, program: str, ms: int = 9000) -> dict[str, int] | None:
     simulation = Simulation("tinibot", read(text, "own"), compile(program).image)
     for part in (ms // 3, ms // 3, ms // 3):
-        simulation.go(part)
+        simulation.advance(part)
     score: dict[str, int] | None = simulation.state()["score"]
     return score
 

@@ -39,7 +39,7 @@ def motor_wiring(name: str, robot: Robot) -> Wiring:
             usable_pins = (
                 pin
                 for pin in sorted(chip.digital_pins)
-                if chip.can(pin, ability) and pin not in used_pins
+                if chip.has_ability(pin, ability) and pin not in used_pins
             )
             pins[key] = next(usable_pins)
             used_pins.add(pins[key])

@@ -45,7 +45,7 @@ def drive_way(program: str, robot: str, world: World, duration_ms: int) -> Way:
     hull = Hull(simulation.robot.profile.body)
     poses = [simulation.robot.pose]
     for _ in range(0, duration_ms, SAMPLE_MS):
-        simulation.go(SAMPLE_MS)
+        simulation.advance(SAMPLE_MS)
         poses.append(simulation.robot.pose)
     points = [(pose.x_cm, pose.y_cm) for pose in poses]
     begin, end = ([(point.x, point.y) for point in hull.outline(poses[k])] for k in (0, -1))

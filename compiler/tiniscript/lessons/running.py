@@ -101,7 +101,7 @@ def run(image: Image, profile: Robot, lesson: Lesson, seed: int) -> Run:
 
     Raises WorldRefused if the robot does not fit into that world.
     """
-    run = Trial(image, profile, lesson, seed).go()
+    run = Trial(image, profile, lesson, seed).advance()
     assert run is not None, "it goes on to the end"
     return run
 
@@ -128,7 +128,7 @@ class Trial:
         assert self._witness.started_ms is not None, "the program does not begin"
         self._limit_ms = self._witness.started_ms + round(lesson.seconds * 1000)
 
-    def go(self, most_ms: int | None = None) -> Run | None:
+    def advance(self, most_ms: int | None = None) -> Run | None:
         """Advance the robot's time by at most `most_ms`; return the run once it is over."""
         robot, witness = self.robot, self._witness
         if self._is_ping:

@@ -1,10 +1,10 @@
 """The session with one robot: a state machine without I/O and without a clock.
 
-`receive` takes the bytes that have arrived, `poll` returns the bytes to send, `wakes_at` the time
-of the next poll, `events` the new events. One request is in flight at a time; it is repeated until
-it is answered or its exchange times out. Times are milliseconds. It knows which exchange is next,
-and when one ends. `transmission` times retries and stops, `requests` and `handshake` know the order
-of requests, and `robot_state` the state of the robot.
+`receive` takes the bytes that have arrived, `poll` returns the bytes to send, `next_wake_ms` the
+time of the next poll, `events` the new events. One request is in flight at a time; it is repeated
+until it is answered or its exchange times out. Times are milliseconds. It knows which exchange is
+next, and when one ends. `transmission` times retries and stops, `requests` and `handshake` know the
+order of requests, and `robot_state` the state of the robot.
 """
 
 from __future__ import annotations
@@ -323,7 +323,7 @@ class Session(Requester):
             self._sealing.sealed_ms = now_ms
         return self._transmission.bytes_to_send(now_ms, self._sender)
 
-    def wakes_at(self) -> int | None:
+    def next_wake_ms(self) -> int | None:
         """Return when to call `poll` next if nothing arrives, or None."""
         if self._stop.due_ms is not None:
             return self._stop.due_ms

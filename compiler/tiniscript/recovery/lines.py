@@ -240,7 +240,7 @@ class _Search:
             texts_seen.add(texts)
             items = parse_line(reading.tokens, self.names)
             if not isinstance(items, Failure):
-                if not self.says_twice(reading, items, first_reading):
+                if not self.repeats_instruction(reading, items, first_reading):
                     readings.append(reading._replace(items=items))
                 continue
             for successor in successors(reading, items):
@@ -249,7 +249,9 @@ class _Search:
         return readings
 
     @staticmethod
-    def says_twice(reading: Reading, items: Sequence[Item], first_reading: Reading) -> bool:
+    def repeats_instruction(
+        reading: Reading, items: Sequence[Item], first_reading: Reading
+    ) -> bool:
         """Return whether two parts of the line became the same instruction, which nobody wrote."""
         instruction_texts = [texts(reading.tokens[item.start : item.end]) for item in items]
         for instruction, next_instruction, item in zip(

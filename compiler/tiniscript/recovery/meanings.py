@@ -18,7 +18,7 @@ from tiniscript.base.words import ALIASES, BLOCK_ENDS, EXTENTS, WORDS, LexiconEn
 from tiniscript.base.words import lexicon_concept as lexicon_concept
 from tiniscript.base.words import lexicon_meaning as lexicon_meaning
 from tiniscript.syntax.blocks import ENDS
-from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
+from tiniscript.syntax.lexer import DASHES, NUMBER, UNKNOWN_SIGN, WORD
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.outline import KnownNames
 
@@ -92,7 +92,7 @@ def lexemes(line: str) -> list[Lexeme]:
 def _lexemes(line: str) -> tuple[Lexeme, ...]:
     tokens_found, end_offset = [], 0
     for match in _TOKEN.finditer(line):
-        text, kind = match[0], NUMBER if match[1] else WORD if match[2] else ODD
+        text, kind = match[0], NUMBER if match[1] else WORD if match[2] else UNKNOWN_SIGN
         if kind is WORD:
             text = plain(text)
             if "Ñ" in match[0].upper() and not lexicon().get(text):

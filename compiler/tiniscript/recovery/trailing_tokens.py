@@ -31,7 +31,7 @@ from tiniscript.recovery.meanings import (
     brackets_end,
     lexemes,
 )
-from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
+from tiniscript.syntax.lexer import NUMBER, QUOTES, UNKNOWN_SIGN, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
@@ -306,7 +306,9 @@ class TrailingTokens:
             is_number or (bool(k) and self.row_tokens[k - 1].kind is WORD)
         )
         if not k:
-            is_note_sign = text in _SIGNS_BEFORE_NOTE or (token.kind is ODD and text != "#")
+            is_note_sign = text in _SIGNS_BEFORE_NOTE or (
+                token.kind is UNKNOWN_SIGN and text != "#"
+            )
             return is_note_sign and not is_bracket and not self.is_arm
         is_list_of_words = text == "," and self.row_tokens[k - 1].kind is NUMBER
         return (

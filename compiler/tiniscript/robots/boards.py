@@ -45,7 +45,7 @@ class Chip(NamedTuple):
     pin_volts: int = 5 * ONE  # thousandths of a volt: output of its pins, and most input
     capabilities: int = 0  # features of its firmware, as bits of an image's `needs`
 
-    def can(self, pin: int, ability: str) -> bool:
+    def has_ability(self, pin: int, ability: str) -> bool:
         """Return whether `pin` has the ability `ability`, one of ABILITIES."""
         if ability == "input":
             return pin in self.digital_pins or pin in self.reading_pins

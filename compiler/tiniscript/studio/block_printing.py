@@ -13,7 +13,7 @@ from tiniscript.base.words import BLOCK_ENDS, FUNCTIONS, WORDS
 from tiniscript.studio.block_form import Block, Form, Stack, TextRange, Value
 from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.block_reading import LOOSE_PREFIX, LOOSE_VALUE_PREFIX
-from tiniscript.syntax.formatter import BEFORE_COMMENT, Row, lines_of
+from tiniscript.syntax.formatter import COMMENT_GAP, Row, lines_of
 from tiniscript.syntax.operators import BINARY, COMPARISON, MINUS, NOT
 
 ATOM = MINUS + 1  # needs no brackets anywhere
@@ -231,7 +231,7 @@ def _line(instructions: list[_Instruction], setup: str = "", end: str = "") -> _
 
 
 def _with_note(text: str, note: str) -> str:
-    return f"{text}{BEFORE_COMMENT}{note}" if note else text
+    return f"{text}{COMMENT_GAP}{note}" if note else text
 
 
 def _note(text: str) -> str:

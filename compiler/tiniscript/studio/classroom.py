@@ -184,7 +184,7 @@ CONNECT_S = 10.0  # time for a page to take its turn
 QUEUE_S = 20.0  # a page that is silent for longer waits no more
 # A page that was heard since then may get a turn, and keeps one while others wait. It asks once a
 # second. With the time of one poll, the next one has waited less than 3 s.
-HERE_S = 2.0
+PRESENCE_S = 2.0
 # A page silent for longer may lose its place: at a full address, or to a pupil who returns with its
 # name.
 PLACE_S = 5.0
@@ -372,7 +372,7 @@ class Classroom:
 
     def _report_page(self, pupil: Pupil, request: Json) -> Json:
         """A page reports its program, and hears its place: 0 is a turn, -1 none."""
-        self._hear_work(pupil, request)
+        self._update_work(pupil, request)
         robot_wish, hand_wish = request.get("wants"), request.get("hand")
         mates = self._mates(pupil)
         if robot_wish is False:
@@ -429,7 +429,7 @@ class Classroom:
             ),
         }
 
-    def _hear_work(self, pupil: Pupil, request: Json) -> None:
+    def _update_work(self, pupil: Pupil, request: Json) -> None:
         """Update a pupil's work from a page; omitted parts stay. Raises BadRequest."""
         new_fields = {name: request[name] for name in Work._fields if request.get(name) is not None}
         if "robot" in new_fields:
@@ -445,9 +445,9 @@ class Classroom:
             pupil.is_right = request["is_right"]
         if request.get("own_robot") is not None:
             pupil.own_robot = OwnRobot.of(request["own_robot"])
-        self._hear_taken(pupil, request.get("took"))
+        self._confirm_receipt(pupil, request.get("took"))
 
-    def _hear_taken(self, pupil: Pupil, receipt: object) -> None:
+    def _confirm_receipt(self, pupil: Pupil, receipt: object) -> None:
         """A page says that it has what it was given: the very text proves it."""
         fields = receipt if isinstance(receipt, dict) else {}
         kept_work = self._kept_work_by_key.get(str(fields.get("key")))
@@ -575,7 +575,7 @@ class Classroom:
         assert pupil is not None
         if hosted_robot is None:
             # The page was closed, and a returning pupil keeps the place.
-            if now_s - pupil.heard_s > HERE_S:
+            if now_s - pupil.heard_s > PRESENCE_S:
                 pupil.queue_number = robot.queue_number
                 robot.end()
             elif now_s - robot.began_s > CONNECT_S:
@@ -588,14 +588,16 @@ class Classroom:
                 robot.free_at_s = now_s + REST_S
             robot.end()
         elif self._waiting_pupils() and (
-            now_s - robot.began_s >= self._turn_s or hosted_robot.attending.silent_s > HERE_S
+            now_s - robot.began_s >= self._turn_s or hosted_robot.attending.silent_s > PRESENCE_S
         ):
             robot.take_back()
 
     def _begin_turn(self, robot: ClassRobot, now_s: float) -> None:
         """Assign a robot to the next pupil, or to a present one of the same group."""
         for pupil in self._waiting_pupils():
-            present_mates = [mate for mate in self._mates(pupil) if now_s - mate.heard_s <= HERE_S]
+            present_mates = [
+                mate for mate in self._mates(pupil) if now_s - mate.heard_s <= PRESENCE_S
+            ]
             if present_mates and self._hosting.is_free(robot.port):
                 queue_number, pupil.queue_number = pupil.queue_number, None
                 present_mates[0].queue_number = queue_number

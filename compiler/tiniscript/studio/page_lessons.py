@@ -220,7 +220,7 @@ class LessonCheck:
             text = compilation.source.text
             self._marking = Marking(text, image_maker(profile), profile, lesson, seeds)
 
-    def go(self, most_ms: int) -> dict[str, Any]:
+    def advance(self, most_ms: int) -> dict[str, Any]:
         """Advance the robot's time by at most `most_ms`.
 
         `verdict` is empty until it ends. `seed` is that of the world where it is, or where the
@@ -228,7 +228,7 @@ class LessonCheck:
         """
         if self._marking is None:
             return self._verdict_json(MISTAKES, 0)
-        outcome = self._marking.go(most_ms)
+        outcome = self._marking.advance(most_ms)
         if outcome is None:
             return self._verdict_json("", self._marking.seed)
         return self._verdict_json(outcome.verdict, outcome.seed, outcome)
@@ -271,9 +271,9 @@ class JudgedRun(Simulation):
         self._owed_ms = 0  # time shorter than the judge's step, carried over
         assert self.robot.started_ms is not None, "the program does not begin"
         self._end_ms = self.robot.started_ms + min(until_ms, round(lesson.seconds * 1000))
-        self.go(0)
+        self.advance(0)
 
-    def go(self, duration_ms: int) -> None:
+    def advance(self, duration_ms: int) -> None:
         """Advance time in the judge's steps, which check the robot's place."""
         robot = self.robot
         self._owed_ms += duration_ms
@@ -285,7 +285,7 @@ class JudgedRun(Simulation):
             robot.rest()
 
     def step(self, limit_ms: int) -> None:
-        self.go(STEP_MS)
+        self.advance(STEP_MS)
 
     def press(self, keys: int, x: int, y: int) -> None:
         """Ignore keys, which only the judge presses."""

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from tiniscript.studio.block_form import Form, from_data, in_order
 from tiniscript.studio.block_printing import PrintedForm, format_blocks
 from tiniscript.studio.block_reading import split_loose
-from tiniscript.syntax.formatter import BEFORE_COMMENT
+from tiniscript.syntax.formatter import COMMENT_GAP
 from tiniscript.together.form import Refused, data_of_change
 from tiniscript.together.page import Page
 from tiniscript.together.tree import ARM, NOTE, Tree, first_word
@@ -171,7 +171,7 @@ def _pair_arms(arm_texts: list[str], tree: Tree, arms: list[str]) -> list[tuple[
 
 
 def _instruction_in(row: str) -> str:
-    return row.split(BEFORE_COMMENT + "//")[0].strip().rstrip(";")
+    return row.split(COMMENT_GAP + "//")[0].strip().rstrip(";")
 
 
 def _rows(text: str, edited_line: int | None) -> list[str]:

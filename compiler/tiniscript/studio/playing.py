@@ -154,7 +154,7 @@ class PlayedRun(Simulation):
     def is_over(self) -> bool:
         return self._is_over
 
-    def go(self, duration_ms: int) -> None:
+    def advance(self, duration_ms: int) -> None:
         """Advance time, at most to the end of the recording."""
         if self.recording.is_virtual:
             self._advance_again(duration_ms)
@@ -162,7 +162,7 @@ class PlayedRun(Simulation):
             self._advance_beside(duration_ms)
 
     def step(self, limit_ms: int) -> None:
-        self.go(STEP_MS)
+        self.advance(STEP_MS)
 
     def press(self, keys: int, x: int, y: int) -> None:
         """Ignore keys, because only the recorded person presses them."""
@@ -456,7 +456,7 @@ def play(playable: PlayableRecording, world: World | None = None) -> PlayedRun:
     """Return the run, when it is over. Raises WorldRefused."""
     run = PlayedRun(playable, world)
     while not run.is_over:
-        run.go(STEP_MS)
+        run.advance(STEP_MS)
     return run
 
 

@@ -99,7 +99,7 @@ class Mover:
         self.right += percent * (ahead + turning)
         self.aside_cm_s += percent / 100 * SLIP_RATIO * aside * full_cm_s
 
-    def go(self) -> None:
+    def move(self) -> None:
         old_pose = self.pose
         if not (self.left or self.right or self.aside_cm_s):
             return
@@ -270,7 +270,7 @@ class Bout(Driving):
             mover.begin()
         self._push_all()
         for mover in self._movers:
-            mover.go()
+            mover.move()
         self._separate_bodies(old_poses)
         self._record(old_poses[0])
 

@@ -78,7 +78,7 @@ def record(program_input: Input, options: Namespace, language: str) -> int:
         run.push()
     started_ms = run.robot.started_ms or 0
     while run.robot.now_ms < started_ms + max_ms and not run.is_full:
-        run.go(min(STEP_MS, started_ms + max_ms - run.robot.now_ms))
+        run.advance(min(STEP_MS, started_ms + max_ms - run.robot.now_ms))
         if not run.robot.is_running and run.robot.started_ms is not None:
             break
     rows, fault, fault_at = run.rows(), run.robot.fault, run.fault_at
@@ -108,7 +108,7 @@ def play(program_input: Input, options: Namespace, language: str) -> int:
     with convert_refusal(world.name, language):
         played_run = PlayedRun(run, world)
     while not played_run.is_over:
-        played_run.go(STEP_MS)
+        played_run.advance(STEP_MS)
     started_ms = played_run.robot.started_ms or 0
     _print(played_run.rows(), started_ms)
     played_run.close()
