@@ -238,8 +238,8 @@ def equivalent_mutants() -> dict[tuple[str, str, str], str]:
     json_text = Path(__file__).with_name("equivalent_mutants.json").read_text("utf-8")
     rows: dict[str, list[tuple[str, str, str]]] = json.loads(json_text)
     return {
-        (file, old, becomes): why
-        for why, row_of_reason in rows.items()
+        (file, old, becomes): reason
+        for reason, row_of_reason in rows.items()
         for file, old, becomes in row_of_reason
     }
 
@@ -330,8 +330,10 @@ class Copy:
         match = FAILED_TEST.match(
             failure
         )  # a test that also fails without the mutant does not count
-        if match and (why := self.first_failure([match[1]], is_page=mutant.file.endswith(".js"))):
-            return f"undecided, without it, too: {why}"
+        if match and (
+            reason := self.first_failure([match[1]], is_page=mutant.file.endswith(".js"))
+        ):
+            return f"undecided, without it, too: {reason}"
         return failure
 
     def find_noticing_test(self, mutant: Mutant, tests: Sequence[str]) -> str:
@@ -348,8 +350,8 @@ class Copy:
 
     def first_failure(self, tests: Sequence[str], *, is_page: bool = False) -> str:
         """Return the first failure of the tests, or ""."""
-        if is_page and (why := self._run_python(["-m", "tools.builds.studio", "--again"])):
-            return f"the build: {why}"
+        if is_page and (reason := self._run_python(["-m", "tools.builds.studio", "--again"])):
+            return f"the build: {reason}"
         # Tests of sizes, and of generated or built files, notice any change.
         test_filter = "not keeps_to_its_size and not generated and not same_page"
         pytest_arguments = [

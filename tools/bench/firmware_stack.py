@@ -200,9 +200,9 @@ def require_ok(wired_uno: Wired, request: PendingRequest[Any]) -> None:
 def longest_program(kit: Kit, room: int) -> Image:
     """Return a program that fills a robot, goes as deep as one can, and uses all that there is."""
     show_count = 0
-    while len((larger := image_of(deep_program_text(kit, show_count + 1), kit)).code) <= room:
+    while len((larger_image := image_of(deep_program_text(kit, show_count + 1), kit)).code) <= room:
         show_count += 1
-        image = larger
+        image = larger_image
     return image
 
 

@@ -53,9 +53,9 @@ class Hand:
         """Switch it on, and send it a program that reads a stick."""
         self._random_source = random.Random(1)
         self._board = Uno(firmware, baud=baud, tells_sleep=False)
-        self._wired = connect(self._board, robots.load(ROBOT), baud)
-        require_ok(self._wired, self._wired.session.hello())
-        require_ok(self._wired, self._wired.session.upload(image_of(text, KIT)))
+        self._wired_uno = connect(self._board, robots.load(ROBOT), baud)
+        require_ok(self._wired_uno, self._wired_uno.session.hello())
+        require_ok(self._wired_uno, self._wired_uno.session.upload(image_of(text, KIT)))
 
     def __enter__(self) -> Hand:
         return self
@@ -74,7 +74,7 @@ class Hand:
         self._hold(PAD_AHEAD, RECONNECT_MS)
         begin_cycle, event_count = self._begin()
         for _ in range(LOST_MS):  # data is lost in both directions
-            self._wired.session.poll(self._wired.now_ms)
+            self._wired_uno.session.poll(self._wired_uno.now_ms)
             self._board.run_ms(1)
         received_cycles = [
             event.cycle for event in self._board.events[event_count:] if event.kind == "received"
@@ -84,8 +84,8 @@ class Hand:
     def _hold(self, pressed_state: RemoteState, more_ms: int = 0) -> None:
         for ms in range(more_ms + self._random_source.randint(*HELD_MS)):
             if ms % SAY_INTERVAL_MS == 0:  # a silent person releases the keys
-                self._wired.session.press(*pressed_state)
-            self._wired.run(1)
+                self._wired_uno.session.press(*pressed_state)
+            self._wired_uno.run(1)
 
     def _begin(self) -> tuple[int, int]:
         """Return some cycle within the millisecond, and how many events there were before."""

@@ -62,8 +62,8 @@ def print_cycles() -> None:
         sketch_cells = [f"{cycle_count:,.0f}" for cycle_count in cycle_counts]
     rows = zip(ROWS, (machine_cells, sketch_cells), strict=True)
     page.show("machine", [(row, "thousandths", *figures) for row, figures in rows])
-    for why in filter(None, (avr_bench.missing_reason(), uno.missing())):
-        print(f"\n{why}")
+    for reason in filter(None, (avr_bench.missing_reason(), uno.missing())):
+        print(f"\n{reason}")
 
 
 if __name__ == "__main__":

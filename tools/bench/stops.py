@@ -155,7 +155,9 @@ class BusyRobot:
         """Return the cycles of a stop before which all comes that may: once, at its longest."""
         receive_vector = RECEIVE_INTERRUPT[self.chip.board]
         masked_spans = [
-            masked for masked in self.chip.longest_masked_spans() if masked.vector != receive_vector
+            masked_span
+            for masked_span in self.chip.longest_masked_spans()
+            if masked_span.vector != receive_vector
         ]
         entries = {
             span.vector: span.cycle_count

@@ -117,8 +117,8 @@ TYPE_SCRIPT = """async ([text, count, isPausing]) => {
 
 
 def main() -> None:
-    if why := studio.missing():
-        sys.exit(why)
+    if reason := studio.missing():
+        sys.exit(reason)
     figure_rows: list[tuple[str, ...]] = []
     with (
         studio.driver() as driver,

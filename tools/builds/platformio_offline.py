@@ -91,8 +91,8 @@ def settings_for(project: Path, is_offline: bool) -> dict[str, str]:
     """Return the environment in which `pio` works, with everything made that it needs."""
     if importlib.util.find_spec("platformio") is None:
         raise CannotMake("PlatformIO is not installed. Try:  pip install platformio")
-    if why := needless_reason(project, is_offline):
-        say(f"nothing to do: {why}")
+    if reason := needless_reason(project, is_offline):
+        say(f"nothing to do: {reason}")
         return {}
     check_packages()
     check_versions(project)
@@ -228,10 +228,10 @@ def add_doctest(folder: Path, project: Path) -> None:
     requirement = re.search(r"doctest/doctest@[^\"']+", runner)
     if requirement is None:
         raise CannotMake("vm_arduino/test/test_custom_runner.py names no doctest/doctest@")
-    required = PackageSpec(requirement[0])
-    if Version(version) not in required.requirements:
+    required_spec = PackageSpec(requirement[0])
+    if Version(version) not in required_spec.requirements:
         raise CannotMake(
-            f"doctest-dev is doctest {version}, the tests want {required.requirements}"
+            f"doctest-dev is doctest {version}, the tests want {required_spec.requirements}"
         )
     if folder.exists():
         return
@@ -239,7 +239,7 @@ def add_doctest(folder: Path, project: Path) -> None:
     def fill(new_folder: Path) -> None:
         (new_folder / "include").mkdir()
         shutil.copy(DOCTEST, new_folder / "include" / "doctest.h")
-        describe(new_folder, "library.json", "library", "doctest", version, required.owner)
+        describe(new_folder, "library.json", "library", "doctest", version, required_spec.owner)
 
     make(folder, fill)
 

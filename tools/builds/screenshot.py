@@ -96,21 +96,21 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--check", action="store_true", help="only say whether they are stale")
     options = parser.parse_args(arguments)
     if not options.check:
-        why = studio.missing()
-        if why:
-            print(f"screenshot: {why}", file=sys.stderr)
+        reason = studio.missing()
+        if reason:
+            print(f"screenshot: {reason}", file=sys.stderr)
             return 2
         for language, scene in product(LANGUAGES, SCENES):
             take(language, scene, picture(language, scene))
             print(f"wrote {picture(language, scene).relative_to(ROOT)}")
         return 0
     complaints = [
-        why
+        reason
         for language_and_scene in product(LANGUAGES, SCENES)
-        if (why := unusable_reason(*language_and_scene))
+        if (reason := unusable_reason(*language_and_scene))
     ]
-    for why in complaints:
-        print(f"screenshot: {why}", file=sys.stderr)
+    for reason in complaints:
+        print(f"screenshot: {reason}", file=sys.stderr)
     return 1 if complaints else 0
 
 

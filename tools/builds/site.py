@@ -43,9 +43,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         print(f"site: {folder} is there already, and is not empty.", file=sys.stderr)
         return 2
-    why = "" if options.no_studio else studio.unusable_reason()
-    if why:
-        print(f"site: {why} Without it:  --no-studio", file=sys.stderr)
+    reason = "" if options.no_studio else studio.unusable_reason()
+    if reason:
+        print(f"site: {reason} Without it:  --no-studio", file=sys.stderr)
         return 2
     try:
         build(ROOT, folder, has_studio=not options.no_studio)

@@ -71,17 +71,17 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         if options.check or options.sizes:
-            why = unusable_reason(options.output)
-            if why:
-                raise CannotMake(why)
+            reason = unusable_reason(options.output)
+            if reason:
+                raise CannotMake(reason)
         elif options.again:
             rebuild(options.output)
         else:
             build(options.output)
             if options.firmware:
                 bring_firmware(options.output)
-    except CannotMake as why:
-        print(f"build_studio: {why}", file=sys.stderr)
+    except CannotMake as reason:
+        print(f"build_studio: {reason}", file=sys.stderr)
         return 2
     if not options.check:
         print("\n".join(size_rows(options.output)))

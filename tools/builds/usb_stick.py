@@ -65,28 +65,28 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     wheels = folder / "wheels"
     wheels.mkdir(parents=True)
-    missing: list[MissingPart] = []
+    missing_parts: list[MissingPart] = []
     if not options.no_firmware and not options.wheel:
-        missing += _firmware()
+        missing_parts += _firmware()
     systems, pythons = options.system or list(SYSTEMS), options.python or list(PYTHONS)
     try:
-        missing += add_wheels(wheels, systems, pythons, options.wheel)
+        missing_parts += add_wheels(wheels, systems, pythons, options.wheel)
     except CannotMake as error:
         print(f"usb_stick: {error} Is this computer online?", file=sys.stderr)
         return 2
     if not options.no_installer and "windows" in systems:
-        missing += add_installer(folder, INSTALLER_URL.format(INSTALLER))
+        missing_parts += add_installer(folder, INSTALLER_URL.format(INSTALLER))
     add_texts(folder)
     titles = ", ".join(SYSTEMS[system].title for system in systems)
-    add_readme(folder, titles, ", ".join(pythons), missing)
-    for missing_part in missing:
+    add_readme(folder, titles, ", ".join(pythons), missing_parts)
+    for missing_part in missing_parts:
         print(
             f"missing: {missing_part.sentence(SOURCE_LANGUAGE)} ({missing_part.reason})",
             file=sys.stderr,
         )
     size_bytes = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"{folder}: {size_bytes / 1e6:.0f} MB. Copy what is in it to the stick.")
-    return 1 if missing else 0
+    return 1 if missing_parts else 0
 
 
 def add_wheels(
@@ -102,7 +102,7 @@ def add_wheels(
         if given_wheel
         else stick_wheels.make_own_wheel(ROOT, wheels)
     )
-    missing: list[MissingPart] = []
+    missing_parts: list[MissingPart] = []
     for name in systems:
         for python in pythons:
             title = f"{SYSTEMS[name].title}, Python {python}"
@@ -110,8 +110,8 @@ def add_wheels(
             try:
                 stick_wheels.fetch(wheel, wheels, SYSTEMS[name], python, EXTRAS)
             except CannotMake as error:
-                missing.append(_fetch_fewer_parts(wheel, wheels, name, python, str(error)))
-    return missing
+                missing_parts.append(_fetch_fewer_parts(wheel, wheels, name, python, str(error)))
+    return missing_parts
 
 
 def _fetch_fewer_parts(
@@ -156,7 +156,9 @@ def add_texts(folder: Path) -> None:
             target.chmod(0o755)
 
 
-def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[MissingPart]) -> None:
+def add_readme(
+    folder: Path, systems: str, pythons: str, missing_parts: Sequence[MissingPart]
+) -> None:
     parts = [f"TiniScript {__version__}\n{systems}\nPython {pythons}\n"]
     for language in translated_languages("documents", "stick/title"):
         index = name_in(language, stick_pages.INDEX)
@@ -166,7 +168,7 @@ def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[Missi
             instructions,
             *(
                 lacks_format.format(what=missing_part.sentence(language))
-                for missing_part in missing
+                for missing_part in missing_parts
             ),
         ]
         title = text("documents", "stick/title", language)

@@ -83,9 +83,9 @@ class Run(NamedTuple):
 
     def at_pace(self, pace: Pace) -> Run:
         """Return this run at a pace, with some late readings."""
-        slow = dict.fromkeys(pace.slow, (pace.period_ms, pace.from_ms, pace.to_ms))
-        name = f"{self.name} ({' and '.join(slow)} late, called every {pace.every_ms} ms)"
-        return self._replace(name=name, schedule=(0, (pace.every_ms,)), slow=slow)
+        slow_readings = dict.fromkeys(pace.slow, (pace.period_ms, pace.from_ms, pace.to_ms))
+        name = f"{self.name} ({' and '.join(slow_readings)} late, called every {pace.every_ms} ms)"
+        return self._replace(name=name, schedule=(0, (pace.every_ms,)), slow=slow_readings)
 
     @property
     def needs(self) -> int:

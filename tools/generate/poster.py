@@ -107,9 +107,11 @@ def _rows_with_fixed_forms(rows: Iterable[str], language: str) -> Iterator[tuple
 
 def _other_instructions(language: str) -> Iterator[tuple[str, str]]:
     """Yield the instructions without a row in GROUPS, and their explanations."""
-    shown = {word for _, rows in GROUPS for row in rows for word in re.findall(r"[A-Z_]+", row)}
+    shown_words = {
+        word for _, rows in GROUPS for row in rows for word in re.findall(r"[A-Z_]+", row)
+    }
     for word in WORDS.values():
-        if word.role.is_instruction and not word.stands_for and word.text not in shown:
+        if word.role.is_instruction and not word.stands_for and word.text not in shown_words:
             yield word.example, text_beside_block(word, language)
 
 

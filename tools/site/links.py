@@ -67,8 +67,8 @@ def dead_links(folder: Path) -> list[str]:
     for path, page in pages.items():
         for address, is_fetched in page.links:
             is_here = address.startswith(("#", "?"))
-            if why := find_problem(path if is_here else path.parent / "*", address, is_fetched):
-                problem_lines.append(f"{path.relative_to(folder).as_posix()}: {address}: {why}")
+            if reason := find_problem(path if is_here else path.parent / "*", address, is_fetched):
+                problem_lines.append(f"{path.relative_to(folder).as_posix()}: {address}: {reason}")
     return problem_lines
 
 

@@ -90,7 +90,7 @@ class Packer:
         self.names = set(library.namelist())
         self.own_files: Files = {}
         self.standard_files: Files = {}
-        self._seen: set[str] = set()
+        self._seen_modules: set[str] = set()
 
     def add(self, name: str) -> None:
         """Add a module and what it needs; a list, because this does not recurse."""
@@ -103,14 +103,14 @@ class Packer:
     def _pack_module(self, name: str) -> list[str]:
         parents = (name.rsplit(".", k)[0] for k in range(name.count(".") + 1))
         if (
-            name in self._seen
+            name in self._seen_modules
             or not MODULES_NOT_HERE.isdisjoint(parents)
             or name.startswith(LEFT_OUT_MODULES)
         ):
             return []
         if name.startswith("_py") and f"_{name[3:]}" in sys.builtin_module_names:
             return []  # `_pydatetime`, which replaces a missing `_datetime`
-        self._seen.add(name)
+        self._seen_modules.add(name)
         path = name.replace(".", "/")
         for candidate in (f"{path}/__init__.py", f"{path}.py"):
             is_package = candidate.endswith("__init__.py")

@@ -133,8 +133,8 @@ class Uno:
         mark = len(self.events)
         end = self.cycle + round(limit_ms * CYCLES_PER_MS)
         self._send_lines(f"watch {number} {state}", f"run {end} 0")
-        why = self._wait_for_pause(mark)["why"]
-        assert why == "pin", f"{pin} has not become {state} in {limit_ms} ms"
+        reason = self._wait_for_pause(mark)["why"]
+        assert reason == "pin", f"{pin} has not become {state} in {limit_ms} ms"
         return self.pins[pin]
 
     def go(self, speed: float = 1.0) -> None:

@@ -155,7 +155,7 @@ class _Verifier:
         self.counters = 0  # counted loops that are open in this routine
         self.main = _Routine(_TASK, 0, 0)
         self.routine = self.main  # the current routine
-        self.closed: list[_Routine] = []  # the procedures that have ended
+        self.defs: list[_Routine] = []  # the procedures that have ended
         self.tasks: list[_Routine] = [self.main]  # all tasks begun so far
         self.reads_inside = False  # a PUSH_READ has been met with values below it, or in a join
         # Stack values that the whole code needs.
@@ -384,7 +384,7 @@ class _Verifier:
         return routine
 
     def call(self) -> None:
-        callee = next((routine for routine in self.closed if routine.start == self.target), None)
+        callee = next((routine for routine in self.defs if routine.start == self.target), None)
         if callee is None:
             self.refuse("BAD_CALL")
         self.opens(self.counters + callee.counters, callee.calls + 1)
@@ -407,8 +407,8 @@ _STEPS: dict[str, Callable[[_Verifier], object]] = {
     "break": lambda verifier: verifier.leave(_REPEAT),
     "drop": lambda verifier: verifier.leave(_COUNT),
     "call": _Verifier.call,
-    "def": lambda verifier: verifier.begin(_DEF, len(verifier.closed) == DEFS, "TOO_MANY_DEFS"),
-    "return": lambda verifier: verifier.closed.append(verifier.close_routine(_DEF)),
+    "def": lambda verifier: verifier.begin(_DEF, len(verifier.defs) == DEFS, "TOO_MANY_DEFS"),
+    "return": lambda verifier: verifier.defs.append(verifier.close_routine(_DEF)),
     "task": lambda verifier: verifier.task(_TASK),
     "end_task": lambda verifier: verifier.close_routine(_TASK),
     "when": lambda verifier: verifier.task(_WHEN),

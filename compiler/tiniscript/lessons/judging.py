@@ -347,15 +347,20 @@ def _judge_shown(criterion: Criterion, task: Task) -> Finding | None:
         return Finding("shows", "shows/nothing", values)
     right_count = 0
     for shown_value in run.shown_values:
-        expected = _expected_value(shown_value, sensor_name, expected_number, run)
-        right_count += expected is None or abs(shown_value.value - expected) <= tolerance
+        expected_value = _expected_value(shown_value, sensor_name, expected_number, run)
+        right_count += (
+            expected_value is None or abs(shown_value.value - expected_value) <= tolerance
+        )
     if right_count >= times:
         return None
     last_value = run.shown_values[-1]
-    expected = _expected_value(last_value, sensor_name, expected_number, run)
-    if expected is None or right_count == len(run.shown_values):
+    expected_value = _expected_value(last_value, sensor_name, expected_number, run)
+    if expected_value is None or right_count == len(run.shown_values):
         return Finding("shows", "shows/few", values)
-    values |= {"value": as_text(last_value.value), "wanted": as_text(round(expected / 100) * 100)}
+    values |= {
+        "value": as_text(last_value.value),
+        "wanted": as_text(round(expected_value / 100) * 100),
+    }
     key = "time" if sensor_name == TIME else "sensor" if sensor_name else "value"
     return Finding("shows", f"shows/{key}", values)
 

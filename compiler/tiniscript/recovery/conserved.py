@@ -521,7 +521,7 @@ class _Statement:
         return is_alone and bool(self._possible_words(header) & ASKING_WORDS)
 
     def _count_word(self, k: int, is_in_brackets: bool) -> None:
-        token, previous, following = (
+        token, previous, following_token = (
             self.tokens[k],
             self.tokens[k - 1] if k else _END,
             self._next_token(k),
@@ -532,24 +532,26 @@ class _Statement:
             )
             return
         word = self._sure_word(token)
-        neighbour_texts = {previous.text, following.text}
+        neighbour_texts = {previous.text, following_token.text}
         is_name_part = token.text in self._name_ends
         is_times_sign = (
-            token.text == "X" and previous.kind is NUMBER and following.kind in (NUMBER, WORD)
+            token.text == "X" and previous.kind is NUMBER and following_token.kind in (NUMBER, WORD)
         )
         is_joint = (
             word in ("AND", "OR")
             and not is_in_brackets
-            and bool(self._possible_words(following) & _DRIVING_WORDS)
+            and bool(self._possible_words(following_token) & _DRIVING_WORDS)
         )
         is_repetition = (word == "IF" and previous.text in ("AND", "OR")) or (
             word == "OR" and previous.text in _COMPARISON_SENSES
         )
         is_repetition |= (
-            following.text == "." and self._next_token(k + 1).kind is WORD
+            following_token.text == "." and self._next_token(k + 1).kind is WORD
         )  # `random.randint`
         is_repetition |= (
-            word in MOVES and following.kind is WORD and word == self._sure_word(following)
+            word in MOVES
+            and following_token.kind is WORD
+            and word == self._sure_word(following_token)
         )
         is_equal = any(
             text in ("=", "==") or lexicon_meaning(text, "is") for text in neighbour_texts
@@ -593,7 +595,7 @@ class _Statement:
 
     def _add_amount(self, k: int, value: float, slot_unit: str) -> int:
         """Keep the number at a place with its sign and its unit; return where to read on."""
-        token, following = self.tokens[k], self._next_token(k)
+        token, following_token = self.tokens[k], self._next_token(k)
         is_minus = self._is_minus(k)
         text = f"{'-' if is_minus else ''}{token.source or token.text}"
         while token.kind is WORD and value % 10 == 0:  # `ochenta y cinco`
@@ -610,7 +612,7 @@ class _Statement:
         if unit_and_scale := self._unit_after(k):
             unit, scale = unit_and_scale
             value, k = value * scale / 1000, k + 1
-            text += f"{following.space or ''}{following.source or following.text}"
+            text += f"{following_token.space or ''}{following_token.source or following_token.text}"
         signed_value = -value if is_minus else value
         self.amounts.append(Amount(signed_value, unit, text, self.line_of_token[k]))
         return k + 1
@@ -641,19 +643,19 @@ class _Statement:
 
     def _is_loose_unit(self, k: int) -> bool:
         """Return whether a word is only a unit, without a number."""
-        token, previous, following = (
+        token, previous, following_token = (
             self.tokens[k],
             self.tokens[k - 1] if k else _END,
             self._next_token(k),
         )
         kinds = {item.kind for item in lexicon().get(token.text, ())}
         ends_argument = (
-            len(token.text) == 1 and following.text in (",", ")") and previous.kind is WORD
+            len(token.text) == 1 and following_token.text in (",", ")") and previous.kind is WORD
         )
         is_only_unit = kinds == {"unit"} or (
             "unit" in kinds and (ends_argument or token.text in EXTENTS)
         )
-        is_unbound = not self.names.is_name(token.text) and following.kind is not NUMBER
+        is_unbound = not self.names.is_name(token.text) and following_token.kind is not NUMBER
         if not is_only_unit or not is_unbound or (len(token.text) == 1 and not ends_argument):
             return False
         return lexicon_meaning(token.text, "unit")[0] in _UNITS

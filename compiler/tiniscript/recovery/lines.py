@@ -274,9 +274,9 @@ class _Search:
     def apply_first_rewrites(self, reading: Reading) -> Reading:
         """Make the rewrites that come before all others, and make words one that are one."""
         for _ in range(_MOST_FIRST_STEPS):
-            joined = rewrites.join_one_name(reading.tokens, self.names)
-            if joined is not None:
-                tokens, is_sensor_name = joined
+            joined_name = rewrites.join_one_name(reading.tokens, self.names)
+            if joined_name is not None:
+                tokens, is_sensor_name = joined_name
                 code = codes.NAME_WITH_SPACE if is_sensor_name else codes.OTHER_LANGUAGE
                 reading = reading.with_change(tokens, 1.0 if is_sensor_name else 0.5, code)
                 continue

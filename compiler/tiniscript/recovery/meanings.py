@@ -580,7 +580,7 @@ class Names:
             return [text, "@num", *ANY_LABELS, *fitting_classes]
         if token.kind is not WORD:
             fitting_classes = (
-                name for name, excluded in _EXCLUSIONS.items() if text not in excluded
+                name for name, excluded_names in _EXCLUSIONS.items() if text not in excluded_names
             )
             own_classes = ["@close"] if text == ")" else ["@unit"] if text in "%°" else []
             return [f"s{text}", *fitting_classes, *own_classes]

@@ -160,8 +160,8 @@ def can_come_true(condition: Expression, direction: str, kit: Kit) -> bool | Non
 def asks_if_near(condition: Expression, kit: Kit) -> bool:
     """Return whether a condition contains `DISTANCE < 20` for a sensor that looks ahead."""
     return any(
-        looks_ahead(compared.device) and compared.op in _LESS_OPS
-        for compared in comparisons_in(condition, kit)
+        looks_ahead(comparison.device) and comparison.op in _LESS_OPS
+        for comparison in comparisons_in(condition, kit)
     )
 
 
@@ -170,8 +170,10 @@ def comparisons_in(condition: Expression, kit: Kit) -> Iterator[Comparison]:
     for k in range(len(condition) - 2):
         terms = condition[k : k + 3]
         middle = next(((device.low + device.high) // 2 for device in _devices(terms, kit)), 0)
-        likely = tuple(Term("NUMBER", middle) if term.op == "VARIABLE" else term for term in terms)
-        comparison = comparison_of(likely, kit)
+        likely_terms = tuple(
+            Term("NUMBER", middle) if term.op == "VARIABLE" else term for term in terms
+        )
+        comparison = comparison_of(likely_terms, kit)
         if comparison is not None:
             yield comparison
 

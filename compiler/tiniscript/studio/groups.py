@@ -400,7 +400,7 @@ class Groups:
                 )
                 for taken_change in reversed(group.program.taken_changes[-MOST_HISTORY_LINES:])
             ]
-        return [f"{who}: {action}" for who, action in actions]
+        return [f"{member_name}: {action}" for member_name, action in actions]
 
     def end(self) -> None:
         """Forget all groups, and their stored data."""

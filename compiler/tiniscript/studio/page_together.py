@@ -263,10 +263,16 @@ def _with_ends(text: str) -> list[str]:
     return [row + "\n" for row in rows[:-1]] + [rows[-1]] * bool(rows[-1])
 
 
-def _changes_in_row(old: str, new: str, start: int) -> list[tuple[int, int, str]]:
+def _changes_in_row(old_text: str, new_text: str, start: int) -> list[tuple[int, int, str]]:
     return [
-        (start + _utf16_length(old[:i1]), start + _utf16_length(old[:i2]), new[j1:j2])
-        for tag, i1, i2, j1, j2 in SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
+        (
+            start + _utf16_length(old_text[:i1]),
+            start + _utf16_length(old_text[:i2]),
+            new_text[j1:j2],
+        )
+        for tag, i1, i2, j1, j2 in SequenceMatcher(
+            None, old_text, new_text, autojunk=False
+        ).get_opcodes()
         if tag != "equal"
     ]
 

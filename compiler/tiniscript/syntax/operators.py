@@ -67,7 +67,7 @@ class Postfix:
 
     def reduce(self) -> Operator | None:
         """Apply what waits since the innermost open bracket, and return that bracket."""
-        waiting = self.pending_operators
-        while waiting and waiting[-1].precedence != OPEN:
+        operators = self.pending_operators
+        while operators and operators[-1].precedence != OPEN:
             self.apply()
-        return waiting[-1] if waiting else None
+        return operators[-1] if operators else None

@@ -118,7 +118,7 @@ class Firmware:
         self._box_bytes = self.call("box_bytes")
         self._eeprom, size = self.call("memory_at"), self.call("memory_bytes")
         self.memory_bytes = size
-        self._waiting = bytearray()  # bytes after those in the inbox
+        self._waiting_bytes = bytearray()  # bytes after those in the inbox
         self._notes_index, self._note_count_index = self.call("notes") // 4, self.call("noted") // 4
         self._reading_index = self.call("reading") // 4
         self.is_watched = False  # whether its program may be paused
@@ -138,15 +138,15 @@ class Firmware:
 
         Returns earlier where the program is held.
         """
-        self._waiting += data
+        self._waiting_bytes += data
         sent_bytes = bytearray()
         while True:
-            if self._waiting and not self.call("unheard"):
-                chunk = bytes(self._waiting[: self._box_bytes])
-                del self._waiting[: self._box_bytes]
+            if self._waiting_bytes and not self.call("unheard"):
+                chunk = bytes(self._waiting_bytes[: self._box_bytes])
+                del self._waiting_bytes[: self._box_bytes]
                 self._instance.write(chunk, self._inbox)
                 self.call("put", len(chunk))
-            has_more = bool(self._waiting)
+            has_more = bool(self._waiting_bytes)
             count = self.call("run", until_us, int(has_more))
             self._handle_notes()
             if count:
@@ -200,7 +200,7 @@ class Firmware:
 
     @property
     def unread_bytes(self) -> int:
-        return len(self._waiting) + self.call("unheard")
+        return len(self._waiting_bytes) + self.call("unheard")
 
     def memory(self) -> bytes:
         """Return the content of the EEPROM."""

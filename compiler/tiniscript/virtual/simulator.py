@@ -24,27 +24,27 @@ MOST_FRAME_BYTES = 100  # bytes of a frame on the wire, and some
 class Heartbeat:
     def __init__(self) -> None:
         self._frame = b""  # the last one
-        self._unfinished = b""  # start of an unfinished packet
+        self._unfinished_packet = b""  # start of an unfinished packet
         self._received_s = 0.0
         self._heartbeat_ms = 0
 
     def on_bytes(self, data: bytes, wall_s: float) -> None:
         """Take bytes that the computer has sent."""
         self._received_s = wall_s
-        *frames, self._unfinished = (self._unfinished + data).split(b"\0")
-        self._unfinished = self._unfinished[:MOST_FRAME_BYTES]
+        *frames, self._unfinished_packet = (self._unfinished_packet + data).split(b"\0")
+        self._unfinished_packet = self._unfinished_packet[:MOST_FRAME_BYTES]
         for frame in frames:
             if frame and len(frame) < MOST_FRAME_BYTES:
                 self._frame = b"\0" + frame + b"\0"  # the frame sent for each heartbeat
 
     def forget(self) -> None:
         """Forget the last frame, because another client connects."""
-        self._frame = self._unfinished = b""
+        self._frame = self._unfinished_packet = b""
 
     def bytes_due(self, now_ms: int, wall_s: float) -> bytes:
         """Return the bytes to repeat at the robot's time `now_ms`, usually none."""
         is_silent = wall_s - self._received_s > SILENCE_S
-        if self._unfinished or is_silent or now_ms < self._heartbeat_ms + HEARTBEAT_MS:
+        if self._unfinished_packet or is_silent or now_ms < self._heartbeat_ms + HEARTBEAT_MS:
             return b""
         self._heartbeat_ms = now_ms
         return self._frame
