@@ -42,7 +42,7 @@ from tools.translation_files import Translation, about_text, print_problems
 PSEUDO = "qps"  # conventional code for a pseudo-language
 ROBOT_SIGNS = 40
 # Kinds of a lexicon without English words: the commands are short for English ones.
-NOT_IN_ENGLISH = ("short", "initial", "turtle")
+KINDS_WITHOUT_ENGLISH = ("short", "initial", "turtle")
 ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")
 
 
@@ -134,7 +134,9 @@ def check_robot(robot_catalogue: Catalogue) -> Iterator[Problem]:
 
 def check_lexicon(language: str) -> Iterator[str]:
     """Rows of a lexicon without a meaning that the English one has, or with other than capitals."""
-    known_words = {row.split()[0] for row in _rows(SOURCE_LANGUAGE)} | {*NOT_IN_ENGLISH} | {*WORDS}
+    known_words = (
+        {row.split()[0] for row in _rows(SOURCE_LANGUAGE)} | {*KINDS_WITHOUT_ENGLISH} | {*WORDS}
+    )
     for row in _rows(language):
         meaning, separator, words = row.partition("|")
         if (
@@ -280,9 +282,12 @@ def report(translation: Translation) -> int:
         print(f"{translation.code}: {stale_count} texts are stale. "
               "Note of which English texts they are now:  "
               f"python -m tools.languages --seen {translation.code} KEY ...")  # fmt: skip
-    translatable = [entry for entry in entries if not entry.is_same]
-    translated_count = sum(entry.is_translated for entry in translatable)
-    print(f"{translation.code}: {translated_count} of {len(translatable)} texts are translated")
+    translatable_entries = [entry for entry in entries if not entry.is_same]
+    translated_count = sum(entry.is_translated for entry in translatable_entries)
+    print(
+        f"{translation.code}: "
+        f"{translated_count} of {len(translatable_entries)} texts are translated"
+    )
     return problem_count + (
         missing_count + stale_count + len(new_entries) if translation.language.is_complete else 0
     )

@@ -19,7 +19,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "compiler" / "tiniscript"
-Graph = dict[str, set[str]]  # the imports of each file, or the arrows from each module
+Graph = dict[str, set[str]]  # the imports of each file, or of each module
 Import = ast.Import | ast.ImportFrom
 
 
@@ -40,8 +40,8 @@ def main() -> int:
         ("Python of the package, lines", _line_count(package_paths)),
         ("tests, lines", _line_count(tests)),
         ("modules of the package", len({_module_name(name) for name in graph} - {""})),
-        ("arrows between them", sum(map(len, arrows(graph).values()))),
-        ("circles of files", len(circles(graph))),
+        ("imports between them", sum(map(len, module_imports(graph).values()))),
+        ("cycles of files", len(import_cycles(graph))),
         ("imports that are indented", indented_count),
         ("words of documents, by hand", _word_count(tracked_paths)),
     ):
@@ -49,21 +49,21 @@ def main() -> int:
     return 0
 
 
-def arrows(graph: Graph) -> Graph:
+def module_imports(graph: Graph) -> Graph:
     """Return the modules that each module imports."""
-    arrows_of_module: Graph = {}
+    imports_of_module: Graph = {}
     for name, targets in graph.items():
-        module_targets = arrows_of_module.setdefault(_module_name(name), set())
+        module_targets = imports_of_module.setdefault(_module_name(name), set())
         module_targets |= {_module_name(target) for target in targets} - {_module_name(name)}
-    return arrows_of_module
+    return imports_of_module
 
 
-def direct(arrows: Graph) -> Graph:
-    """Return the arrows without those that a path of others replaces; there is no circle."""
+def direct_imports(graph: Graph) -> Graph:
+    """Return the imports without those that a path of others replaces; there is no cycle."""
     return {
         name: {target for target in targets
-               if not any(target in _reachable(arrows, other_target) for other_target in targets)}
-        for name, targets in arrows.items()
+               if not any(target in _reachable(graph, other_target) for other_target in targets)}
+        for name, targets in graph.items()
     }  # fmt: skip
 
 
@@ -155,11 +155,11 @@ def _targets(import_node: Import, name: str, files: dict[str, ast.Module]) -> It
                 yield target
 
 
-def circles(graph: Graph) -> set[frozenset[str]]:
+def import_cycles(graph: Graph) -> set[frozenset[str]]:
     """Return the groups of files that import each other."""
-    reached = {name: _reachable(graph, name) for name in graph}
-    groups = (frozenset(other for other in imports if name in reached[other])
-              for name, imports in reached.items())  # fmt: skip
+    reachable_files = {name: _reachable(graph, name) for name in graph}
+    groups = (frozenset(other for other in imports if name in reachable_files[other])
+              for name, imports in reachable_files.items())  # fmt: skip
     return {group for group in groups if len(group) > 1}
 
 

@@ -42,7 +42,7 @@ MUTANTS_AT_ONCE = 2
 NODE_MODULES = Path("tools/studio/node_modules")
 FAILED_TEST = re.compile(r"(?:FAILED|ERROR) (\S+?\.py(?:::\w+)*(?:\[.*?\](?= - |$))?)")
 # Files of a person, or being written.
-NOT_COPIED = (".git", ".venv", ".*_cache", ".pio", "*.pyc.*", "node_modules", "own.h", "ready")
+UNCOPIED_NAMES = (".git", ".venv", ".*_cache", ".pio", "*.pyc.*", "node_modules", "own.h", "ready")
 
 _CPP, _PY, _JS = "vm_arduino/src", "compiler/tiniscript", "tools/studio/src"
 _HOST = "tests/firmware/test_host_firmware.py"
@@ -146,16 +146,16 @@ UNCHANGED_PARTS = {
 
 def braces_edits(text: str, suffix: str) -> Iterator[Edit]:
     """Yield the edits of a text in C++ or JavaScript."""
-    plain = UNCHANGED_PARTS[suffix].sub(lambda match: re.sub(r"[^\n]", "\0", match[0]), text)
-    for match in OPERATOR.finditer(plain):
+    masked_text = UNCHANGED_PARTS[suffix].sub(lambda match: re.sub(r"[^\n]", "\0", match[0]), text)
+    for match in OPERATOR.finditer(masked_text):
         yield match.start(), match.end(), SHARED_OPERATORS[match[0]]
-    for match in NOT.finditer(plain):
+    for match in NOT.finditer(masked_text):
         yield match.start(), match.end(), ""
-    for match in NUMBER.finditer(plain):
+    for match in NUMBER.finditer(masked_text):
         yield match.start(), match.end(), str(int(match[0], 0) + 1)
-    for match in IF_CONDITION.finditer(plain):
-        yield match.end(), _closing_bracket(plain, match.end()), "false"
-    for match in STATEMENT.finditer(plain):
+    for match in IF_CONDITION.finditer(masked_text):
+        yield match.end(), _closing_bracket(masked_text, match.end()), "false"
+    for match in STATEMENT.finditer(masked_text):
         yield match.end() - len(match[0].lstrip()), match.end(), ";"
 
 
@@ -238,8 +238,8 @@ def equivalent_mutants() -> dict[tuple[str, str, str], str]:
     json_text = Path(__file__).with_name("equivalent_mutants.json").read_text("utf-8")
     rows: dict[str, list[tuple[str, str, str]]] = json.loads(json_text)
     return {
-        (file, old, becomes): why
-        for why, row_of_reason in rows.items()
+        (file, old, becomes): reason
+        for reason, row_of_reason in rows.items()
         for file, old, becomes in row_of_reason
     }
 
@@ -312,12 +312,12 @@ class Copy:
 
     def __init__(self, folder: Path, *, is_first_tier: bool = False) -> None:
         self.folder = folder
-        self.tier = ["-m", "not long"] if is_first_tier else []
+        self.tier_arguments = ["-m", "not long"] if is_first_tier else []
         # Includes Python's bytecode of these files, and the built page.
         shutil.copytree(
             ROOT,
             folder,
-            ignore=shutil.ignore_patterns(*NOT_COPIED),
+            ignore=shutil.ignore_patterns(*UNCOPIED_NAMES),
             symlinks=True,
             dirs_exist_ok=True,
         )
@@ -330,8 +330,10 @@ class Copy:
         match = FAILED_TEST.match(
             failure
         )  # a test that also fails without the mutant does not count
-        if match and (why := self.first_failure([match[1]], is_page=mutant.file.endswith(".js"))):
-            return f"undecided, without it, too: {why}"
+        if match and (
+            reason := self.first_failure([match[1]], is_page=mutant.file.endswith(".js"))
+        ):
+            return f"undecided, without it, too: {reason}"
         return failure
 
     def find_noticing_test(self, mutant: Mutant, tests: Sequence[str]) -> str:
@@ -348,8 +350,8 @@ class Copy:
 
     def first_failure(self, tests: Sequence[str], *, is_page: bool = False) -> str:
         """Return the first failure of the tests, or ""."""
-        if is_page and (why := self._run_python(["-m", "tools.builds.studio", "--again"])):
-            return f"the build: {why}"
+        if is_page and (reason := self._run_python(["-m", "tools.builds.studio", "--again"])):
+            return f"the build: {reason}"
         # Tests of sizes, and of generated or built files, notice any change.
         test_filter = "not keeps_to_its_size and not generated and not same_page"
         pytest_arguments = [
@@ -359,7 +361,7 @@ class Copy:
             "no:cacheprovider",
             "-k",
             test_filter,
-            *self.tier,
+            *self.tier_arguments,
             *tests,
         ]
         return self._run_python(["-m", "pytest", *pytest_arguments])

@@ -79,7 +79,7 @@ def _line_changes(old_text: str, change: LineChange, kit: Kit) -> Iterator[str]:
 def describe_row(step: Step, kit: Kit) -> str:
     """Return the example of the row that makes a rewrite, or which module makes it without one."""
     setup_length = len(setup_of(step.old_tokens))
-    line = rewrites.Encoded(step.old_tokens[setup_length:], Names([step.old_tokens], kit))
+    line = rewrites.EncodedLine(step.old_tokens[setup_length:], Names([step.old_tokens], kit))
     for row in rewrites.token_rows():
         for match in line.matches(row.pattern) if row.code is step.code else ():
             rewritten_line = line.apply_row(row, match)

@@ -46,7 +46,7 @@ class Translation:
         self.english = english
         self.groups = {name: catalogue.groups() for name, catalogue in english.items()}
         self.own_files = {name: read_translation_file(self.path(name)) for name in english}
-        self.seen, self.seen_problems = read_seen(self.folder / SEEN_FILE)
+        self.seen_hashes, self.seen_problems = read_seen(self.folder / SEEN_FILE)
         self.language = read_language(self.folder / ABOUT_FILE)
         self._is_seen_new = False
 
@@ -56,7 +56,7 @@ class Translation:
     def merge(self, name: str) -> Catalogue:
         """Return the English texts of a file with those of the language."""
         return merge_translations(
-            self.english[name], name, self.own_files[name], self.seen, self.language
+            self.english[name], name, self.own_files[name], self.seen_hashes, self.language
         )
 
     def follow_moved_texts(self) -> Iterator[str]:
@@ -72,7 +72,7 @@ class Translation:
                     self._follow_places(name, translation_file, row)
 
     def _follow_key(self, name: str, translation_file: TranslationFile, row: Row) -> Iterator[str]:
-        hashes = self.seen.get(f"{name} {row.key}", [])
+        hashes = self.seen_hashes.get(f"{name} {row.key}", [])
         known_hashes = {*hashes} - {UNKNOWN_HASH}
         new_keys = [
             key
@@ -81,7 +81,7 @@ class Translation:
         ]
         if not known_hashes:
             return  # a mistyped key is an error
-        del self.seen[f"{name} {row.key}"]
+        del self.seen_hashes[f"{name} {row.key}"]
         self._is_seen_new = True
         texts = translation_file.texts.pop(row.key)
         if not new_keys:
@@ -91,7 +91,7 @@ class Translation:
         row.key = new_keys[0]
         row.text = format_rows(row.key, texts, len(texts) > 1)
         translation_file.texts[row.key], translation_file.line_of_key[row.key] = texts, row.line
-        self.seen[f"{name} {row.key}"] = hashes
+        self.seen_hashes[f"{name} {row.key}"] = hashes
 
     def _follow_places(self, name: str, translation_file: TranslationFile, row: Row) -> None:
         group, texts = self.pair_texts(name, row.key), translation_file.texts[row.key]
@@ -105,17 +105,17 @@ class Translation:
         """Return the texts of a key with their translations, or none if that is impossible."""
         texts = self.own_files[name].texts.get(key, [])
         group = [without_translation(entry) for entry in self.groups[name].get(key, [])]
-        unknown = [UNKNOWN_HASH] * len(texts)
-        hashes = [*self.seen.get(f"{name} {key}", []), *unknown][: len(texts)]
+        unknown_hashes = [UNKNOWN_HASH] * len(texts)
+        hashes = [*self.seen_hashes.get(f"{name} {key}", []), *unknown_hashes][: len(texts)]
         return [] if assign_translations(group, texts, hashes) else group
 
     def _note(self, name: str, key: str, hashes: list[str]) -> None:
         while hashes and hashes[-1] in ("", UNKNOWN_HASH):
             hashes.pop()
-        old_hashes = self.seen.pop(f"{name} {key}", [])
+        old_hashes = self.seen_hashes.pop(f"{name} {key}", [])
         if hashes:
-            self.seen[f"{name} {key}"] = [hash_ or UNKNOWN_HASH for hash_ in hashes]
-        self._is_seen_new |= old_hashes != self.seen.get(f"{name} {key}", [])
+            self.seen_hashes[f"{name} {key}"] = [hash_ or UNKNOWN_HASH for hash_ in hashes]
+        self._is_seen_new |= old_hashes != self.seen_hashes.get(f"{name} {key}", [])
 
     def note_seen(self, patterns: list[str]) -> list[str]:
         """Record the English texts of new translations, and of stale ones with these keys; return
@@ -126,12 +126,16 @@ class Translation:
             if name == NAMES_CATALOGUE or translation_file.problems:
                 continue
             for key in translation_file.texts:
-                fitting = {pattern for pattern in patterns if fnmatchcase(key, pattern)}
-                unused_names -= fitting
+                fitting_patterns = {pattern for pattern in patterns if fnmatchcase(key, pattern)}
+                unused_names -= fitting_patterns
                 if group := self.pair_texts(name, key):
                     hashes_to_note = (
                         UNKNOWN_HASH,
-                        *[entry.seen_hash for entry in group if fitting and entry.seen_hash],
+                        *[
+                            entry.seen_hash
+                            for entry in group
+                            if fitting_patterns and entry.seen_hash
+                        ],
                     )
                     self._note(
                         name,
@@ -144,7 +148,7 @@ class Translation:
             current_rows = {f"{name} {key}" for key in translation_file.texts}
             for seen_key in [
                 key_in_file
-                for key_in_file in self.seen
+                for key_in_file in self.seen_hashes
                 if key_in_file.startswith(f"{name} ") and key_in_file not in current_rows
             ]:
                 self._note(name, seen_key.removeprefix(f"{name} "), [])
@@ -184,9 +188,13 @@ class Translation:
                 _write(self.path(name), text)
         if self._is_seen_new and not self.seen_problems:
             order = [f"{name} {key}" for name, keys in self.groups.items() for key in keys]
-            unknown_keys = sorted(self.seen.keys() - {*order})
-            seen_keys = (seen_key for seen_key in [*order, *unknown_keys] if seen_key in self.seen)
-            lines = [f"{seen_key} {' '.join(self.seen[seen_key])}\n" for seen_key in seen_keys]
+            unknown_keys = sorted(self.seen_hashes.keys() - {*order})
+            seen_keys = (
+                seen_key for seen_key in [*order, *unknown_keys] if seen_key in self.seen_hashes
+            )
+            lines = [
+                f"{seen_key} {' '.join(self.seen_hashes[seen_key])}\n" for seen_key in seen_keys
+            ]
             _write(self.folder / SEEN_FILE, SEEN_NOTE.format(self.code) + "".join(lines))
 
     def problems(self) -> Iterator[tuple[Path, list[Problem]]]:

@@ -73,13 +73,13 @@ def write_file(path: Path, translation: Translation) -> int:
 
 def _add(catalog: Catalog, name: str, entry: Entry, forms: tuple[str, ...]) -> None:
     english: str | tuple[str, str] = entry.english
-    translated: str | tuple[str, ...] = entry.translation.get("", "")
+    translated_text: str | tuple[str, ...] = entry.translation.get("", "")
     if entry.plural:
         english = (entry.english, entry.plural)
-        translated = tuple(entry.translation.get(form, "") for form in forms)
+        translated_text = tuple(entry.translation.get(form, "") for form in forms)
     flags = {BRACES_FLAG} if "{" in entry.english else set()
     message = catalog.add(
-        english, translated, context=_context(name, entry.key), auto_comments=entry.notes,
+        english, translated_text, context=_context(name, entry.key), auto_comments=entry.notes,
         flags=flags | ({"fuzzy"} if entry.is_stale else set()),
     )  # fmt: skip
     message.flags.discard("python-format")  # `5 % of` looks like one
@@ -104,10 +104,10 @@ def read_file(path: Path, translation: Translation) -> int:
     for message in catalog:
         forms = _forms(message, translation.language)
         if message.id and not message.fuzzy and all(forms.values()):
-            if why := _take_text(message, forms, translation):
-                print(f"{path}:{message.lineno}: {why}")
+            if reason := _take_text(message, forms, translation):
+                print(f"{path}:{message.lineno}: {reason}")
                 problem_count += 1
-            taken_count += not why
+            taken_count += not reason
     translation.write()
     print(f"{path}: {taken_count} texts are taken")
     return 1 if problem_count else 0
@@ -133,9 +133,9 @@ def _take_text(message: Message, forms: Forms, translation: Translation) -> str:
         return f"{message.context}: its English text is not this one now: {english[:40]}"
     old_translation, old_seen = entry.translation, entry.seen_hash
     entry.translation, entry.seen_hash = forms, entry.hash
-    if why := find_misfits(entry, translation.language):
+    if reason := find_misfits(entry, translation.language):
         entry.translation, entry.seen_hash = old_translation, old_seen
-        return f"{message.context}: {why[0]}"
+        return f"{message.context}: {reason[0]}"
     translation.put_entries(name, key, group)
     return ""
 
@@ -162,8 +162,10 @@ def _forms_by(names: list[str], rule: str) -> list[str]:
     return [names[form_index(number)] for number in range(NUMBERS_TRIED)]
 
 
-def _cldr_categories(count: int, rule: str, of_cldr: Callable[[int], str]) -> list[str]:
+def _cldr_categories(count: int, rule: str, category_of_number: Callable[[int], str]) -> list[str]:
     """Return the CLDR names of a gettext rule's forms, or none if a form has no number."""
     form_index = c2py(rule)
-    category_of = {form_index(number): of_cldr(number) for number in range(NUMBERS_TRIED)}
+    category_of = {
+        form_index(number): category_of_number(number) for number in range(NUMBERS_TRIED)
+    }
     return [category_of[k] for k in range(count)] if category_of.keys() == {*range(count)} else []

@@ -29,9 +29,9 @@ from tiniscript import robots
 from tiniscript.lessons import catalogue
 
 Json = Any
-DRIVER, SCREEN = "WebKitWebDriver", "Xvfb"
+DRIVER, X_SERVER = "WebKitWebDriver", "Xvfb"
 PACKAGES = "webkit2gtk-driver xvfb"
-PATIENCE_S = 90.0
+TIMEOUT_S = 90.0
 CONTROL, ENTER, DELETE = "\ue009", "\ue007", "\ue017"
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 EDITOR = "document.querySelector('#editor').shadowRoot.querySelector('.cm-content')"
@@ -55,7 +55,7 @@ class Browser:
     def _ask(self, method: str, path: str, body: Json = None) -> Json:
         data = json.dumps(body).encode() if body is not None else None
         request = urllib.request.Request(self._base + path, data, method=method)
-        with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
+        with urllib.request.urlopen(request, timeout=TIMEOUT_S) as answer:
             return json.loads(answer.read())["value"]
 
     def open(self, address: str) -> None:
@@ -65,7 +65,7 @@ class Browser:
         return self._ask("POST", "/execute/sync", {"script": script, "args": list(values)})
 
     def wait_until(self, condition: str, what: str) -> None:
-        end_s = time.monotonic() + PATIENCE_S
+        end_s = time.monotonic() + TIMEOUT_S
         while not self.run(f"return Boolean({condition})"):
             if time.monotonic() > end_s:
                 raise StepFailed(what)
@@ -158,7 +158,7 @@ def join_class(page: Browser, address: str, code: str) -> None:
     page.wait_for_data("pupil", "class_in")
 
 
-def join_group(page: Browser, changes: Callable[[], None], has: Callable[[str], bool]) -> None:
+def join_group(page: Browser, add_line: Callable[[], None], has_row: Callable[[str], bool]) -> None:
     page.write("F(1, 80)\nS\n")
     page.click("#side_class")
     page.fill("#class_group input", 0, "Red")
@@ -167,12 +167,12 @@ def join_group(page: Browser, changes: Callable[[], None], has: Callable[[str], 
     page.run(f"{EDITOR}.focus()")
     page.type_keys("\ue010", CONTROL)  # the end of the text
     page.type_keys(f"W(2){ENTER}")
-    end_s = time.monotonic() + PATIENCE_S
-    while not has("W(2);"):
+    end_s = time.monotonic() + TIMEOUT_S
+    while not has_row("W(2);"):
         if time.monotonic() > end_s:
             raise StepFailed("the class has the line")
         time.sleep(0.1)
-    changes()
+    add_line()
     page.wait_until(f"{EDITOR}.innerText.includes('BEEP(1, 440)')", "the line of another pupil")
 
 
@@ -191,14 +191,14 @@ def stop_robot(page: Browser, robot: PtyRobot) -> None:
 def browsers() -> Iterator[Callable[[], Browser]]:
     """Yield a function that opens a browser on a virtual screen."""
     binary = next(Path("/usr/lib").glob("*/webkit2gtk-4.*/MiniBrowser"), None)
-    if binary is None or not shutil.which(DRIVER) or not shutil.which(SCREEN):
+    if binary is None or not shutil.which(DRIVER) or not shutil.which(X_SERVER):
         sys.exit(f"webkit: apt-get install {PACKAGES}")
-    with tempfile.TemporaryDirectory() as home, socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-        free.close()
+    with tempfile.TemporaryDirectory() as home, socket.socket() as free_socket:
+        free_socket.bind(("127.0.0.1", 0))
+        port = free_socket.getsockname()[1]
+        free_socket.close()
         screen = subprocess.Popen(
-            [SCREEN, "-displayfd", "1", "-screen", "0", "1400x900x24"], stdout=subprocess.PIPE,
+            [X_SERVER, "-displayfd", "1", "-screen", "0", "1400x900x24"], stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL, text=True,
         )  # fmt: skip
         assert screen.stdout is not None
@@ -242,30 +242,33 @@ def main() -> int:
                 f"return {interfaces}.filter((each) => !(each in navigator))"
             )
             print(f"{'lacks':32} {', '.join(missing_interfaces)}")
-        with PtyRobot(robots.load("tinibot").kit) as robot, serve_class([robot.port]) as school:
-            classroom = school.room
+        with (
+            PtyRobot(robots.load("tinibot").kit) as robot,
+            serve_class([robot.port]) as served_class,
+        ):
+            classroom = served_class.room
 
-            def changes() -> None:
-                luz = classroom.answer(
+            def add_line() -> None:
+                member_answer = classroom.answer(
                     "", "luz", {"do": "join", "code": classroom.code, "name": "Luz"}
                 )
-                token = luz["token"]
-                joined = classroom.answer(
+                token = member_answer["token"]
+                group_answer = classroom.answer(
                     token, "luz", {"do": "group_join", "name": "Red", "text": ""}
                 )
-                nodes = [{"id": f"{joined['page']}.1", "text": "BEEP(1, 440)"}]
+                nodes = [{"id": f"{group_answer['page']}.1", "text": "BEEP(1, 440)"}]
                 ops = [{"do": "insert", "at": ["root", ""], "nodes": nodes}]
-                change = {"uid": f"{joined['page']}:1", "ops": ops}
-                classroom.answer(token, "luz", {"do": "group", "page": joined["page"], "since": -1,
-                                           "epoch": "", "changes": [change]})  # fmt: skip
+                change = {"uid": f"{group_answer['page']}:1", "ops": ops}
+                fields = {"page": group_answer["page"], "since": -1, "epoch": ""}
+                classroom.answer(token, "luz", {"do": "group", **fields, "changes": [change]})
 
-            def has(row: str) -> bool:
+            def has_row(row: str) -> bool:
                 groups = classroom.teach({"do": "class"})["groups"]
                 text = classroom.teach({"do": "class_text", "group": groups[0]["key"]})["text"]
                 return row in text
 
-            step("a class", lambda: join_class(page, school.server.address, classroom.code))
-            step("a group", lambda: join_group(page, changes, has))
+            step("a class", lambda: join_class(page, served_class.server.address, classroom.code))
+            step("a group", lambda: join_group(page, add_line, has_row))
             step("STOP", lambda: stop_robot(page, robot))
         page.close()
     return failed_count > 0

@@ -113,7 +113,7 @@ def test_an_example_builds_and_fits(
 def test_library_and_examples_compile_for_a_chip_of_esp_boards(
     built_library: Path, name: str, tmp_path: Path
 ) -> None:
-    need(chips.why_missing(chips.CHIPS[name]))
+    need(chips.missing_reason(chips.CHIPS[name]))
     (tmp_path / "Arduino.h").write_text(STAND_IN, encoding="utf-8")
     (tmp_path / "string.h").write_text(STRING_H, encoding="utf-8")
     sketches = []

@@ -275,7 +275,7 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
     ],
 )
 def test_ports_in_a_report(port: str, shown_text: str) -> None:
-    assert report.shown_port(port) == shown_text
+    assert report.redacted_port(port) == shown_text
 
 
 def test_values_of_others_stay_out_of_a_report() -> None:

@@ -23,7 +23,7 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.live_state import LiveState
 from tiniscript.library.other_robots import hints_among
 from tiniscript.link import known_ports, ports
-from tiniscript.link.outcomes import LOOK_S, Event, MissedEvent, ShownEvent
+from tiniscript.link.outcomes import POLL_INTERVAL_S, Event, MissedEvent, ShownEvent
 from tiniscript.link.payloads import DoneEvent
 from tiniscript.robots import given
 from tiniscript.virtual import directory
@@ -66,7 +66,9 @@ def ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """A command that looks at events long after its time is over fails: it would never end."""
     whole, looks = Connection.event, 0
 
-    def count_and_wait(connection: Connection, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
+    def count_and_wait(
+        connection: Connection, limit_s: float = POLL_INTERVAL_S
+    ) -> tuple[int, Event] | None:
         nonlocal looks
         looks += connection.is_time_over
         assert looks < LOOKS, "its time is over, and it goes on"

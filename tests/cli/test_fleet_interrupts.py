@@ -21,7 +21,7 @@ from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli import streams
 from tiniscript.cli.robot import fleet as fleet_of
-from tiniscript.cli.robot.fleet import LOOK_INTERVAL_S, Fleet
+from tiniscript.cli.robot.fleet import POLL_INTERVAL_S, Fleet
 from tiniscript.cli.robot.member import Member, Target
 from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.library import opening
@@ -141,7 +141,7 @@ class Watched:
         news = SimpleNamespace(wait=self.passes, clear=lambda: None)
         monkeypatch.setattr(self.fleet, "_result_bell", news)
 
-    def passes(self, seconds: float = LOOK_INTERVAL_S) -> None:
+    def passes(self, seconds: float = POLL_INTERVAL_S) -> None:
         assert self.now_s < 300, "it never ends"
         self.now_s += seconds
         if self.presses_s and self.now_s > self.presses_s[0]:
@@ -161,7 +161,7 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
         for _ in range(presses):
             times.append(
                 times[-1]
-                + chance.uniform(LOOK_INTERVAL_S, opening.CONFIRM_TIMEOUT_S - LOOK_INTERVAL_S)
+                + chance.uniform(POLL_INTERVAL_S, opening.CONFIRM_TIMEOUT_S - POLL_INTERVAL_S)
             )
         room = Watched(monkeypatch, times[:presses])
         limit_s = opening.CONFIRM_TIMEOUT_S + 1
@@ -174,9 +174,9 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
             table = SimpleNamespace(draw=room.passes, end=lambda _: None, print_line=lambda _: None)
             with not_passed_on():
                 room.fleet.print_until_done(cast(FleetTable, table) if how == "a table" else None)
-        assert [at_s for at_s in room.stopped if at_s <= times[0] + 2 * LOOK_INTERVAL_S], (
+        assert [at_s for at_s in room.stopped if at_s <= times[0] + 2 * POLL_INTERVAL_S], (
             "each is told"
         )
         assert len(room.stopped) == len(room.fleet.members)
         end_s = times[1] if presses > 1 else times[0] + limit_s
-        assert end_s <= room.now_s <= end_s + 3 * LOOK_INTERVAL_S
+        assert end_s <= room.now_s <= end_s + 3 * POLL_INTERVAL_S

@@ -28,7 +28,7 @@ from tiniscript.link.messages import (
     LINK_FAULTS,
     OWNED,
     OWNERS,
-    SAVED,
+    SAVED_STATES,
     STATUSES,
     STOP_ZEROS,
     WIFI_RESTS,
@@ -42,7 +42,7 @@ from tiniscript.robots import load
 SAY_NOTHING = (boards.Esp32Board, boards.SilentPython, boards.DownloadBoard)
 RESTARTED = (115200, 57600)  # the speeds of bootloaders: there a board is heard when it starts
 NAMES = {load(name).kit.fingerprint: name for name in ("tinibot", "liner", "grabber")}
-SAVED_BY_NAME = {name: number for number, (name, _) in enumerate(SAVED)}
+SAVED_BY_NAME = {name: number for number, (name, _) in enumerate(SAVED_STATES)}
 MEGA = b"\x1b\x01\0\x01\x0e\x01\x14"  # the greeting of its bootloader
 STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
 

@@ -33,6 +33,6 @@ def test_what_a_hand_holds_reaches_the_motors(
     """So do released keys; and a lost line releases all."""
     with Hand(sketches(sketch_name), BAUD, PAD_PROGRAM) as hand:
         for _ in range(TRIES):
-            assert 0 < hand.change(PAD_AHEAD) <= MOST_HELD_MS[BAUD]
-            assert 0 < hand.change(NOTHING_PRESSED) <= MOST_LET_GO_MS[BAUD]
-        assert 0 < hand.lose() <= MOST_LOST_MS
+            assert 0 < hand.measure_change_ms(PAD_AHEAD) <= MOST_HELD_MS[BAUD]
+            assert 0 < hand.measure_change_ms(NOTHING_PRESSED) <= MOST_LET_GO_MS[BAUD]
+        assert 0 < hand.measure_loss_ms() <= MOST_LOST_MS

@@ -8,12 +8,12 @@ import pytest
 
 from tools.bench import avr_bench, workloads
 from tools.bench.machine import JUMP_BUDGET
-from tools.bench.workloads import Work, code_of
+from tools.bench.workloads import Workload, code_of
 
-pytestmark = pytest.mark.skipif(bool(avr_bench.why_missing()), reason=avr_bench.why_missing())
+pytestmark = pytest.mark.skipif(bool(avr_bench.missing_reason()), reason=avr_bench.missing_reason())
 
 
-def cycles(work: Work, *flags: str) -> tuple[list[str], int]:
+def cycles(work: Workload, *flags: str) -> tuple[list[str], int]:
     """Return the values that a Mega shows, and the cycles of all ticks."""
     code = code_of(work)
     readings = work.thousandths
@@ -23,6 +23,6 @@ def cycles(work: Work, *flags: str) -> tuple[list[str], int]:
     return shown_texts, int(count.split()[1])
 
 
-@pytest.mark.parametrize("work", workloads.WORKS, ids=lambda work: work.name)
-def test_a_mega_with_breakpoints_is_as_fast_as_one_without(work: Work) -> None:
+@pytest.mark.parametrize("work", workloads.WORKLOADS, ids=lambda work: work.name)
+def test_a_mega_with_breakpoints_is_as_fast_as_one_without(work: Workload) -> None:
     assert cycles(work) == cycles(work, "-Dtiniscript_without_breakpoints")

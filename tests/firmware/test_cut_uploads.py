@@ -25,7 +25,7 @@ from tests.support.robot_on_host import (
 from tests.support.small_robot import SmallRobot
 from tiniscript.bytecode.image import Image, pack, unpack
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
-from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, RUN, SAVED, SAVED_NOTHING
+from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, RUN, SAVED_NOTHING, SAVED_STATES
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -34,7 +34,7 @@ ROOM = 389
 CHECKSUM_AT = 10  # offset of the checksum in an image
 STRIDE = 29  # step between the bytes that the tests choose
 STOP = bytes(8)
-SAVED_MEMORY = [name for name, _ in SAVED].index("MEMORY")
+SAVED_MEMORY = [name for name, _ in SAVED_STATES].index("MEMORY")
 CUT, STOPPED, STOPPED_TWICE = KINDS = ("cut", "stopped", "stopped twice")
 
 

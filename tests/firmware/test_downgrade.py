@@ -155,7 +155,7 @@ def talk(between: Between, session: Session, request: PendingRequest[Any] | None
         names += [event.name for event in session.events()]
         if (request is not None and request.outcome) or {"STOPPED", "LOST"} & set(names):
             break
-        wakes_ms = session.wakes_at()
+        wakes_ms = session.next_wake_ms()
         now_ms = max(now_ms + 2, min(now_ms + 100, now_ms + 100 if wakes_ms is None else wakes_ms))
     return names
 

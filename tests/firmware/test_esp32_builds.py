@@ -19,7 +19,7 @@ from tiniscript import robots
 from tiniscript.robots import firmware
 from tiniscript.robots.ports import ESP32S
 from tools.builds.chips import CHIPS, Chip, compile_one
-from tools.builds.chips import why_missing as no_compiler
+from tools.builds.chips import missing_reason as no_compiler
 
 CODE = [
     *sorted(BOARD.glob("*.cpp")),

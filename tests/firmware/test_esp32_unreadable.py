@@ -11,7 +11,7 @@ from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import AWAY, Ends, upload_text, wait_for_outcome
 from tests.support.robot_on_host import actions_of
-from tiniscript.link.messages import SAVED, STOP_BYTES
+from tiniscript.link.messages import SAVED_STATES, STOP_BYTES
 from tiniscript.link.session import Session
 
 FAULTS = pytest.mark.parametrize("fault", [CLOSED, NUMBERS, BLOBS])
@@ -35,7 +35,7 @@ def read_saved_state(robot: Esp32Robot, who: Session) -> str:
     request = who.status()
     assert wait_for_outcome(robot, [(None, who)], request) == "OK"
     assert request.outcome
-    return SAVED[request.outcome.values.saved][0]
+    return SAVED_STATES[request.outcome.values.saved][0]
 
 
 @FAULTS

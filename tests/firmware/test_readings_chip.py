@@ -26,7 +26,7 @@ from tiniscript import robots
 from tiniscript.bytecode.image import Image
 from tiniscript.link.requests import OK
 from tools.bench import firmware_size
-from tools.bench.firmware_stack import surround
+from tools.bench.firmware_stack import set_obstacles
 from tools.uno import CYCLES_PER_MS, Uno, missing
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing())
@@ -98,7 +98,7 @@ def chip(
 ) -> Iterator[Uno]:
     memory = tmp_path_factory.mktemp("eeprom") / BOARD
     with switched_on(sketches(BOARD), memory, BOARD) as uno:
-        surround(uno, robots.load("tinibot"))
+        set_obstacles(uno, robots.load("tinibot"))
         yield uno
 
 
@@ -119,7 +119,7 @@ if __name__ == "__main__":
         tempfile.TemporaryDirectory() as folder,
         switched_on(elf, Path(folder) / "eeprom", BOARD) as robot,
     ):
-        surround(robot, robots.load("tinibot"))
+        set_obstacles(robot, robots.load("tinibot"))
         for number, text in islice(steady_programs(begin), total):
             try:
                 readings += compare(text, robot)

@@ -24,7 +24,8 @@ from tiniscript.bytecode.image import HEADER_BYTES, pack
 from tools.bench import avr_bench
 
 needs_chip = pytest.mark.skipif(
-    bool(avr_bench.why_missing()), reason=avr_bench.why_missing() or "there is a simulated chip"
+    bool(avr_bench.missing_reason()),
+    reason=avr_bench.missing_reason() or "there is a simulated chip",
 )
 
 # Bytes of code, or records; and the stride of the cuts in saves.

@@ -11,7 +11,7 @@ from tests.support.texts import LANGUAGES
 from tiniscript.base.languages import texts
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.findings import Finding
-from tiniscript.lessons.forms import BLOCKS, TEXT, in_form
+from tiniscript.lessons.forms import BLOCKS, TEXT, sentences_in_form
 from tiniscript.lessons.sentences import EXAMPLES, sentence
 from tiniscript.studio import block_speech, page_lessons
 from tiniscript.studio.checking import profile_of
@@ -101,5 +101,5 @@ def test_what_a_check_finds_is_said_of_blocks_to_those_who_have_them(language: s
 
 def test_an_alternative_is_read_in_one_form() -> None:
     both = "Write [[a line|a block]] here[[ and there|]], `A`."
-    assert in_form(both, TEXT) == "Write a line here and there, `A`."
-    assert in_form(both, BLOCKS) == "Write a block here, `A`."
+    assert sentences_in_form(both, TEXT) == "Write a line here and there, `A`."
+    assert sentences_in_form(both, BLOCKS) == "Write a block here, `A`."

@@ -16,7 +16,7 @@ import pytest
 from tests.support.lesson_findings import findings_of
 from tests.support.texts import LANGUAGES
 from tiniscript.lessons import catalogue
-from tiniscript.lessons.catalogue import NAMED
+from tiniscript.lessons.catalogue import NUMBER_GAP
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.markdown import blocks, printed_part
 from tiniscript.lessons.sentences import sentence
@@ -374,10 +374,10 @@ def test_a_task_says_the_numbers_that_are_measured(folder: Path, language: str) 
     written_text = printed_part((folder / f"pupil.{language}.md").read_text(encoding="utf-8"))
     task = written_text.split("\n## ")[-2]
     assert "{seconds}" in task
-    assert not re.search("[0-9]", re.sub(r"`[^`]*`", "", NAMED.sub("", task))), task
+    assert not re.search("[0-9]", re.sub(r"`[^`]*`", "", NUMBER_GAP.sub("", task))), task
     for criterion in lesson.criteria:  # one tolerance for all criteria of a place
         if "within_cm" in criterion.number_by_key and criterion.places and not criterion.area:
-            names = {name for name in NAMED.findall(task) if name.endswith(".within_cm")}
+            names = {name for name in NUMBER_GAP.findall(task) if name.endswith(".within_cm")}
             tolerances = {criterion.number_by_key["within_cm"] for criterion in lesson.criteria for name in names
                           if name == f"{criterion.kind}.within_cm"}  # fmt: skip
             assert tolerances == {criterion.number_by_key["within_cm"]}, criterion.kind

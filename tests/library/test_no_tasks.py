@@ -102,7 +102,7 @@ def test_the_studio_neither_sends_nor_simulates() -> None:
     line = checking.line_for_robot(TEXT.encode(), ROBOT, "es")
     assert not isinstance(line, str) and (line.code, line.line) == ("TS308", 2)
     check = page_lessons.LessonCheck(1, TEXT.encode(), "es")
-    assert check.go(1000)["verdict"] == page_lessons.MISTAKES
+    assert check.advance(1000)["verdict"] == page_lessons.MISTAKES
 
 
 @pytest.mark.parametrize("do", ["upload", "live"])

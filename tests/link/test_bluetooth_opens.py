@@ -158,7 +158,7 @@ def test_ctrl_c_leaves_the_device(
     device = Device()
     device.fails_at = stage
 
-    bell = interrupted_bell(lambda: sleep(event_loop.LOOK_S))
+    bell = interrupted_bell(lambda: sleep(event_loop.POLL_INTERVAL_S))
     with monkeypatch.context() as pressed:
         pressed.setattr(event_loop, "Bell", bell)
         with pytest.raises(KeyboardInterrupt):

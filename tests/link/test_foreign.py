@@ -230,8 +230,8 @@ def test_a_connection_says_what_answers_instead_of_a_robot(recording: Recording)
 def test_the_page_says_what_its_port_has_heard(name: str) -> None:
     recording = RECORDINGS[name]
     page = PageRobot("tinibot", "es", PageKeys(b""))
-    page.go(recording.data, 5, [{"do": "hello", "id": 1, "limit_ms": 300}])
-    news = [item for now_ms in range(5, 900, 20) for item in page.go(b"", now_ms, [])["news"]]
+    page.advance(recording.data, 5, [{"do": "hello", "id": 1, "limit_ms": 300}])
+    news = [item for now_ms in range(5, 900, 20) for item in page.advance(b"", now_ms, [])["news"]]
     (answer,) = news
     assert answer["failure"] == FOREIGN
     assert answer["said"].startswith(foreign.explanation_of(recording.name, "es").meaning)

@@ -30,7 +30,7 @@ class Waits:
         assert limit_s == READ_S
         self.count += 1
         if self.then and self.port is not None:
-            self.port.bring(self.then.pop())
+            self.port.add_received(self.then.pop())
 
 
 def port_and_waits(monkeypatch: pytest.MonkeyPatch) -> tuple[PushedTransport, Waits]:
@@ -51,7 +51,7 @@ def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: 
             what = "end"
         if what == "bring":
             data = rng.randbytes(rng.choice((1, 20, 300)))
-            port.bring(data)
+            port.add_received(data)
             unread += data
         elif what == "cancel":
             port.cancel_read()
@@ -91,8 +91,8 @@ def test_room_that_was_read_is_there_again(monkeypatch: pytest.MonkeyPatch, coun
     port, _ = port_and_waits(monkeypatch)
     for _ in range(3):
         for _ in range(count // 1000):
-            port.bring(bytes(1000))
-        port.bring(bytes(count % 1000))
+            port.add_received(bytes(1000))
+        port.add_received(bytes(count % 1000))
         assert port.in_waiting == min(count, MOST_BUFFERED_BYTES)
         assert len(port.read(10 * MOST_BUFFERED_BYTES)) == min(count, MOST_BUFFERED_BYTES)
         assert port.in_waiting == 0

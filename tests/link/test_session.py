@@ -48,11 +48,11 @@ LOW, SAVING = STATUSES["LOW_SUPPLY"], STATUSES["SAVING"]
 def sending(session: Session, until_ms: int) -> list[tuple[int, bytes]]:
     """Return a session's output if it is woken exactly when it requested."""
     packets = []
-    while (at := session.wakes_at()) is not None and at <= until_ms:
+    while (at := session.next_wake_ms()) is not None and at <= until_ms:
         data = session.poll(at)
         if data:
             packets.append((at, data))
-        assert session.wakes_at() != at or session.wakes_at() is None, (
+        assert session.next_wake_ms() != at or session.next_wake_ms() is None, (
             "it wants to be woken at once"
         )
     return packets
@@ -77,7 +77,7 @@ def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
     assert 20 <= len(sent) + 1 <= TRIES
     sending(session, 2 * EXCHANGE_TIMEOUT_MS)
     assert request.outcome and request.outcome.status == LOST
-    assert session.wakes_at() is None
+    assert session.next_wake_ms() is None
 
 
 def test_a_retry_learns_how_long_an_answer_takes() -> None:
@@ -115,7 +115,7 @@ def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_en
     session.receive(answer(session.poll(0), receipt(1)), 0)
     assert live.outcome and session.is_running
     for _ in range(3):
-        begun_ms = session.wakes_at()
+        begun_ms = session.next_wake_ms()
         assert begun_ms is not None
         data = session.poll(begun_ms)
         late_ms = begun_ms + 900
@@ -515,7 +515,7 @@ def over() -> tuple[Session, int]:
     session = greet()
     session.live(FORWARD)
     session.receive(answer(session.poll(0), receipt(1)), 0)
-    at = session.wakes_at()
+    at = session.next_wake_ms()
     assert at is not None
     session.receive(answer(session.poll(at), {"state": 0, "run": 1}), at)
     return session, at

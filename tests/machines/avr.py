@@ -38,7 +38,7 @@ BUILT = {
     MEGA: ("atmega2560", "-Wl,--section-start=.data=0x8002c0"),
 }
 FLAGS = ("-std=c++11", "-Os", "-flto", "-fno-exceptions", "-fno-rtti")
-missing = avr_bench.why_missing
+missing = avr_bench.missing_reason
 
 
 @lru_cache(maxsize=4)

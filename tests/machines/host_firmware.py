@@ -202,7 +202,7 @@ class HostFirmware(Process):
 
     def _turn(self, session: Session, data: bytes, most_ms: int, flags: int = 0) -> None:
         """Let a millisecond pass, or more while neither side sends."""
-        wakes_ms = session.wakes_at()
+        wakes_ms = session.next_wake_ms()
         quiet_ms = most_ms if wakes_ms is None else min(most_ms, wakes_ms - self.now_ms)
         if data or flags or quiet_ms < 2:
             sent_bytes = self.step(data, flags)

@@ -43,7 +43,7 @@ QUIET = ("-m", "16M", "-nodefaults", "-display", "none", "-serial", "none", "-mo
 
 def missing(name: str) -> str:
     """Return the reason why there is no such chip, or ""."""
-    return chips.why_missing(chips.CHIPS[name], can_run=True)
+    return chips.missing_reason(chips.CHIPS[name], can_run=True)
 
 
 class Emulated(Process):

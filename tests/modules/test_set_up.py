@@ -181,7 +181,7 @@ def test_a_module_that_sleeps_is_woken() -> None:
     end = Hm10()
     end.is_asleep = True
     wire = SimulatedWire(end)
-    assert find_module(wire, wakes=False) is None
+    assert find_module(wire, wakes_module=False) is None
     assert find_only_module(wire).dialect.name == "HM-10"
 
 

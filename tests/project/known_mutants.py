@@ -91,7 +91,7 @@ KNOWN: tuple[Known, ...] = (
           "  line_end();\n  part();", "  part();",
           "tests/firmware/test_esp32_broker.py::test_a_robot_that_is_told_its_broker_often_has_one_connection"),
     Known("events that nobody takes", "compiler/tiniscript/virtual/robot.py",
-          "        del self._traced.events[:-MOST_EVENTS]\n", "",
+          "        del self._traced_robot.events[:-MOST_EVENTS]\n", "",
           "tests/virtual/test_virtual_robot.py::test_of_what_nobody_takes_the_newest_is_kept"),
     Known("a large whole number", "compiler/tiniscript/codegen/sketch/expressions.py",
           "if value % ONE == 0:", "if value % ONE == 1:",

@@ -10,15 +10,23 @@ import pytest
 from tests.support.platformio import firmware, shared_folder
 from tools import uno
 from tools.bench import avr_bench, machine, sizes, sketch_cycles
-from tools.bench.workloads import MOST_CYCLES, WORKS, Work, WrongResult, check, expected_values
+from tools.bench.workloads import (
+    MOST_CYCLES,
+    WORKLOADS,
+    Workload,
+    WrongResult,
+    check,
+    expected_values,
+)
 
 needs_chip = pytest.mark.skipif(
-    bool(avr_bench.why_missing()), reason=avr_bench.why_missing() or "there is a simulated chip"
+    bool(avr_bench.missing_reason()),
+    reason=avr_bench.missing_reason() or "there is a simulated chip",
 )
 
 
-@pytest.mark.parametrize("work", WORKS, ids=lambda work: work.name)
-def test_a_wrong_value_is_an_error(work: Work) -> None:
+@pytest.mark.parametrize("work", WORKLOADS, ids=lambda work: work.name)
+def test_a_wrong_value_is_an_error(work: Workload) -> None:
     shown = expected_values(work)
     check("some machine", work, shown)
     for other in ((*shown[:-1], shown[-1] + 1), shown[:-1]):
@@ -29,9 +37,9 @@ def test_a_wrong_value_is_an_error(work: Work) -> None:
 @needs_chip
 @pytest.mark.parametrize(
     ("work", "must"),
-    [pytest.param(*row, id=row[0].name) for row in zip(WORKS, MOST_CYCLES, strict=True)],
+    [pytest.param(*row, id=row[0].name) for row in zip(WORKLOADS, MOST_CYCLES, strict=True)],
 )
-def test_cycles_are_at_most_what_they_must(work: Work, must: float) -> None:
+def test_cycles_are_at_most_what_they_must(work: Workload, must: float) -> None:
     assert 1 < machine.per_iteration(work) <= must
 
 
@@ -43,7 +51,7 @@ def test_the_shipped_sketch_takes_its_main_loop_more(
     if uno.missing():
         pytest.skip(uno.missing())
     sketch = firmware("uno", tmp_path_factory.mktemp("sketch"), shared_folder(tmp_path_factory))
-    for work in WORKS:
+    for work in WORKLOADS:
         short = work._replace(loop_count=2000)
         alone = machine.per_iteration(short)
         assert alone < sketch_cycles.per_iteration(sketch, short) < 1.25 * alone

@@ -30,7 +30,7 @@ def test_a_stage_knows_what_stands_below_it() -> None:
 
 def test_no_circle_of_files() -> None:
     """This includes imports at the top, inside functions, and for types alone."""
-    assert not measures.circles(measures.imports_of(FILES))
+    assert not measures.import_cycles(measures.imports_of(FILES))
 
 
 def test_the_road_needs_the_standard_library_alone() -> None:

@@ -174,7 +174,7 @@ class Stage:
         self.fails, self.steps = fails, list[str]()
         self.folder = tmp_path / "made"
         monkeypatch.setattr(release, "_clones", self.clones)
-        monkeypatch.setattr(facts, "complaints", lambda root: self.complaints_of("a fact"))
+        monkeypatch.setattr(facts, "release_problems", lambda root: self.complaints_of("a fact"))
         monkeypatch.setattr(
             release, "find_missing_tool", lambda parts: "".join(self.complaints_of("a tool"))
         )

@@ -25,7 +25,7 @@ from tests.support.needs import need
 from tests.support.new_word import CHEEP
 from tiniscript import compile_text, robots
 from tiniscript.base import words
-from tiniscript.base.fixed_point import clamp, whole
+from tiniscript.base.fixed_point import clamp, round_to_whole
 from tiniscript.bytecode import opcodes
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.codegen.sketch import helpers
@@ -45,7 +45,7 @@ OP = opcodes._op(0x5F, "CHEEP", "", "time hertz --", "plain", "Sound the buzzer 
 def cheep(machine: Drive, next_pc: int) -> Step:
     def step() -> int:
         hertz, time_milli = machine.task.stack.pop(), machine.task.stack.pop()
-        machine.robot.beep(clamp(whole(hertz), 31, 20_000), max(0, time_milli))
+        machine.robot.beep(clamp(round_to_whole(hertz), 31, 20_000), max(0, time_milli))
         return next_pc
 
     return step

@@ -194,7 +194,7 @@ from tiniscript.studio import block_kinds
 from tools.builds.page_texts import page_texts
 from tools.generate import text_tables
 texts = [page_texts(language) for language in ("en", "es")]
-labels = [each["block/HORN"] for each in texts] + [block_kinds.SAYS["CHIME"]]
+labels = [each["block/HORN"] for each in texts] + [block_kinds.BLOCK_TEXTS["CHIME"]]
 from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import read_blocks
 from tiniscript import robots
@@ -249,7 +249,7 @@ lines = [line.text for line in poster.page("es") if isinstance(line, poster.Line
 print(json.dumps({
     "lacked": [LAMP.text in level.lacks for level in LEVELS.values()],
     "tables": text_tables.words_tables("a test"),
-    "block": [form.body[0].kind, format_blocks(form).text, block_kinds.SAYS[LAMP.text]],
+    "block": [form.body[0].kind, format_blocks(form).text, block_kinds.BLOCK_TEXTS[LAMP.text]],
     "says": lines[lines.index(LAMP.example) + 1],
     "reference": documents.language_document("docs/es/language.md", "es"),
 }))

@@ -161,8 +161,12 @@ def test_a_wheel_says_its_licence_and_its_description_leads_to_files_wherever_it
     assert (about / "licenses" / "LICENSE").read_text() == (ROOT / "LICENSE").read_text()
     text = (about / "METADATA").read_text(encoding="utf-8")
     head, _, shown_text = text.partition("\n\n")
-    for row in ("License-Expression: MIT", f"Project-URL: Source, {URL}", f"Author: {facts.PEOPLE}",
-                "Description-Content-Type: text/markdown"):  # fmt: skip
+    for row in (
+        "License-Expression: MIT",
+        f"Project-URL: Source, {URL}",
+        f"Author: {facts.AUTHORS}",
+        "Description-Content-Type: text/markdown",
+    ):
         assert f"\n{row}\n" in f"{head}\n"
     links = re.findall(r"(!?)\[[^]]*\]\(([^)]+)\)", shown_text)
     assert len(links) > 30

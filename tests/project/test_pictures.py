@@ -21,7 +21,7 @@ SIGN = 0.602  # the width of a sign, of its size
 
 @pytest.fixture(scope="module", params=sources(ROOT, "README.md"))
 def drawing(request: pytest.FixtureRequest) -> ElementTree.Element:
-    return ElementTree.fromstring(front.front(request.param, "a test"))
+    return ElementTree.fromstring(front.front_picture(request.param, "a test"))
 
 
 def test_nothing_is_cut_off(drawing: ElementTree.Element) -> None:
@@ -95,4 +95,4 @@ def test_a_picture_of_a_guide_has_all_of_its_parts_inside(name: str) -> None:
 
 def test_a_way_keeps_its_bends_and_its_returns() -> None:
     way = [(0.0, 0.0), (5.0, 0.1), (10.0, 0.0), (10.0, 5.0), (10.0, 9.0), (10.0, 3.0)]
-    assert arena.bends(way) == [(0.0, 0.0), (10.0, 0.0), (10.0, 9.0), (10.0, 3.0)]
+    assert arena.simplified_path(way) == [(0.0, 0.0), (10.0, 0.0), (10.0, 9.0), (10.0, 3.0)]

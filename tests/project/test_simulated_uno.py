@@ -46,7 +46,7 @@ def test_it_tells_how_long_interrupts_are_off() -> None:
         build_uno("masked", Program=500, Interrupt=300, Later=200), watches_masked=True
     ) as uno:
         uno.run_ms(20)
-        spans = uno.longest_masked()
+        spans = uno.longest_masked_spans()
     program = [span.cycle_count for span in spans if span.vector == 0]
     entries = [span for span in spans if span.is_entry]
     later = [span.cycle_count for span in spans if span.vector and not span.is_entry]

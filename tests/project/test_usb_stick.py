@@ -35,7 +35,7 @@ def stick(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder.mkdir()
     usb_stick.add_texts(folder)
     usb_stick.add_readme(
-        folder, "Linux", "3.11", [usb_stick.Missing("no_radio", "BeOS", "no network")]
+        folder, "Linux", "3.11", [usb_stick.MissingPart("no_radio", "BeOS", "no network")]
     )
     return folder
 
@@ -218,12 +218,12 @@ def test_an_installer_that_cannot_be_fetched_is_named(tmp_path: Path) -> None:
     missing = usb_stick.add_installer(tmp_path, "file:///nowhere/python-3.13.9-amd64.exe")
     assert "by hand" in missing[0].sentence("en")
     assert "a mano" in missing[0].sentence("es")
-    assert "No such file" in missing[0].why
+    assert "No such file" in missing[0].reason
     page = tmp_path / "page.exe"
     page.write_text("<html>blocked by the school</html>")
     target = tmp_path / "stick"
     target.mkdir()
-    assert "not that installer" in usb_stick.add_installer(target, page.as_uri())[0].why
+    assert "not that installer" in usb_stick.add_installer(target, page.as_uri())[0].reason
     assert list(target.iterdir()) == []
     digest = hashlib.sha256(page.read_bytes()).hexdigest()
     assert usb_stick.add_installer(target, page.as_uri(), digest) == []

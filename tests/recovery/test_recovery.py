@@ -229,7 +229,7 @@ def test_a_row_that_is_made_without_asking_loses_no_number(
 ) -> None:
     monkeypatch.setattr(rows, "TOKENS", f"^ S @num $ | S | 1 | TS044 | {how} | S 5 => S")
     (row,) = rewrites.token_rows.__wrapped__()
-    line = rewrites.Encoded(lexemes("S 5"), Names([], KIT))
+    line = rewrites.EncodedLine(lexemes("S 5"), Names([], KIT))
     (match,) = line.matches(row.pattern)
     assert (line.apply_row(row, match) is not None) is is_made
 

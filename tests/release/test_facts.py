@@ -64,9 +64,9 @@ def clone(tmp_path: Path) -> Path:
 
 
 def test_what_is_ready_gets_no_complaint(clone: Path) -> None:
-    assert list(facts.complaints(clone)) == []
+    assert list(facts.release_problems(clone)) == []
     git(clone, "tag", f"v{VERSION}")
-    assert list(facts.complaints(clone)) == []
+    assert list(facts.release_problems(clone)) == []
 
 
 WRONG: dict[str, Callable[[Path], object]] = {
@@ -87,9 +87,9 @@ WRONG: dict[str, Callable[[Path], object]] = {
     "docs/en/versions.md has version": replace_in_file(
         "docs/en/versions.md", f"`{VERSION}`", "`0.0.1`"
     ),
-    "LICENSE names Somebody": replace_in_file("LICENSE", facts.PEOPLE, "Somebody"),
-    "CITATION.cff names nobody": replace_in_file("CITATION.cff", facts.PEOPLE, ""),
-    "pyproject.toml names": replace_in_file("pyproject.toml", facts.PEOPLE, "Ann"),
+    "LICENSE names Somebody": replace_in_file("LICENSE", facts.AUTHORS, "Somebody"),
+    "CITATION.cff names nobody": replace_in_file("CITATION.cff", facts.AUTHORS, ""),
+    "pyproject.toml names": replace_in_file("pyproject.toml", facts.AUTHORS, "Ann"),
     "does not say how to reach": replace_in_file(
         "SECURITY.md", "people@example.org", facts.NO_CONTACT
     ),
@@ -104,7 +104,7 @@ def test_what_is_wrong_is_said_in_a_sentence(clone: Path) -> None:
     for why, change in WRONG.items():
         change(clone)
         commit(clone)
-        complaints = list(facts.complaints(clone))
+        complaints = list(facts.release_problems(clone))
         assert len(complaints) == 1 and why in complaints[0] and len(complaints[0]) < 200, (
             why,
             complaints,
@@ -114,14 +114,14 @@ def test_what_is_wrong_is_said_in_a_sentence(clone: Path) -> None:
 
 def test_a_file_that_is_not_committed_is_named(clone: Path) -> None:
     (clone / "new.txt").touch()
-    (complaint,) = facts.complaints(clone)
+    (complaint,) = facts.release_problems(clone)
     assert complaint.startswith("1 files are not committed, new.txt among them.")
 
 
 def test_another_commit_with_the_tag_of_this_version_is_told(clone: Path) -> None:
     git(clone, "tag", f"v{VERSION}")
     commit(clone)
-    (complaint,) = facts.complaints(clone)
+    (complaint,) = facts.release_problems(clone)
     assert (
         complaint == f"The tag v{VERSION} is that of another commit: give this one a new version."
     )
@@ -130,7 +130,7 @@ def test_another_commit_with_the_tag_of_this_version_is_told(clone: Path) -> Non
 def test_a_tag_of_another_version_is_told(clone: Path) -> None:
     git(clone, "tag", "v1.2.3")
     git(clone, "tag", "seen")
-    (complaint,) = facts.complaints(clone)
+    (complaint,) = facts.release_problems(clone)
     assert "v1.2.3" in complaint and VERSION in complaint
 
 
@@ -138,7 +138,7 @@ def test_a_release_gets_its_tag_once(clone: Path) -> None:
     for _ in range(2):
         release.tag(clone, VERSION)
     assert facts.tags(clone) == [f"v{VERSION}"]
-    assert list(facts.complaints(clone)) == []
+    assert list(facts.release_problems(clone)) == []
     commit(clone)
     with pytest.raises(CannotMake, match=r"git tag does not work: .*already exists"):
         release.tag(clone, VERSION)
@@ -171,11 +171,11 @@ def test_an_address_is_kept_where_it_is_another_one(
                               capture_output=True, check=True)  # fmt: skip
         assert len(log.stdout.splitlines()) == commits
         assert shared_clone.address == url
-        assert list(facts.complaints(shared_clone.root)) == []
+        assert list(facts.release_problems(shared_clone.root)) == []
 
 
 def test_this_repository_agrees_with_itself() -> None:
     """The exceptions come only with a release: a date, an address, a commit of everything."""
     brought = ("CHANGELOG.md", "not committed", "does not say", "The tag", "The commit has")
-    assert [complaint for complaint in facts.complaints(ROOT)
+    assert [complaint for complaint in facts.release_problems(ROOT)
             if not any(word in complaint for word in brought)] == []  # fmt: skip

@@ -71,7 +71,7 @@ def test_a_commit_is_released_and_tagged_if_nothing_is_wrong(
     monkeypatch.setattr(release, "find_missing_tool", lambda parts: "")
     monkeypatch.setattr(release, "_clones", lambda *_: clones)
     monkeypatch.setattr(release, "_make", make)
-    monkeypatch.setattr(facts, "complaints", lambda root: ["wrong"] * has_complaint)
+    monkeypatch.setattr(facts, "release_problems", lambda root: ["wrong"] * has_complaint)
     monkeypatch.setattr(release, "tag", lambda root, version: tagged_versions.append(version))
     options = ["--as-is"] * goes_on + ["--tag"] * tags
     code = release.main([str(tmp_path / "made"), *options])

@@ -15,7 +15,7 @@ from tests.support.edited_robots import TEXTS, edit_profile
 from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES, catalogue_texts
 from tiniscript import robots
-from tiniscript.robots.boards import NEEDS
+from tiniscript.robots.boards import ABILITIES
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe, printable_value
@@ -246,7 +246,7 @@ def test_every_code_has_a_test() -> None:
     texts = catalogue_texts("en", "refusals")
     codes = {key.removeprefix("profile/") for key in texts if key.startswith("profile/")}
     assert tested == {code for code in codes if not code.endswith("/near")}
-    assert {f"need/{need}" for need in NEEDS} == {key for key in texts if key[:5] == "need/"}
+    assert {f"need/{need}" for need in ABILITIES} == {key for key in texts if key[:5] == "need/"}
 
 
 def test_all_complaints_come_at_once() -> None:

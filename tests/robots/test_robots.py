@@ -12,7 +12,7 @@ import pytest
 from tests.support.edited_robots import FOLDER, TEXTS, edit_profile
 from tests.support.texts import LANGUAGES
 from tiniscript import robots
-from tiniscript.robots.boards import CHIPS, NEEDS, Chip
+from tiniscript.robots.boards import ABILITIES, CHIPS, Chip
 from tiniscript.robots.drivers import DRIVERS, drivers_for
 from tiniscript.robots.reader import read
 
@@ -211,7 +211,7 @@ def test_every_driver_is_for_something_and_needs_what_chips_know() -> None:
     assert uses == {"motors", "discs", *kinds}
     assert all(drivers_for(used_by) for used_by in uses)
     for driver in DRIVERS.values():
-        assert all(pin.ability in NEEDS for pin in driver.pins)
+        assert all(pin.ability in ABILITIES for pin in driver.pins)
         assert all(setting.low <= setting.default <= setting.high for setting in driver.settings)
 
 
@@ -220,8 +220,8 @@ def test_every_need_has_a_pin_and_the_link_none(chip: Chip) -> None:
     every = chip.digital_pins | chip.reading_pins | chip.analog_pins
     assert not every & chip.link_pins
     assert set(chip.timer_of_pwm_pin) <= chip.digital_pins
-    assert all(chip.can(pin, "input") for pin in chip.digital_pins | chip.reading_pins)
-    missing = {need for need in NEEDS if not any(chip.can(pin, need) for pin in every)}
+    assert all(chip.has_ability(pin, "input") for pin in chip.digital_pins | chip.reading_pins)
+    missing = {need for need in ABILITIES if not any(chip.has_ability(pin, need) for pin in every)}
     assert missing == ({"count"} if chip.name == "esp32c3" else set())
     assert all(chip.pin_number(_parse_key(chip.pin_name(pin))) == pin for pin in every)
 

@@ -13,7 +13,7 @@ from typing import cast
 import pytest
 
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.outcomes import LOOK_S, ConnectionLost, ShownEvent
+from tiniscript.link.outcomes import POLL_INTERVAL_S, ConnectionLost, ShownEvent
 from tiniscript.link.payloads import EmptyReply
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing import protocol, shared_connection
@@ -83,7 +83,7 @@ def listens(line: SharedConnection, holder: Holder, seconds: float) -> float:
     began_s = holder.now_s
     while holder.now_s - began_s < seconds:
         try:
-            line.event(LOOK_S)
+            line.event(POLL_INTERVAL_S)
         except ConnectionLost as over:
             assert over.is_server
             break
@@ -94,14 +94,14 @@ def listens(line: SharedConnection, holder: Holder, seconds: float) -> float:
 def test_a_holder_that_answers_is_waited_for(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
     """At once, sometimes late, or always nearly too late; other messages count as well."""
     rng = random.Random(seed)
-    longest_s = rng.choice((0.0, 1.0, DEAF_S - 3 * LOOK_S))
+    longest_s = rng.choice((0.0, 1.0, DEAF_S - 3 * POLL_INTERVAL_S))
     holder = Holder(lambda: rng.choice((0.0, longest_s)))
     line = open_shared_connection(monkeypatch, holder)
     if seed % 2:
         for second in range(int(LONG_S)):
             holder.says(SHOWN, second + rng.random())
     assert listens(line, holder, LONG_S) >= LONG_S and not line.has_ended
-    assert holder.beats > LONG_S / (protocol.HEARTBEAT_S + LOOK_S) / 2
+    assert holder.beats > LONG_S / (protocol.HEARTBEAT_S + POLL_INTERVAL_S) / 2
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -112,7 +112,11 @@ def test_a_holder_that_falls_silent_is_given_up(monkeypatch: pytest.MonkeyPatch,
     line = open_shared_connection(monkeypatch, holder)
     ended_s = listens(line, holder, LONG_S * 2)
     assert line.has_ended
-    assert dies_s - 1.0 + DEAF_S - LOOK_S < ended_s < dies_s + DEAF_S + 1.0 + 3 * LOOK_S
+    assert (
+        dies_s - 1.0 + DEAF_S - POLL_INTERVAL_S
+        < ended_s
+        < dies_s + DEAF_S + 1.0 + 3 * POLL_INTERVAL_S
+    )
     with pytest.raises(ConnectionLost):
         line.event(0)
 

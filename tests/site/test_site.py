@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 def site_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return once(
         shared_folder(tmp_path_factory) / "site",
-        lambda path: site.build(ROOT, path, has_studio=not studio_build.why_stale()),
+        lambda path: site.build(ROOT, path, has_studio=not studio_build.unusable_reason()),
     )
 
 
@@ -137,9 +137,9 @@ def test_a_link_that_leads_nowhere_ends_the_build(
 def test_a_dead_link_ends_the_build(
     tmp_path: Path, site_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """These are links that neither half sees: those between the halves, and in templates."""
+    """These links Sphinx does not check: those between the languages, and in templates."""
 
-    def render(half: Path, folder: Path, link: object, has_studio: bool) -> None:
+    def render(source_folder: Path, folder: Path, link: object, has_studio: bool) -> None:
         folder.mkdir(parents=True)
         (folder / "store.html").write_text('<a href="../es/monday.html#nowhere">no</a>')
         (folder / "monday.html").touch()
@@ -221,13 +221,13 @@ def test_a_word_is_found(visitor: Page, address: str) -> None:
         visitor.wait_for_selector(f"ul.search li a:has-text('{title}')")
 
 
-def test_each_half_leads_to_the_other(visitor: Page, address: str) -> None:
+def test_each_language_links_to_the_other(visitor: Page, address: str) -> None:
     visitor.goto(f"{address}en/monday.html")
-    visitor.click(".halves a[lang=es]")
+    visitor.click(".languages a[lang=es]")
     assert visitor.url == f"{address}es/monday.html"
     assert visitor.locator("html").get_attribute("lang") == "es"
     visitor.goto(f"{address}en/link.html")  # the page exists only in English
-    visitor.click(".halves a[lang=es]")
+    visitor.click(".languages a[lang=es]")
     assert visitor.url == f"{address}es/index.html"
 
 
@@ -250,7 +250,7 @@ def _around(path: Path) -> set[str]:
 def test_the_studio_is_on_the_site(visitor: Page, address: str, site_folder: Path) -> None:
     assert not (site_folder / "studio" / studio_build.STAMP).exists()
     visitor.goto(f"{address}en/lessons.html")
-    visitor.click(".halves a:has-text('Studio')")
+    visitor.click(".languages a:has-text('Studio')")
     visitor.wait_for_selector("[data-state]", state="attached")
     assert visitor.url.startswith(f"{address}studio/")
 
@@ -267,7 +267,7 @@ def test_a_folder_with_something_in_it_is_left_alone(
 def test_a_studio_that_is_not_built_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(studio_build, "why_stale", lambda: "the page is not built.")
+    monkeypatch.setattr(studio_build, "unusable_reason", lambda: "the page is not built.")
     assert site.main([str(tmp_path / "site")]) == 2
     assert capsys.readouterr().err == "site: the page is not built. Without it:  --no-studio\n"
 

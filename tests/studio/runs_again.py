@@ -51,7 +51,7 @@ def record_run(number: int, is_held: bool = False) -> tuple[bytes, list[Row]]:
     if run.held_at is not None or rng.random() < 0.3:
         run.stop()
         if rng.random() < 0.5:
-            run.go(rng.randint(0, 30))
+            run.advance(rng.randint(0, 30))
     rows, end_ms = run.rows(), run.robot.now_ms
     run.close()
     first = header_line(VIRTUAL, text, profile, checksum(compilation.image), world=world,
@@ -65,7 +65,7 @@ def _act(rng: random.Random, run: Simulation) -> None:
         run.press(rng.randrange(64), rng.choice((0, -100, 40)), rng.choice((0, 7)))
     if rng.random() < 0.15:
         run.push()
-    run.go(rng.randint(0, 200))
+    run.advance(rng.randint(0, 200))
 
 
 def differs(number: int, is_held: bool = False) -> str | None:

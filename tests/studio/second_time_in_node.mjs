@@ -3718,7 +3718,7 @@ const PARTS = {
           const def = workspace().getBlocksByType('def')[0];
           if (!def) return;
           const before = changes;
-          chance.of([() => def.more(), () => def.less(), () => def.names().length && def.setFieldValue(`Z${chance.below(99)}`, 'P0')])();
+          chance.of([() => def.addOne(), () => def.removeOne(), () => def.names().length && def.setFieldValue(`Z${chance.below(99)}`, 'P0')])();
           await passes(100);
           const calls = workspace().getBlocksByType('call');
           for (const call of calls) {

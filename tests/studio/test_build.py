@@ -16,7 +16,7 @@ from tests.support.needs import need
 from tiniscript.base.languages import SOURCE_LANGUAGE, languages, merged_catalogue, plural_text
 from tiniscript.flash import ready
 from tiniscript.studio import building, serving
-from tiniscript.studio.block_kinds import KINDS, PLAIN, SAYS
+from tiniscript.studio.block_kinds import BLOCK_TEXTS, KINDS, PLAIN_TEXTS
 from tiniscript.studio.serving import POLICY
 from tools import CannotMake
 from tools.builds import studio
@@ -37,7 +37,7 @@ OTHERS = ("block", "blockly", "editor", "tip")  # keys of other tables, which fo
 
 @pytest.fixture(scope="module")
 def page() -> Path:
-    need(studio.why_stale())
+    need(studio.unusable_reason())
     return studio.PAGE
 
 
@@ -105,9 +105,9 @@ def test_every_block_says_something_and_nothing_else_does() -> None:
     words = [*KINDS, *(word for kind in KINDS.values() for word in kind.words)]
     words += [unit for kind in KINDS.values() for unit in kind.units.values()]
     words += ["seconds", "SI", "SB", "PING", "elseif", "else"]
-    blocks = {f"block/{word}" for word in words if not SAYS.get(word)}
+    blocks = {f"block/{word}" for word in words if not BLOCK_TEXTS.get(word)}
     blocks_with_text = {key for key in keys if key.startswith("block/")}
-    assert blocks_with_text - {f"block/{word}" for word in PLAIN} == blocks
+    assert blocks_with_text - {f"block/{word}" for word in PLAIN_TEXTS} == blocks
     tips = {key.partition("/")[2] for key in keys if key.startswith("tip/")}
     buttons = {"more", "less", "more_values", "less_values"}
     assert tips <= {*KINDS, "program", *buttons} and len(tips) > 25
@@ -221,24 +221,26 @@ def change_sources_in(monkeypatch: pytest.MonkeyPatch, step: str) -> None:
     )
 
 
-@pytest.mark.parametrize("step", ["check_types", "bundle", "put_own_files", "write_service_worker"])
+@pytest.mark.parametrize(
+    "step", ["check_types", "bundle", "write_own_files", "write_service_worker"]
+)
 def test_a_page_whose_sources_change_while_it_is_built_is_not_used(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
 ) -> None:
     (tmp_path / studio.STAMP).write_text("{}")
-    for name in ("check_types", "bundle", "put_own_files", "write_service_worker"):
+    for name in ("check_types", "bundle", "write_own_files", "write_service_worker"):
         monkeypatch.setattr(studio, name, lambda *_: None)
-    studio.build_again(tmp_path)
-    assert not studio.why_stale(tmp_path)
+    studio.rebuild(tmp_path)
+    assert not studio.unusable_reason(tmp_path)
     change_sources_in(monkeypatch, step)
-    studio.build_again(tmp_path)
-    assert "is out of date: the sources" in studio.why_stale(tmp_path)
+    studio.rebuild(tmp_path)
+    assert "is out of date: the sources" in studio.unusable_reason(tmp_path)
 
 
 def test_a_page_of_other_sources_is_not_used(tmp_path: Path) -> None:
-    assert studio.COMMAND in studio.why_stale(tmp_path)
+    assert studio.COMMAND in studio.unusable_reason(tmp_path)
     (tmp_path / studio.STAMP).write_text('{"sources": "others"}')
-    assert "is out of date: the sources" in studio.why_stale(tmp_path)
+    assert "is out of date: the sources" in studio.unusable_reason(tmp_path)
     assert studio.main(["--check", "-o", str(tmp_path)]) == 2
 
 

@@ -16,7 +16,7 @@ import pytest
 
 from tests.support.class_room import FakeRobot, Room, without_ports
 from tiniscript.studio.class_keeping import MOST_PUPILS
-from tiniscript.studio.classroom import HERE_S, PLACE_S, QUEUE_S, REST_S
+from tiniscript.studio.classroom import PLACE_S, PRESENCE_S, QUEUE_S, REST_S
 from tiniscript.studio.robot_link import BadRequest
 
 __all__ = ["without_ports"]  # a fixture
@@ -245,7 +245,7 @@ class History:
         assert kept_order == stayed or self.had_turn, (kept_order, stayed)
         self.order = names
         self.had_turn = any(row["robot"] for row in state["pupils"])
-        is_somebody_next = any(now_s - heard_s.get(name, 0) <= HERE_S for name in names)
+        is_somebody_next = any(now_s - heard_s.get(name, 0) <= PRESENCE_S for name in names)
         for robot in state["robots"]:
             rests = now_s < self.failed_s.get(robot["port"], float("-inf")) + REST_S
             assert robot["pupil"] or rests or not is_somebody_next, "a robot stands idle"

@@ -144,7 +144,7 @@ def test_four_have_room_and_who_is_silent_gives_the_place_away(school: School) -
     late = school.joins("Late")
     request = {"do": "group_join", "name": "Red", "text": ""}
     assert school.made.answer(late, HERE, request) == {"failure": "group_full"}
-    school.now_s += groups.GONE_S + 1
+    school.now_s += groups.ABSENCE_S + 1
     for member in members[1:]:
         member.sends()
     assert school.made.answer(late, HERE, request)["group"] == "Red"
@@ -517,7 +517,7 @@ def test_a_teacher_whose_page_is_silent_is_not_there(school: School) -> None:
     [group] = school.teaches("class")["groups"]
     teacher = Teacher(school, group["key"])
     assert [other["name"] for other in ana.sends()["others"]] == ["Teacher"]
-    school.now_s += groups.GONE_S + 1
+    school.now_s += groups.ABSENCE_S + 1
     assert ana.sends()["others"] == []
     assert teacher.asks("group", **teacher.request()) == {"left": True}
     second_teacher = Teacher(school, group["key"], teacher.page.name)

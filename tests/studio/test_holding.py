@@ -69,7 +69,7 @@ def test_variables_are_told_where_it_is_held() -> None:
         values.append(simulation.state()["variables"])
         simulation.step(5000)
     assert values[:4] == [[0, 0], [3, 0], [3, 0], [4, 0]] and values[-1] == [5, 0.001]
-    simulation.go(500)
+    simulation.advance(500)
     assert simulation.state()["variables"] == [5, 0.001]  # values left by the program
 
 
@@ -79,7 +79,7 @@ def test_a_program_that_was_held_does_the_same(name: str, robot: str, world: str
     """The events and times are the same, with steps and at 1,000 breakpoints."""
     result = check((ROOT / "examples" / f"{name}.ts").read_bytes(), robot, "en")
     plain = Simulation(robot, worlds.load(world), result.image)
-    plain.go(2500)
+    plain.advance(2500)
     wanted_events = plain.robot.take_events()
     parts = tuple(place.offset for place in result.places)
     marks = Marks(parts, (*parts, *range(1000)) if how == "breakpoints" else (), 0, how == "steps")
@@ -90,7 +90,7 @@ def test_a_program_that_was_held_does_the_same(name: str, robot: str, world: str
             held_simulation.step(plain.robot.now_ms - held_simulation.robot.now_ms)
         else:
             held_simulation.go_on()
-            held_simulation.go(plain.robot.now_ms - held_simulation.robot.now_ms)
+            held_simulation.advance(plain.robot.now_ms - held_simulation.robot.now_ms)
         pauses += held_simulation.held_at is not None
     assert pauses > 5
     assert held_simulation.robot.take_events() == wanted_events
@@ -105,7 +105,7 @@ def test_a_program_that_was_held_takes_as_long_as_it_calculates() -> None:
         simulation = started_simulation(text, at)
         while simulation.robot.is_running:
             simulation.go_on()
-            simulation.go(50)
+            simulation.advance(50)
         runs.append(trace_of(simulation))
     assert runs[0] == runs[1] == ["2 BEEP 440 100", "100 DONE"]
 
@@ -121,7 +121,7 @@ def test_breakpoints_hold_alike_whenever_they_are_set(text: str) -> None:
     while every.held_at is not None:
         arrivals.append((every.robot.now_ms, every.held_at))
         every.go_on()
-        every.go(LONGEST_PART_MS)
+        every.advance(LONGEST_PART_MS)
     pauses = [holds_of_a_run(text, arrivals, Random(seed)) for seed in range(HISTORIES)]
     assert sum(map(bool, pauses)) > HISTORIES / 2
 
@@ -148,7 +148,7 @@ def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], chance: Random) -
             simulation.step(duration_ms)
         else:
             simulation.go_on()
-            simulation.go(duration_ms)
+            simulation.advance(duration_ms)
         wanted = [k for k, (_, offset) in enumerate(arrivals) if is_step or offset in breakpoints]
         if wanted and arrivals[wanted[0]][0] <= now_ms + duration_ms:
             arrivals = arrivals[wanted[0] :]
@@ -167,23 +167,23 @@ def test_a_breakpoint_is_arrived_at_once_however_long_it_looks() -> None:
         if simulation.held_at is not None:
             times.append(simulation.robot.now_ms)
             simulation.go_on()
-        simulation.go(5000)
+        simulation.advance(5000)
     assert len(times) == 2 and times[1] - times[0] == 1000
 
 
 def test_nothing_passes_while_it_is_held() -> None:
     simulation = started_simulation("F(1, 80);\nR(1, 60)", at=(1,))
-    simulation.go(5000)
+    simulation.advance(5000)
     state = simulation.state()
     assert state["is_held"] and simulation.robot.now_ms - state["began_ms"] == 1000
-    simulation.go(5000)
+    simulation.advance(5000)
     assert simulation.state() == {**state, "events": [], "rows": []}
 
 
 def test_a_stop_ends_a_held_program() -> None:
     """No more of it is executed."""
     simulation = started_simulation("F(1, 80);\nR(1, 60)", at=(1,))
-    simulation.go(5000)
+    simulation.advance(5000)
     simulation.state()
     simulation.set_breakpoints(())
     simulation.stop()
@@ -197,31 +197,31 @@ def test_a_program_that_never_waits_is_held_too() -> None:
         "LOOP(FOREVER);\n  X = X + 1;\nEND_LOOP".replace("X = X", "X = 1"), at=(1,)
     )
     for _ in range(5):
-        simulation.go(100)
+        simulation.advance(100)
         assert simulation.held_at is not None
         simulation.go_on()
     simulation.set_breakpoints(())
     simulation.go_on()
-    simulation.go(400)
+    simulation.advance(400)
     assert simulation.held_at is None and simulation.robot.is_running
 
 
 def test_its_button_starts_a_program_that_can_be_held_again() -> None:
     simulation = started_simulation("SB|F(0.2, 80);SHOW(5)", at=(1,))
     for ends in (simulation.stop, simulation.go_on):
-        simulation.go(100)
+        simulation.advance(100)
         simulation.push()
-        simulation.go(1000)
+        simulation.advance(1000)
         assert simulation.held_at is not None
         ends()
-        simulation.go(1000)
+        simulation.advance(1000)
         assert not simulation.robot.is_running
 
 
 def test_offsets_outside_of_the_program_hold_nothing() -> None:
     simulation = started_simulation("F(0.1, 80)")
     simulation.set_breakpoints([-1, 5000, 70_000, 1 << 40])
-    simulation.go(2000)
+    simulation.advance(2000)
     assert not simulation.robot.is_running
     assert trace_of(simulation) == [
         f"{event.ms} {event.text}" for event in run("F(0.1, 80)").events

@@ -22,7 +22,7 @@ OF_A_TERMINAL = re.compile(r"\btsc\b|\w\.ts\b|____|--virtual|Ctrl|\[(print|page|
 def judge(number: int, program: str) -> tuple[dict[str, object], page_lessons.JudgedRun]:
     """Return the result of a check, and its run again, as the page plays it."""
     marking = page_lessons.LessonCheck(number, program.encode(), "en")
-    while not (answer := marking.go(700))["verdict"]:
+    while not (answer := marking.advance(700))["verdict"]:
         pass
     robot = catalogue.load(catalogue.folder_of(str(number))).robot
     image = check(program.encode(), robot, "en").image
@@ -33,7 +33,7 @@ def judge(number: int, program: str) -> tuple[dict[str, object], page_lessons.Ju
     for _ in range(10_000):
         if not judged_run.robot.is_running:
             break
-        judged_run.go(33)
+        judged_run.advance(33)
     return answer, judged_run
 
 
@@ -103,7 +103,7 @@ def test_a_run_whose_keys_the_judge_presses_is_seen_with_them() -> None:
     judged_run = page_lessons.JudgedRun("tinibot", 18, 1, 900, image, Marks(()))
     for _ in range(9):
         judged_run.press(1, 0, 100)
-        judged_run.go(100)
+        judged_run.advance(100)
     assert judged_run.state()["pose"][:2] == [160, 160]
 
 
@@ -124,8 +124,8 @@ def test_the_goals_of_a_task_are_where_its_judge_looks() -> None:
 def test_a_judged_run_can_be_stopped_before_its_end() -> None:
     image = check(b"SI|F(2.5, 80)", "tinibot", "en").image
     judged_run = page_lessons.JudgedRun("tinibot", 1, 1, 2500, image, Marks(()))
-    judged_run.go(1000)
+    judged_run.advance(1000)
     judged_run.stop()
     state_before = judged_run.state()["pose"]
-    judged_run.go(1000)
+    judged_run.advance(1000)
     assert judged_run.state()["pose"] == state_before and not judged_run.state()["is_running"]

@@ -30,7 +30,7 @@ def run(text: str, world: str, ms: int) -> list[State]:
     simulation = Simulation("tinibot", worlds.load(world), compile(text).image)
     states = []
     for _ in range(ms // STEP_MS):
-        simulation.go(STEP_MS)
+        simulation.advance(STEP_MS)
         states.append(json.loads(json.dumps(simulation.state())))
     return states
 

@@ -51,10 +51,10 @@ from tiniscript.base.limits import PARAMETERS
 from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.studio.block_form import data_of, kinds_in
-from tiniscript.studio.block_kinds import KINDS, PLAIN
+from tiniscript.studio.block_kinds import KINDS, PLAIN_TEXTS
 from tiniscript.studio.block_reading import read_blocks
 from tools.builds.page_texts import page_texts
-from tools.builds.studio import BLOCKLY, why_stale
+from tools.builds.studio import BLOCKLY, unusable_reason
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -543,7 +543,7 @@ def test_every_word_that_has_a_block_can_be_dragged_out(
     page: Page, pytestconfig: pytest.Config
 ) -> None:
     """This includes starting blocks with several parts. A grey block is unreadable text."""
-    kinds = set(KINDS) - {"grey"} - ({"plain"} if not PLAIN else set())
+    kinds = set(KINDS) - {"grey"} - ({"plain"} if not PLAIN_TEXTS else set())
     with_names = "SI|SPEED = 5;\nDEF HOP;\n  F(1, SPEED);\nEND_DEF;\nHOP;\n"
     page.select_option("#robot", "grabber")
     start(page, with_names, "all")
@@ -854,7 +854,7 @@ LACKS = re.compile(  # things that no page has; names of shortcuts, which only a
 def test_the_catalogue_has_what_blockly_says() -> None:
     """It has all names in Blockly's core except LACKS: the page uses none of Blockly's ready-made
     blocks."""
-    need("" if BLOCKLY.is_dir() else why_stale() or f"there is no {BLOCKLY}")
+    need("" if BLOCKLY.is_dir() else unusable_reason() or f"there is no {BLOCKLY}")
     core = (BLOCKLY / "blockly_compressed.js").read_text(encoding="utf-8")
     names = set(re.findall(r"[A-Z][A-Z0-9_]+", core))
     messages = (BLOCKLY / "msg" / "en.js").read_text(encoding="utf-8")

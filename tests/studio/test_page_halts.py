@@ -107,7 +107,7 @@ def virtual(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple[str, l
     halts = []
     while it.robot.is_running:
         if it.held_at is None:
-            it.go(1)
+            it.advance(1)
             continue
         state = it.state()
         place = max(place for place in program.places if place.offset <= state["at"])
@@ -123,7 +123,7 @@ def virtual(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple[str, l
             it.step(60_000)
         else:
             it.go_on()
-            it.go(1)
+            it.advance(1)
     return halts
 
 

@@ -32,13 +32,13 @@ class Page:
         self._count = 0
         self._back = b""
 
-    def go(self, milliseconds: int, *requests: dict[str, Any], is_away: bool = False) -> None:
+    def advance(self, milliseconds: int, *requests: dict[str, Any], is_away: bool = False) -> None:
         """Advance time. A hidden page sends no requests."""
         for ms in range(milliseconds):
             now_ms = self.robot.now_ms + 1
             sent_bytes = b""
             if not is_away:
-                answer = self.page.go(self._back, now_ms, list(requests) if ms == 0 else [])
+                answer = self.page.advance(self._back, now_ms, list(requests) if ms == 0 else [])
                 sent_bytes, self._back = bytes.fromhex(answer["send"]), b""
                 self.news += answer["news"]
                 self.file = answer.get("keys", self.file)
@@ -46,12 +46,12 @@ class Page:
 
     def ask(self, do: str, limit_ms: int = 30_000, **fields: object) -> dict[str, Any]:
         self._count += 1
-        self.go(1, {"do": do, "id": self._count, **fields})
+        self.advance(1, {"do": do, "id": self._count, **fields})
         for _ in range(limit_ms):
             answers = [item for item in self.news if item.get("id") == self._count]
             if answers:
                 return answers[0]
-            self.go(1)
+            self.advance(1)
         raise AssertionError("no answer")
 
     def upload(self, text: str) -> dict[str, Any]:
@@ -72,44 +72,44 @@ def page() -> Page:
 
 def test_a_page_that_was_away_stops_its_robot_when_it_is_back(page: Page) -> None:
     page.upload(FOREVER)
-    page.go(300)
+    page.advance(300)
     assert page.robot.is_running
-    page.go(ATTENDED_MS - 100, is_away=True)
-    page.go(50)
+    page.advance(ATTENDED_MS - 100, is_away=True)
+    page.advance(50)
     assert page.robot.is_running  # a busy browser may take that long
-    page.go(ATTENDED_MS + 50, is_away=True)
+    page.advance(ATTENDED_MS + 50, is_away=True)
     assert page.robot.is_running  # the dead-man timer takes longer
-    page.go(100)
+    page.advance(100)
     assert not page.robot.is_running
     assert page.news[-1] == {"event": "STOPPED", "cause": "SEQUENCE"}
     page.upload(FOREVER)
-    page.go(300)
+    page.advance(300)
     assert page.robot.is_running
-    page.go(1300, is_away=True)  # a page that stays away is not waited for
+    page.advance(1300, is_away=True)  # a page that stays away is not waited for
     assert not page.robot.is_running
 
 
 def test_a_page_that_is_back_is_told_of_its_stop_however_long_it_was_away(page: Page) -> None:
     for away_ms in (ATTENDED_MS + 50, 3000, 20_000, ATTENDED_MS + 50):
         assert page.upload(FOREVER)["ok"]
-        page.go(300)
-        page.go(away_ms, is_away=True)
+        page.advance(300)
+        page.advance(away_ms, is_away=True)
         page.news.clear()
-        page.go(300)
+        page.advance(300)
         events = [item["event"] for item in page.news if "event" in item]
         assert events[-1] == "STOPPED" and "LOST" not in events, away_ms
 
 
 def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
     for _ in range(50):
-        page.go(1)
+        page.advance(1)
     page.robot.press()
     claimed = page.ask("claim")
     page.robot.let_go()
     assert claimed == {"id": 2, "ok": True}
     kept_bytes = page.file.encode()
     assert [key.which for key in keys.decode_keys(kept_bytes)] == [OWNER]
-    page.go(3000)  # until the program is saved
+    page.advance(3000)  # until the program is saved
     memory = page.robot.memory
 
     stranger = Page(memory=memory)
@@ -122,7 +122,7 @@ def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
     owner = Page(PageKeys(kept_bytes), memory)
     assert owner.ask("hello")["robot"]["owner"] == "yours"
     assert owner.upload(FOREVER)["ok"]
-    owner.go(100)
+    owner.advance(100)
     assert owner.robot.is_running
 
 
@@ -204,12 +204,12 @@ def test_kept_keys_that_are_damaged_do_not_keep_a_robot_out() -> None:
 
 def test_every_shipped_robot_can_be_named() -> None:
     for name in robots.names():
-        assert PageRobot(name, "en", PageKeys(b"")).go(b"", 0, [])["send"] == ""
+        assert PageRobot(name, "en", PageKeys(b"")).advance(b"", 0, [])["send"] == ""
 
 
 def test_a_page_is_told_where_its_program_is(page: Page) -> None:
     page.upload(FOREVER)
-    page.go(500)
+    page.advance(500)
     assert "PLACE" in {item.get("event") for item in page.news}
 
 
@@ -225,23 +225,23 @@ def test_a_stick_is_read_until_it_returns_or_nobody_says_anything(page: Page) ->
     page.upload(STICK)
     for _ in range(4):
         assert hold_keys(page, y=60)["ok"]
-        page.go(200)
+        page.advance(200)
         assert round(page.robot.driving.left) == 60
     assert hold_keys(page)["ok"]
-    page.go(60)
+    page.advance(60)
     assert round(page.robot.driving.left) == 0
     hold_keys(page, y=-60)
-    page.go(HOLD_MS - 100)
+    page.advance(HOLD_MS - 100)
     assert round(page.robot.driving.left) == -60
-    page.go(200)
+    page.advance(200)
     assert round(page.robot.driving.left) == 0 and page.robot.is_running
 
 
 def test_a_page_that_hangs_holds_nothing(page: Page) -> None:
     page.upload(STICK)
     hold_keys(page, y=60)
-    page.go(100)
-    page.go(HOLD_MS + 50, is_away=True)
+    page.advance(100)
+    page.advance(HOLD_MS + 50, is_away=True)
     assert round(page.robot.driving.left) == 0
 
 
@@ -251,30 +251,30 @@ def test_keys_after_a_stop_start_nothing_and_are_read_by_the_next_program(page: 
     page.ask("stop")
     assert not hold_keys(page, y=60).get("said"), "the stop is on its way, and ends it"
     for _ in range(5):
-        page.go(200)
+        page.advance(200)
         assert hold_keys(page, y=60)["ok"]
     assert round(page.robot.driving.left) == 0 and not page.robot.is_running
     page.upload(STICK)
     assert hold_keys(page, y=60)["ok"]
-    page.go(100)
+    page.advance(100)
     assert round(page.robot.driving.left) == 60
 
 
 def test_keys_end_no_upload_and_take_no_place_of_it(page: Page) -> None:
     image = compile("SI|" + "SHOW(1);" * 60).image.hex()
     sent = {"do": "upload", "image": image, "robot": "tinibot", "runs": True}
-    page.go(1, *({"do": "keys", "id": 100 + k, "keys": 0, "x": 0, "y": k} for k in range(60)))
-    page.go(1, {"id": 99, **sent})
+    page.advance(1, *({"do": "keys", "id": 100 + k, "keys": 0, "x": 0, "y": k} for k in range(60)))
+    page.advance(1, {"id": 99, **sent})
     for k in range(40):
-        page.go(20, {"do": "keys", "id": 200 + k, "keys": 1, "x": 0, "y": k})
-    page.go(2000)
+        page.advance(20, {"do": "keys", "id": 200 + k, "keys": 1, "x": 0, "y": k})
+    page.advance(2000)
     answers = {item["id"]: item for item in page.news if "id" in item}
     assert answers[99].get("ok")
     assert {*range(100, 160), *range(200, 240)} <= answers.keys(), "each has its answer"
     assert not any(answer.get("said") for answer in answers.values())
     names = [{"do": "hello", "id": 300 + k} for k in range(MOST_WAITING)]
     keys = {"do": "keys", "id": 400, "keys": 0, "x": 0, "y": 0}
-    page.go(1, *names, keys)
+    page.advance(1, *names, keys)
     with pytest.raises(BadRequest):
         page.page.link.ask({"do": "hello", "id": 401})
 

@@ -61,7 +61,7 @@ def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, 
     simulation = Simulation(robot, worlds.load(world), image)
     for request, answer in zip(requests, answers, strict=True):
         if request["do"] == "go":
-            simulation.go(400)
+            simulation.advance(400)
         elif request["do"] == "stop":
             simulation.stop()
         wanted = simulation.state()

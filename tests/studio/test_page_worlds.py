@@ -311,7 +311,7 @@ def test_the_robot_begins_where_it_was_put(page: Page) -> None:
     page.click("#world_done")
     assert abs(world.start.x_cm - 80) <= 1 and world.lamps == worlds.load("light").lamps
     simulation = Simulation("tinibot", world, compile("SHOW(DISTANCE);\nF(1, 80)").image)
-    simulation.go(2000)
+    simulation.advance(2000)
     events = [event.text for event in simulation.robot.take_events()]
     assert f"SHOW {shown_text}" in events
     page.select_option("#world", "light")

@@ -307,7 +307,7 @@ def test_a_played_run_takes_nothing_of_who_looks_on() -> None:
         played_run.press(63, 100, 100)
         played_run.push()
         played_run.set_breakpoints((0, 3))
-        played_run.go(37)
+        played_run.advance(37)
     assert played_run.divergence == Divergence("again", len(rows))
 
 

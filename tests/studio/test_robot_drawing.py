@@ -21,7 +21,7 @@ TREAD, LIT, WAVE = "#b9c2cb", "#fff3a8", "#7a2fb8"
 def after(text: str, robot: str, ms: int) -> dict[str, Any]:
     """Return the state of a robot some time after its program has begun."""
     simulation = Simulation(robot, worlds.load("obstacles"), compile(text, robot).image)
-    simulation.go(ms)
+    simulation.advance(ms)
     return json.loads(json.dumps(simulation.state()))  # type: ignore[no-any-return]
 
 

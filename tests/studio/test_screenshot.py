@@ -13,7 +13,7 @@ from tools.builds import screenshot
 @pytest.mark.parametrize("scene", screenshot.SCENES)
 @pytest.mark.parametrize("language", screenshot.LANGUAGES)
 def test_a_picture_has_words_of_the_page_alone_and_is_shown(language: str, scene: str) -> None:
-    assert screenshot.why_stale(language, scene) == ""
+    assert screenshot.unusable_reason(language, scene) == ""
     with Image.open(screenshot.picture(language, scene)) as image:
         assert image.size == (screenshot.VIEWPORT["width"], screenshot.VIEWPORT["height"])
         assert len(json.loads(image.info[screenshot.WORDS_SCENE])) > 6

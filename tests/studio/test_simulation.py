@@ -31,7 +31,7 @@ from tiniscript.virtual.robot import VirtualRobot
 def test_a_run_is_that_of_the_virtual_robot(name: str, robot: str, world: str) -> None:
     text = (ROOT / "examples" / f"{name}.ts").read_text(encoding="utf-8")
     simulation = Simulation(robot, worlds.load(world), compile(text, robot).image)
-    simulation.go(8000)
+    simulation.advance(8000)
     other = VirtualRobot(load(robot), worlds.load(world))
     talk = Talk(other)
     talk.upload(text)
@@ -44,7 +44,7 @@ def test_a_run_is_that_of_the_virtual_robot(name: str, robot: str, world: str) -
 def test_it_is_told_which_part_of_the_text_runs() -> None:
     text = "F(1, 80);\nR(0.5, 60);\nS"
     simulation = started_simulation(text)
-    simulation.go(300)
+    simulation.advance(300)
     assert simulation.state()["at"] in range(3) and not simulation.state()["is_held"]
     simulation.step(5000)
     assert simulation.held_at == simulation.state()["at"] == 3
@@ -80,28 +80,28 @@ def test_it_is_told_where_each_task_is() -> None:
             lines.add(next(place for place in reversed(places) if place.offset <= at).line)
         return lines
 
-    simulation.go(100)
+    simulation.advance(100)
     assert marked_lines() == {1, 2, 8}
-    simulation.go(130)
+    simulation.advance(130)
     assert marked_lines() == {1, 3, 8}
-    simulation.go(500)
+    simulation.advance(500)
     assert marked_lines() == {1, 2}
     simulation.stop()
     assert simulation.state()["places"] == []
     plain = started_simulation("W(1)")
-    plain.go(500)
+    plain.advance(500)
     assert plain.state()["places"] == [plain.state()["at"]]
 
 
 @pytest.mark.parametrize("parts", [range(8), (2,), (4, 5)])
 def test_tasks_that_are_held_do_the_same_as_others(parts: Iterable[int]) -> None:
     free, simulation = (started_simulation(TASKS, at, robot="tinibot32") for at in ((), parts))
-    free.go(600)
+    free.advance(600)
     held: set[int | None] = set()
     while simulation.robot.now_ms < free.robot.now_ms:
         held.add(simulation.held_at)
         simulation.go_on()
-        simulation.go(1)
+        simulation.advance(1)
     assert trace_of(simulation) == trace_of(free)
     places = [place.offset for place in check(TASKS.encode(), "tinibot32", "en").places]
     assert {places[k] for k in parts} <= held
@@ -111,14 +111,14 @@ def test_a_stop_is_confirmed_and_the_motors_are_off() -> None:
     simulation = Simulation(
         "tinibot", worlds.load("obstacles"), compile("F(FOREVER, 80) UNTIL(FALSE)").image
     )
-    simulation.go(500)
+    simulation.advance(500)
     assert simulation.state()["motors"] == [80, 80]
     now_ms_before = simulation.robot.now_ms
     simulation.stop()
     state = simulation.state()
     assert state["motors"] == [0, 0] and not state["is_running"]
     assert state["events"][-1][1] == "STOP" and simulation.robot.now_ms - now_ms_before < 200
-    simulation.go(1000)
+    simulation.advance(1000)
     assert simulation.state()["events"] == []
 
 
@@ -138,7 +138,7 @@ def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> N
         simulation.push,
         simulation.push,
         simulation.go_on,
-        lambda: simulation.go(rng.choice((1, 30, 150, 700))),
+        lambda: simulation.advance(rng.choice((1, 30, 150, 700))),
         lambda: simulation.step(rng.choice((1, 50, 400))),
         lambda: simulation.press(rng.randrange(64), 0, 0),
         simulation.stop,
@@ -156,7 +156,7 @@ def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> N
     for one_simulation in (fresh, simulation):
         one_simulation.robot.take_events()
         one_simulation.push()
-        one_simulation.go(1500)
+        one_simulation.advance(1500)
         assert one_simulation.held_at is None
         runs.append(trace_of(one_simulation))
     assert runs[0] == runs[1] and len(runs[0]) > 10
@@ -168,7 +168,7 @@ def test_a_fault_is_named() -> None:
     )
     assert simulation.state()["fault_at"] is None
     while not simulation.state()["fault"]:
-        simulation.go(1)
+        simulation.advance(1)
     state = simulation.state()
     assert (state["fault"], state["at"]) == ("DIVIDE_BY_ZERO", None)
     result = check(b"W(1); X = 0; SHOW(1 / X)", "tinibot", "en")
@@ -186,34 +186,34 @@ def test_a_remote_control_is_read_until_nobody_says_anything() -> None:
     simulation = started_simulation(STICK)
     for _ in range(5):
         simulation.press(0, 0, 60)
-        simulation.go(400)
+        simulation.advance(400)
         assert round(simulation.robot.driving.left) == 60
-    simulation.go(200)
+    simulation.advance(200)
     assert round(simulation.robot.driving.left) == 0
     simulation.press(0, 0, -60)
-    simulation.go(60)
+    simulation.advance(60)
     assert round(simulation.robot.driving.left) == -60
     simulation.press(0, 0, 0)
-    simulation.go(60)
+    simulation.advance(60)
     assert round(simulation.robot.driving.left) == 0
 
 
 def test_what_is_held_while_it_is_held_or_stopped_counts_when_it_goes_on() -> None:
     simulation = started_simulation(STICK, at=(1,))
-    simulation.go(100)
+    simulation.advance(100)
     assert simulation.held_at is not None
     for _ in range(3):
         simulation.press(0, 0, 60)
-        simulation.go(400)  # time does not advance
+        simulation.advance(400)  # time does not advance
     assert round(simulation.robot.driving.left) == 0
     simulation.set_breakpoints(())
     simulation.press(0, 0, 30)
     simulation.go_on()
-    simulation.go(100)
+    simulation.advance(100)
     assert round(simulation.robot.driving.left) == 30
     simulation.stop()
     simulation.press(0, 0, 60)
-    simulation.go(1000)
+    simulation.advance(1000)
     assert round(simulation.robot.driving.left) == 0 and not simulation.robot.is_running
 
 

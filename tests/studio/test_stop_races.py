@@ -46,11 +46,11 @@ class Meeting:
         self._under_way: list[tuple[int, dict[str, Any]]] = []
         self.is_cut = False
 
-    def go(self, milliseconds: int, step_ms: int = 1) -> None:
+    def advance(self, milliseconds: int, step_ms: int = 1) -> None:
         for _ in range(0, milliseconds, step_ms):
             now_ms = self.robot.now_ms + step_ms
             heard_bytes = self.robot.step(now_ms, b"" if self.is_cut else self._sent)
-            self._sent = self.line.go(b"" if self.is_cut else heard_bytes, now_ms)
+            self._sent = self.line.advance(b"" if self.is_cut else heard_bytes, now_ms)
             arrived = [answer for at_ms, answer in self._under_way if at_ms <= now_ms]
             self._under_way = [pair for pair in self._under_way if pair[0] > now_ms]
             if arrived or now_ms >= self._beat_ms:
@@ -82,13 +82,13 @@ class Meeting:
         numbers = []
         for _ in range(self.chance.randrange(1, 4)):
             numbers.append(self.upload(self.chance.randrange(late_ms)))
-            self.go(self.chance.choice((1, 5, 20, 60, 150)) + self.chance.randrange(10))
+            self.advance(self.chance.choice((1, 5, 20, 60, 150)) + self.chance.randrange(10))
         self.attending.latch()
-        self.go(500)
+        self.advance(500)
         assert self.attending.last_stop == CONFIRMED
         stood_pose = self.robot.driving.pose_at(self.robot.now_ms)
         for _ in range(7):
-            self.go(max(1, late_ms // 5), 10)
+            self.advance(max(1, late_ms // 5), 10)
             assert not self.robot.is_running
             assert self.robot.driving.pose_at(self.robot.now_ms) == stood_pose
         assert self.answer(numbers[-1])  # an older one that arrives later counts as lost
@@ -96,11 +96,11 @@ class Meeting:
 
 def race(count: int, seed: int) -> None:
     meeting = Meeting(seed)
-    meeting.go(2000)
+    meeting.advance(2000)
     meeting.attending.on_beat([], 0)
     for _ in range(count):
         meeting.races()
-        meeting.go(round(1000 * LATCH_S), 10)
+        meeting.advance(round(1000 * LATCH_S), 10)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -111,25 +111,25 @@ def test_a_stop_latches_whatever_is_on_its_way(seed: int) -> None:
 def test_afterwards_a_page_drives_again() -> None:
     meeting = Meeting(5)
     meeting.upload(0)
-    meeting.go(1500)
+    meeting.advance(1500)
     assert meeting.robot.is_running
     meeting.attending.latch()
-    meeting.go(round(1000 * LATCH_S) - 200)
+    meeting.advance(round(1000 * LATCH_S) - 200)
     early = meeting.upload(0)
-    meeting.go(300)
+    meeting.advance(300)
     assert meeting.answer(early)["failure"] == "stopped_elsewhere"
     late = meeting.upload(0)
-    meeting.go(1500)
+    meeting.advance(1500)
     assert meeting.answer(late)["ok"] and meeting.robot.is_running
 
 
 def test_a_robot_that_hears_no_stop_is_told() -> None:
     meeting = Meeting(6)
     meeting.upload(0)
-    meeting.go(1500)
+    meeting.advance(1500)
     meeting.is_cut = True
     meeting.attending.latch()
-    meeting.go(7000)
+    meeting.advance(7000)
     assert meeting.attending.last_stop == SILENT
 
 

@@ -178,7 +178,7 @@ OPERATIONS: dict[str, Callable[[int, int], int]] = {
     "NOT": lambda a, b: int(not a),
     **{name: getattr(operator, name.lower()) for name, _ in COMPARATORS},
     "RANDOM": lambda a, b: fixed_point.random_between(a, b, b % 2**32),
-    "END": lambda a, b: fixed_point.whole(a),  # placeholder that is not needed here
+    "END": lambda a, b: fixed_point.round_to_whole(a),  # placeholder that is not needed here
 }
 # 2^32 thousandths, after they are rounded: products and quotients
 ROUNDED_TOO_LARGE = [

@@ -6,7 +6,7 @@ from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.images import image_of
 from tests.support.robot_on_host import computer, outcome, switched_on
 from tiniscript.bytecode.image import pack, with_checksum
-from tiniscript.link.messages import SAVED
+from tiniscript.link.messages import SAVED_STATES
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -15,7 +15,7 @@ FIRST, SECOND, EACH = 128, 576, 31  # offsets of the program's slots, and bytes 
 
 
 def read_saved_state(robot: HostFirmware, session: Session) -> str:
-    return SAVED[robot.complete(session, session.status()).saved][0]
+    return SAVED_STATES[robot.complete(session, session.status()).saved][0]
 
 
 def name_after_power_off(robot: HostFirmware) -> str:

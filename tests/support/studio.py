@@ -50,7 +50,7 @@ UPLOADS = 10  # number of consecutive stops that cannot be the computer's fault
 
 def missing() -> str:
     """Return the reason why the studio's page cannot be opened here, or ""."""
-    return missing_browser() or studio.why_stale()
+    return missing_browser() or studio.unusable_reason()
 
 
 def missing_browser() -> str:

@@ -7,7 +7,7 @@ from tests.support.texts import LANGUAGES
 from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import NUMBER, Device, Kit
-from tiniscript.robots.boards import CHIPS, NEEDS, Chip
+from tiniscript.robots.boards import ABILITIES, CHIPS, Chip
 from tiniscript.robots.driver import Driver
 from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import Place, Robot, Wiring
@@ -41,10 +41,10 @@ def wire_driver(driver: Driver, chip: Chip, used_pins: set[int], is_whole: bool 
             continue
         free = [pin for pin in chip.digital_pins | chip.analog_pins if pin not in used_pins]
         pins[key] = min(
-            (pin for pin in free if chip.can(pin, need)),
+            (pin for pin in free if chip.has_ability(pin, need)),
             key=lambda pin: (
                 not simulates(chip.name, pin, need),
-                sum(chip.can(pin, ability) for ability in NEEDS),
+                sum(chip.has_ability(pin, ability) for ability in ABILITIES),
                 -pin % 7,  # all over the board
                 pin,
             ),

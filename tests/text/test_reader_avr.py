@@ -18,7 +18,7 @@ from tiniscript.codegen.text.problems import PROBLEM_NAMES
 from tiniscript.robots.kit_words import kit_words
 from tools.bench import avr_bench
 
-REASON = avr_bench.why_missing()
+REASON = avr_bench.missing_reason()
 ROOM = 389
 KIT = KITS[1][1]
 # The end of one instruction that pushes a number, and the beginning of a longer one.

@@ -105,7 +105,7 @@ def test_a_program_among_rivals_does_the_same_again(name: str) -> None:
     for pauses in ([7000], [13] * 500 + [500]):
         simulation = Simulation(name, worlds.load("sumo"), image)
         for pause in pauses:
-            simulation.go(pause)
+            simulation.advance(pause)
         state = simulation.state()
         ends.append({key: state[key] for key in ("now_ms", "pose", "rivals", "score", "readings")})
     assert ends[0] == ends[1]
@@ -288,7 +288,7 @@ def test_the_edge_is_seen_before_the_robot_is_out(power: int) -> None:
 
 def run_to_score(program: str, text: str, ms: int = 9000) -> dict[str, int]:
     simulation = Simulation("sumo", read(text, "own"), compile(program, "sumo").image)
-    simulation.go(ms)
+    simulation.advance(ms)
     score: dict[str, int] = simulation.state()["score"]
     return score
 
@@ -313,7 +313,7 @@ def test_who_is_pushed_out_and_who_falls() -> None:
 def test_the_example_pushes_the_rival_of_the_world_out() -> None:
     text = (ROOT / "examples" / "sumo.ts").read_text(encoding="utf-8")
     simulation = Simulation("sumo", worlds.load("sumo"), compile(text).image)
-    simulation.go(1000 * int(worlds.load("sumo").seconds))
+    simulation.advance(1000 * int(worlds.load("sumo").seconds))
     score = simulation.state()["score"]
     assert (score["pushed"], score["stars"], score["has_fallen"]) == (1, 3, False)
 

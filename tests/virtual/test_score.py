@@ -10,7 +10,7 @@ from tests.support.virtual_robot import robot_in
 from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
-from tiniscript.virtual.score import LOOK_INTERVAL_MS, Score
+from tiniscript.virtual.score import SCORE_INTERVAL_MS, Score
 from tiniscript.virtual.worlds import read
 
 FLOOR = "[floor]\nwidth_cm = 300\nheight_cm = 100\n[start]\nx_cm = 40\ny_cm = 50\n"
@@ -33,7 +33,7 @@ WAYS = {
 def run_to_score(text: str, program: str, ms: int = 9000) -> dict[str, int] | None:
     simulation = Simulation("tinibot", read(text, "own"), compile(program).image)
     for part in (ms // 3, ms // 3, ms // 3):
-        simulation.go(part)
+        simulation.advance(part)
     score: dict[str, int] | None = simulation.state()["score"]
     return score
 
@@ -87,7 +87,7 @@ def test_each_task_has_three_stars(name: str) -> None:
 
     def motors(left: float, right: float) -> None:
         driving.set_motors(robot.now_ms, left, right)
-        robot.now_ms += LOOK_INTERVAL_MS
+        robot.now_ms += SCORE_INTERVAL_MS
         score.update(robot)
 
     for x_cm, y_cm in WAYS[name]:

@@ -123,11 +123,11 @@ def test_a_hurried_robot_hears_the_last_whole_frame_again() -> None:
 def test_a_new_client_does_not_speak_with_the_words_of_the_one_before(simulator: Simulator) -> None:
     with visit(simulator) as client:
         client.sendall(PING + b"\5half")
-        until(simulator, lambda: bool(simulator._heartbeat._unfinished))
+        until(simulator, lambda: bool(simulator._heartbeat._unfinished_packet))
     with visit(simulator) as client:
         client.sendall(b"\0\0\0\0\0")
         until(simulator, lambda: simulator.transports.visit_count == 2)
-        until(simulator, lambda: not simulator._heartbeat._unfinished)
+        until(simulator, lambda: not simulator._heartbeat._unfinished_packet)
         assert simulator._heartbeat.bytes_due(10**6, simulator._heartbeat._received_s) == b""
 
 
@@ -135,6 +135,6 @@ def test_the_heartbeat_keeps_nothing_endless() -> None:
     heart = Heartbeat()
     for _ in range(1000):
         heart.on_bytes(b"x" * 1000, 1.0)
-    assert len(heart._unfinished) < 200
+    assert len(heart._unfinished_packet) < 200
     heart.on_bytes(b"\0", 1.0)
     assert heart.bytes_due(10_000, 1.0) == b""

@@ -24,7 +24,8 @@ BLOCK, BLOCKS = 500, 50  # codes per seed, and number of seeds
 NO_BLOCK = 0xFFFF
 
 needs_chip = pytest.mark.skipif(
-    bool(avr_bench.why_missing()), reason=avr_bench.why_missing() or "there is a simulated chip"
+    bool(avr_bench.missing_reason()),
+    reason=avr_bench.missing_reason() or "there is a simulated chip",
 )
 
 

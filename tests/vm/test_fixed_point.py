@@ -90,7 +90,7 @@ def test_agrees_with_decimal(name: str) -> None:
 def test_one_operand(value: int) -> None:
     assert outcome(lambda: t.negate(value)) == outcome(lambda: milli(-units(value)))
     assert outcome(lambda: t.absolute(value)) == outcome(lambda: milli(abs(units(value))))
-    assert t.whole(value) == int(units(value).quantize(Decimal(1), context=EXACT))
+    assert t.round_to_whole(value) == int(units(value).quantize(Decimal(1), context=EXACT))
 
 
 def test_text_and_literals_agree_with_decimal() -> None:

@@ -30,7 +30,7 @@ from tiniscript.vm.wasm import WasmMachine
 from tools.builds import wasm
 
 needs_zig = pytest.mark.skipif(
-    bool(wasm.why_not_here()), reason=wasm.why_not_here() or "there is a compiler"
+    bool(wasm.unavailable_reason()), reason=wasm.unavailable_reason() or "there is a compiler"
 )
 KIT = robots.load("tinibot").kit
 SHOWS = [BY_NAME[name].code for name in ("SHOW", "SHOW_YES_NO")]

@@ -27,7 +27,7 @@ REQUEST_BYTES = 8192
 INSTALL_COMMAND = "apt-get install gcc-avr avr-libc binutils-avr simavr"
 
 
-def why_missing() -> str:
+def missing_reason() -> str:
     """Return the reason why there is no simulated chip, or ""."""
     names = [name for name in ("avr-g++", "simavr") if not shutil.which(name)]
     return f"no {' and no '.join(names)} ({INSTALL_COMMAND})" if names else ""

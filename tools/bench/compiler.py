@@ -19,8 +19,10 @@ from tools import ROOT
 from tools.bench import page
 
 KIT = robots.load(robots.DEFAULT).kit
-OBSTACLE = "SI|START;LOOP(FOREVER);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP"
-PROGRAMS = ("SI|F(5,80)", "SI|LOOP(3);F(2,50);END_LOOP", OBSTACLE)
+OBSTACLE_PROGRAM = (
+    "SI|START;LOOP(FOREVER);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP"
+)
+PROGRAMS = ("SI|F(5,80)", "SI|LOOP(3);F(2,50);END_LOOP", OBSTACLE_PROGRAM)
 ROWS = *(f"`{text}`" for text in PROGRAMS[:2]), "the paper's obstacle program"
 
 
@@ -57,7 +59,7 @@ def median_pair(
 def print_start_ratio() -> None:
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "obstacle.ts"
-        program.write_text(OBSTACLE, encoding="utf-8")
+        program.write_text(OBSTACLE_PROGRAM, encoding="utf-8")
         python_command = [sys.executable, "-c", "pass"]
 
         def start(*arguments: str) -> Callable[[], object]:

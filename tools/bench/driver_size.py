@@ -39,7 +39,7 @@ def motor_wiring(name: str, robot: Robot) -> Wiring:
             usable_pins = (
                 pin
                 for pin in sorted(chip.digital_pins)
-                if chip.can(pin, ability) and pin not in used_pins
+                if chip.has_ability(pin, ability) and pin not in used_pins
             )
             pins[key] = next(usable_pins)
             used_pins.add(pins[key])
@@ -74,8 +74,8 @@ def main() -> int:
                 if "greater than maximum allowed" not in str(error):
                     print(error, file=sys.stderr)
                     return 2
-                smaller, _ = building.SMALLER_FIRMWARE[ENVIRONMENT]
-                flash = flash_with(driver, project, smaller)
+                smaller_environment, _ = building.SMALLER_FIRMWARE[ENVIRONMENT]
+                flash = flash_with(driver, project, smaller_environment)
                 note = "without tasks"
             first_flash = first_flash or flash
             difference_text = f"{flash - first_flash:+,}" if not note else ""

@@ -59,8 +59,8 @@ def measure(firmware: Path, robot: Robot, board: str, has_breakpoints: bool = Fa
     with Uno(
         firmware, board=BOARDS[board], baud=baud, tells_sleep=False, watches_stack=True
     ) as uno:
-        surround(uno, robot)
-        run_deep(connect(uno, robot, keys=Keys()), robot, has_breakpoints)
+        set_obstacles(uno, robot)
+        fill_stack(connect(uno, robot, keys=Keys()), robot, has_breakpoints)
         return uno.stack(heap_start(firmware))
 
 
@@ -79,7 +79,7 @@ def heap_start(firmware: Path) -> int:
     return int(address, 16) - RAM_START
 
 
-def surround(uno: Uno, robot: Robot) -> None:
+def set_obstacles(uno: Uno, robot: Robot) -> None:
     """Set obstacles for its sensors."""
     for device in robot.board.sensors:
         if device.driver == "hc_sr04":
@@ -92,7 +92,7 @@ def pin(robot: Robot, number: int) -> str:
     return f"D{number}" if number < first_analog else f"A{number - first_analog}"
 
 
-def run_deep(wired_uno: Wired, robot: Robot, has_breakpoints: bool) -> None:
+def fill_stack(wired_uno: Wired, robot: Robot, has_breakpoints: bool) -> None:
     uno, session, kit = wired_uno.uno, wired_uno.session, robot.kit
     button = pin(robot, robot.board.start_button)
     require_ok(wired_uno, session.hello())
@@ -120,11 +120,11 @@ def run_deep(wired_uno: Wired, robot: Robot, has_breakpoints: bool) -> None:
     wired_uno.run(2500)  # until the program is saved
     claim(wired_uno, button)
     if has_breakpoints:
-        step_deep(wired_uno)
+        fill_stack_by_stepping(wired_uno)
     elif level_of(robot.board.chip, robot.board.discs is not None) is NO_TEXT:
         drive_a_way(wired_uno, robot)
     else:
-        type_deep(uno, kit)
+        fill_stack_by_typing(uno, kit)
     uno.reset("external")  # the robot checks its program when it starts
     uno.run_ms(200)
     uno.press(button)
@@ -144,7 +144,7 @@ def claim(wired_uno: Wired, button: str) -> None:
     require_ok(wired_uno, wired_uno.session.disown(KEY_OWNER))
 
 
-def step_deep(wired_uno: Wired) -> None:
+def fill_stack_by_stepping(wired_uno: Wired) -> None:
     """Step through the longest program, which is there; at each halt ask for all that it tells."""
     session = wired_uno.session
     require_ok(wired_uno, session.break_at([0]))
@@ -157,7 +157,7 @@ def step_deep(wired_uno: Wired) -> None:
     require_ok(wired_uno, session.break_at([]))
 
 
-def type_deep(uno: Uno, kit: Kit) -> None:
+def fill_stack_by_typing(uno: Uno, kit: Kit) -> None:
     """Type lines that take most of the reader and of its answers; no other client is connected.
 
     Raises RuntimeError if one is not done.
@@ -200,9 +200,9 @@ def require_ok(wired_uno: Wired, request: PendingRequest[Any]) -> None:
 def longest_program(kit: Kit, room: int) -> Image:
     """Return a program that fills a robot, goes as deep as one can, and uses all that there is."""
     show_count = 0
-    while len((larger := image_of(deep_program_text(kit, show_count + 1), kit)).code) <= room:
+    while len((larger_image := image_of(deep_program_text(kit, show_count + 1), kit)).code) <= room:
         show_count += 1
-        image = larger
+        image = larger_image
     return image
 
 

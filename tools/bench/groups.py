@@ -62,9 +62,9 @@ class Pupil:
     """Hears of changes in one thread, and makes some in another."""
 
     def __init__(self, address: str, code: str, number: int) -> None:
-        joined = Client(address).ask("join", code=code, name=f"P{number}")
-        self._listener = Client(address, joined["token"])
-        self._sender = Client(address, joined["token"])
+        join_answer = Client(address).ask("join", code=code, name=f"P{number}")
+        self._listener = Client(address, join_answer["token"])
+        self._sender = Client(address, join_answer["token"])
         self.group = f"G{number // MOST_MEMBERS}"
         answer = self._sender.ask("group_join", name=self.group, text=PROGRAM)
         self._page = Page.of(answer["page"], answer)
@@ -165,8 +165,8 @@ def main() -> int:
     delays_ms, share, memory_mib = measure(PUPIL_COUNT, RUN_S)
     columns = (delays_text(group_delays_ms), delays_text(delays_ms),
              f"{100 * share:.1f} %, {memory_mib:.0f} MiB")  # fmt: skip
-    wanted = (f"{MOST_MS} ms", f"{MOST_MS} ms", f"{MOST_SHARE_PERCENT} %")
-    figures.show("groups", [list(row) for row in zip(ROWS, columns, wanted, strict=True)])
+    limit_texts = (f"{MOST_MS} ms", f"{MOST_MS} ms", f"{MOST_SHARE_PERCENT} %")
+    figures.show("groups", [list(row) for row in zip(ROWS, columns, limit_texts, strict=True)])
     is_slow = max(map(statistics.median, (group_delays_ms, delays_ms))) > MOST_MS
     return int(is_slow or 100 * share > MOST_SHARE_PERCENT)
 

@@ -53,9 +53,9 @@ class Hand:
         """Switch it on, and send it a program that reads a stick."""
         self._random_source = random.Random(1)
         self._board = Uno(firmware, baud=baud, tells_sleep=False)
-        self._wired = connect(self._board, robots.load(ROBOT), baud)
-        require_ok(self._wired, self._wired.session.hello())
-        require_ok(self._wired, self._wired.session.upload(image_of(text, KIT)))
+        self._wired_uno = connect(self._board, robots.load(ROBOT), baud)
+        require_ok(self._wired_uno, self._wired_uno.session.hello())
+        require_ok(self._wired_uno, self._wired_uno.session.upload(image_of(text, KIT)))
 
     def __enter__(self) -> Hand:
         return self
@@ -63,18 +63,18 @@ class Hand:
     def __exit__(self, *signal_arguments: object) -> None:
         self._board.close()
 
-    def change(self, pressed_state: RemoteState) -> float:
+    def measure_change_ms(self, pressed_state: RemoteState) -> float:
         """Return the ms from a change of the held keys to the last change of the pins."""
         begin_cycle, event_count = self._begin()
         self._hold(pressed_state)
         return self._ms_from(begin_cycle, event_count, pressed_state != NOTHING_PRESSED)
 
-    def lose(self) -> float:
+    def measure_loss_ms(self) -> float:
         """Return the ms from where a line is lost, over which somebody drives, to motors off."""
         self._hold(PAD_AHEAD, RECONNECT_MS)
         begin_cycle, event_count = self._begin()
         for _ in range(LOST_MS):  # data is lost in both directions
-            self._wired.session.poll(self._wired.now_ms)
+            self._wired_uno.session.poll(self._wired_uno.now_ms)
             self._board.run_ms(1)
         received_cycles = [
             event.cycle for event in self._board.events[event_count:] if event.kind == "received"
@@ -84,8 +84,8 @@ class Hand:
     def _hold(self, pressed_state: RemoteState, more_ms: int = 0) -> None:
         for ms in range(more_ms + self._random_source.randint(*HELD_MS)):
             if ms % SAY_INTERVAL_MS == 0:  # a silent person releases the keys
-                self._wired.session.press(*pressed_state)
-            self._wired.run(1)
+                self._wired_uno.session.press(*pressed_state)
+            self._wired_uno.run(1)
 
     def _begin(self) -> tuple[int, int]:
         """Return some cycle within the millisecond, and how many events there were before."""
@@ -110,11 +110,15 @@ class Hand:
 def measure(firmware: Path, baud: int) -> list[list[float]]:
     """Return the ms of each try, by row."""
     with Hand(firmware, baud, PAD_PROGRAM) as hand:
-        changes = [(hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED)) for _ in range(TRY_COUNT)]
-        losses = [hand.lose() for _ in range(TRY_COUNT)]
+        changes = [
+            (hand.measure_change_ms(PAD_AHEAD), hand.measure_change_ms(NOTHING_PRESSED))
+            for _ in range(TRY_COUNT)
+        ]
+        losses = [hand.measure_loss_ms() for _ in range(TRY_COUNT)]
     with Hand(firmware, baud, EXAMPLE.read_text(encoding="utf-8")) as hand:
         example_ms = [
-            (hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED))[0] for _ in range(TRY_COUNT)
+            (hand.measure_change_ms(PAD_AHEAD), hand.measure_change_ms(NOTHING_PRESSED))[0]
+            for _ in range(TRY_COUNT)
         ]
     return [*map(list, zip(*changes, strict=True)), example_ms, losses]
 

@@ -135,8 +135,8 @@ def on_each_baud(
     `print_and_check` prints the results, by baud, and returns whether it is within its limits; it
     may build more in the folder that it gets.
     """
-    if why := uno.missing():
-        print(why, file=sys.stderr)
+    if reason := uno.missing():
+        print(reason, file=sys.stderr)
         return 2
     with tempfile.TemporaryDirectory() as name:
         try:

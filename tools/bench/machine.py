@@ -13,7 +13,7 @@ from struct import pack
 
 from tools import uno
 from tools.bench import avr_bench, firmware_size, page, sketch_cycles, workloads
-from tools.bench.workloads import Work, check, code_of
+from tools.bench.workloads import Workload, check, code_of
 
 JUMP_BUDGET = 100  # jumps back in a call of `tick`: it may take 200,000 cycles
 DONE_STATUS = 2  # Status::kDone
@@ -33,7 +33,7 @@ def run_on_chip(
     return [int(value) for _, value in shown_lines], int(print_cycles[1])
 
 
-def per_iteration(work: Work) -> float:
+def per_iteration(work: Workload) -> float:
     """Return the cycles of a whole run, all but the robot, for each time around its loop."""
     shown_values, print_cycles = run_on_chip(code_of(work), work.thousandths, JUMP_BUDGET)
     check("ATmega328P", work, shown_values)
@@ -53,17 +53,17 @@ def main() -> int:
 
 
 def print_cycles() -> None:
-    machine_cells = sketch_cells = ["-" for _ in workloads.WORKS]
-    if not avr_bench.why_missing():
-        machine_cells = [f"{per_iteration(work):,.0f}" for work in workloads.WORKS]
+    machine_cells = sketch_cells = ["-" for _ in workloads.WORKLOADS]
+    if not avr_bench.missing_reason():
+        machine_cells = [f"{per_iteration(work):,.0f}" for work in workloads.WORKLOADS]
     if not uno.missing():
         firmware = firmware_size.measure("uno").firmware
-        cycle_counts = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
+        cycle_counts = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKLOADS]
         sketch_cells = [f"{cycle_count:,.0f}" for cycle_count in cycle_counts]
     rows = zip(ROWS, (machine_cells, sketch_cells), strict=True)
     page.show("machine", [(row, "thousandths", *figures) for row, figures in rows])
-    for why in filter(None, (avr_bench.why_missing(), uno.missing())):
-        print(f"\n{why}")
+    for reason in filter(None, (avr_bench.missing_reason(), uno.missing())):
+        print(f"\n{reason}")
 
 
 if __name__ == "__main__":

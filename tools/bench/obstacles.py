@@ -27,7 +27,7 @@ RUN_SECONDS = 1800  # length of a run in the robot's time
 SEED_COUNT = 20
 STUCK_S = 5
 STUCK_CM = 3.0
-LOOK_INTERVAL_MS = 500
+POLL_INTERVAL_MS = 500
 PROGRAMS = ("away.ts", "obstacle.ts", "explore.ts")
 ROWS = (
     "`away.ts`, four lines with a `WHEN`",
@@ -89,7 +89,7 @@ def drive(text: str, seed: int) -> Drive:
             stood_ms = max(stood_ms, now_ms - since_ms)
             if now_ms >= end_ms:
                 break
-            now_ms += LOOK_INTERVAL_MS
+            now_ms += POLL_INTERVAL_MS
             robot.step(now_ms)
             robot.take_events()
         last_pose = robot.pose

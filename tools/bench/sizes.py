@@ -213,10 +213,10 @@ LIMITS = {
 }
 
 
-def why_missing(chip: str) -> str:
+def missing_reason(chip: str) -> str:
     """Return the reason why a chip cannot be measured here, or ""."""
     if chip != AVR:
-        return chips.why_missing(EMULATED_CHIPS[chip])
+        return chips.missing_reason(EMULATED_CHIPS[chip])
     return "" if shutil.which("avr-g++") else f"no avr-g++ ({avr_bench.INSTALL_COMMAND}): no {AVR}"
 
 
@@ -270,8 +270,8 @@ def main() -> int:
     print("| chip |", " | ".join(f"{part}: flash | RAM" for part in SHOWN_PARTS), "|")
     print("| --- |", " | ".join("---: | ---:" for _ in SHOWN_PARTS), "|")
     for chip in (AVR, *EMULATED_CHIPS):
-        if why_missing(chip):
-            print(why_missing(chip), file=sys.stderr)
+        if missing_reason(chip):
+            print(missing_reason(chip), file=sys.stderr)
             continue
         sizes = [size(part, chip) for part in SHOWN_PARTS]
         print(

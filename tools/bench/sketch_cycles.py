@@ -15,7 +15,7 @@ from tests.machines.wired import Wired
 from tests.support.images import image_of
 from tiniscript import robots
 from tools.bench.firmware_stack import connect, pin, require_ok
-from tools.bench.workloads import Work, check
+from tools.bench.workloads import Workload, check
 from tools.uno import Uno
 
 ROBOT = robots.load(robots.DEFAULT)
@@ -25,7 +25,7 @@ SENSOR_PIN = pin(ROBOT, ROBOT.board.sensors[_NUMBER].pins["pin"])
 WORK_MS, SHOW_MS = 10_000, 500
 
 
-def text_of(work: Work, has_loop: bool = True) -> str:
+def text_of(work: Workload, has_loop: bool = True) -> str:
     """Return a work as it is measured here: a motor turns for as long as its loop does.
 
     The sensor always returns its first reading; the differences of the others are added.
@@ -41,7 +41,7 @@ def text_of(work: Work, has_loop: bool = True) -> str:
     return f"SI|{code_before} M(50, 50); {loop} M(0, 0); {work.code_after}"
 
 
-def per_iteration(firmware: Path, work: Work) -> float:
+def per_iteration(firmware: Path, work: Workload) -> float:
     """Return the cycles of one time around the loop of a work. Raises WrongResult."""
     with Uno(firmware, baud=ROBOT.board.baud, tells_sleep=False) as board:
         wired_uno = connect(board, ROBOT)

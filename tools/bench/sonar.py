@@ -79,19 +79,20 @@ def look_at_wall(seed: int, is_trusting: bool) -> WrongReadings:
     return WrongReadings(len(readings), wrong_count)
 
 
-def late_ms(distances: Callable[[float], float], phase: float, is_trusting: bool) -> float:
+def lateness_ms(distance_at: Callable[[float], float], phase: float, is_trusting: bool) -> float:
     """Return the time for which the obstacle has been near when the program notices it.
 
-    `distances` says how far it is so many ms after the first ping, which is `phase` of a ping late.
+    `distance_at` says how far it is so many ms after the first ping, which is `phase` of a ping
+    late.
     """
     board = board_of(STOP_PROGRAM, is_trusting)
     trigger, echo = sonar_pins(board.robot)
     board.watch(trigger)
     phase_ms = phase * PING_INTERVAL_MS
-    distances_cm = [distances(number * PING_INTERVAL_MS + phase_ms) for number in range(60)]
+    distances_cm = [distance_at(number * PING_INTERVAL_MS + phase_ms) for number in range(60)]
     board.echoes(trigger, echo, [cm * US_PER_CM for cm in distances_cm])
     first_ping_ms = ping_starts_ms(board.run_for(START + 1500), trigger)[0]
-    near_ms = next(ms for ms in range(1500) if distances(ms + phase_ms) < NEAR_CM)
+    near_ms = next(ms for ms in range(1500) if distance_at(ms + phase_ms) < NEAR_CM)
     known_ms = next(ms for ms in driven_ms(board, 1) if board.motors(ms)[0] == NEAR_PWM)
     return known_ms - first_ping_ms - near_ms
 
@@ -115,12 +116,12 @@ def main() -> None:
         figure_rows[0].append(f"{wrong_count:,} of {readings:,}")
         figure_rows[1].append(f"{sum(run.wrong_count > 0 for run in runs)} of {SEED_COUNT}")
         for row, distance_cm in ((2, approaching_cm), (3, appearing_cm)):
-            late_ms_of_phases = [
-                late_ms(distance_cm, phase / PHASE_COUNT, is_trusting)
+            lateness_of_phases_ms = [
+                lateness_ms(distance_cm, phase / PHASE_COUNT, is_trusting)
                 for phase in range(PHASE_COUNT)
             ]
             figure_rows[row].append(
-                f"{median(late_ms_of_phases):.0f} ms, {max(late_ms_of_phases):.0f} ms"
+                f"{median(lateness_of_phases_ms):.0f} ms, {max(lateness_of_phases_ms):.0f} ms"
             )
     page.show("sonar", figure_rows)
 

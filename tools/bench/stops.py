@@ -21,7 +21,7 @@ from tests.support.images import image_of
 from tiniscript.base.kit import Kit
 from tiniscript.robots.profile import Robot
 from tools.bench.firmware_stack import BOARDS, SAMPLE_BITS, all_devices, connect, pin, require_ok
-from tools.uno import CYCLES_PER_MS, HERTZ, Masked, Uno
+from tools.uno import CYCLES_PER_MS, HERTZ, MaskedSpan, Uno
 
 NOISE_TEXTS = b"// nobody reads that\n", b"// nor this line, which nobody ends"
 STOP = bytes(8)
@@ -155,7 +155,9 @@ class BusyRobot:
         """Return the cycles of a stop before which all comes that may: once, at its longest."""
         receive_vector = RECEIVE_INTERRUPT[self.chip.board]
         masked_spans = [
-            masked for masked in self.chip.longest_masked() if masked.vector != receive_vector
+            masked_span
+            for masked_span in self.chip.longest_masked_spans()
+            if masked_span.vector != receive_vector
         ]
         entries = {
             span.vector: span.cycle_count
@@ -169,7 +171,7 @@ class BusyRobot:
         return min(self.stop_cycles) + INSTRUCTION_CYCLES + cycles_before
 
 
-def _is_before(place: Masked, received_cycle: int) -> bool:
+def _is_before(place: MaskedSpan, received_cycle: int) -> bool:
     """Return whether it is an interrupt that is served before the one of a byte."""
     return place.is_entry and 0 < place.vector < received_cycle
 

@@ -117,8 +117,8 @@ TYPE_SCRIPT = """async ([text, count, isPausing]) => {
 
 
 def main() -> None:
-    if why := studio.missing():
-        sys.exit(why)
+    if reason := studio.missing():
+        sys.exit(reason)
     figure_rows: list[tuple[str, ...]] = []
     with (
         studio.driver() as driver,
@@ -195,7 +195,7 @@ def _time_to_move(browser: Browser, address: str) -> Iterator[tuple[str, str, st
 
 def _drawing_cost(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
     """Yield the main thread's work for each picture, which depends less on the load."""
-    works: list[float] = []
+    work_of_frames_ms: list[float] = []
     for _ in range(START_COUNT):
         context = browser.new_context(viewport={"width": 1366, "height": 768})
         page = context.new_page()
@@ -207,11 +207,15 @@ def _drawing_cost(browser: Browser, address: str) -> Iterator[tuple[str, str, st
         page.wait_for_timeout(SETTLE_MS)
         browser.start_tracing(page=page, categories=["devtools.timeline", "toplevel"])
         page.wait_for_timeout(WATCH_MS)
-        works += _works_ms(json.loads(browser.stop_tracing())["traceEvents"])
+        work_of_frames_ms += _frame_work_ms(json.loads(browser.stop_tracing())["traceEvents"])
         context.close()
-    slow_works = [CPU_THROTTLING * work for work in works]
-    late_count = sum(work_ms > LATE_FRAME_MS for work_ms in slow_works)
-    yield "work", f"{late_count} of {len(slow_works):,}, median {median(slow_works):.1f} ms", "none"
+    slowed_work_ms = [CPU_THROTTLING * work for work in work_of_frames_ms]
+    late_count = sum(work_ms > LATE_FRAME_MS for work_ms in slowed_work_ms)
+    yield (
+        "work",
+        f"{late_count} of {len(slowed_work_ms):,}, median {median(slowed_work_ms):.1f} ms",
+        "none",
+    )
 
 
 def _stopped_ms(browser: Browser) -> float:
@@ -253,12 +257,12 @@ def _stopped_ms(browser: Browser) -> float:
     return max(waits)
 
 
-def _works_ms(events: list[dict[str, Any]]) -> list[float]:
+def _frame_work_ms(events: list[dict[str, Any]]) -> list[float]:
     """Return the processor time of the page's main thread from each picture to the next."""
-    draws = [event for event in events if event["name"] == "FireAnimationFrame"]
-    thread = Counter((draw["pid"], draw["tid"]) for draw in draws).most_common(1)[0][0]
-    draw_times = sorted(draw["ts"] for draw in draws if (draw["pid"], draw["tid"]) == thread)
-    works = [0.0] * len(draw_times)
+    frame_events = [event for event in events if event["name"] == "FireAnimationFrame"]
+    thread = Counter((draw["pid"], draw["tid"]) for draw in frame_events).most_common(1)[0][0]
+    draw_times = sorted(draw["ts"] for draw in frame_events if (draw["pid"], draw["tid"]) == thread)
+    work_of_frames_ms = [0.0] * len(draw_times)
     for task in events:
         if (
             task["name"] != TASK_EVENT
@@ -268,8 +272,8 @@ def _works_ms(events: list[dict[str, Any]]) -> list[float]:
             continue
         frame_index = bisect_right(draw_times, task["ts"] + task["dur"]) - 1  # the newest
         if frame_index >= 0:
-            works[frame_index] += task.get("tdur", 0) / 1000
-    return works
+            work_of_frames_ms[frame_index] += task.get("tdur", 0) / 1000
+    return work_of_frames_ms
 
 
 def _processor_s(page: Page) -> float:

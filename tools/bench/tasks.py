@@ -53,8 +53,8 @@ SYMBOL = re.compile(r"\d+ (\d+) (\w) (.*)")
 
 
 def main() -> int:
-    if why := uno.missing() or avr_bench.why_missing():
-        print(why, file=sys.stderr)
+    if reason := uno.missing() or avr_bench.missing_reason():
+        print(reason, file=sys.stderr)
         return 2
     try:
         firmware = firmware_size.measure("uno").firmware

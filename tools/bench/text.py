@@ -10,12 +10,12 @@ import sys
 from pathlib import Path
 
 from tools.bench import page
-from tools.bench.compiler import OBSTACLE
+from tools.bench.compiler import OBSTACLE_PROGRAM
 from tools.bench.link import PHASE_CYCLES, first_move, on_each_baud
 from tools.uno import CYCLES_PER_MS, Uno
 
-SHORT = "SI|F(2,80)"
-ROWS = (f"`{SHORT}`", "the paper's obstacle program")
+SHORT_PROGRAM = "SI|F(2,80)"
+ROWS = (f"`{SHORT_PROGRAM}`", "the paper's obstacle program")
 SILENCE_MS = 1100  # silence after a stop, before which input is ignored
 TRY_COUNT = 20  # the main loop is elsewhere each time: the slowest counts
 LONGEST_MS = 5.0  # limit for the short line
@@ -47,7 +47,7 @@ def slowest(board: Uno, line: str) -> float:
 def measure(firmware: Path, baud: int) -> list[float]:
     with Uno(firmware, baud=baud) as board:
         board.run_ms(SILENCE_MS)
-        return [slowest(board, line) for line in (SHORT, OBSTACLE)]
+        return [slowest(board, line) for line in (SHORT_PROGRAM, OBSTACLE_PROGRAM)]
 
 
 def main() -> int:

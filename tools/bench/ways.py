@@ -80,8 +80,8 @@ class Robot(Talk):
 
     def calibrate(self, seed: int) -> None:
         """Calibrate as `tsc set trim` does: make it straight, and measure at two powers."""
-        weaker = round(100 * (1 - SLOW_PERCENT / FAST_PERCENT))
-        trim = Trim(balance=weaker if seed % 2 else -weaker)
+        balance_percent = round(100 * (1 - SLOW_PERCENT / FAST_PERCENT))
+        trim = Trim(balance=balance_percent if seed % 2 else -balance_percent)
         self.wait_for(self.session.trim(trim.data()))
         measures = []
         for power in (40, 80):
@@ -145,7 +145,7 @@ def main(seed_count: int = SEED_COUNT, is_uno: bool = False) -> int:
         along_cell, aside_cell, turn_cell = offsets.cells()
         print(
             f"With discs and 0.5 % of slip {along_cell} along, {aside_cell} aside and "
-            f"{turn_cell}, {offsets.within} within."
+            f"{turn_cell}, {offsets.good_counts} within."
         )
         return int(not offsets.is_good)
     are_all_good = True
@@ -155,7 +155,7 @@ def main(seed_count: int = SEED_COUNT, is_uno: bool = False) -> int:
             offsets = WorstOffsets.summarise(
                 method, [offset_of(seed, slip, method) for seed in range(1, seed_count + 1)]
             )
-            rows.append((row, f"{100 * slip:g} %", *offsets.cells(), offsets.within))
+            rows.append((row, f"{100 * slip:g} %", *offsets.cells(), offsets.good_counts))
             are_all_good = are_all_good and (offsets.is_good or slip != SLIPS[0])
     page.show("ways", rows, key_cell_count=2)
     return int(not are_all_good)
@@ -164,8 +164,8 @@ def main(seed_count: int = SEED_COUNT, is_uno: bool = False) -> int:
 class WorstOffsets(NamedTuple):
     """The errors of robots: the bounds for WANTED_PERCENT, and how many keep the limits."""
 
-    worst: tuple[float, ...]
-    within: str
+    worst_offsets: tuple[float, ...]
+    good_counts: str
     is_good: bool
 
     @classmethod
@@ -175,14 +175,16 @@ class WorstOffsets(NamedTuple):
             offset[0] <= limits[0] and offset[1] <= limits[1] for offset in offsets
         )
         good_turn_count = sum(offset[2] <= limits[2] for offset in offsets)
-        within = f"{good_way_count} and {good_turn_count}" if limits[0] < math.inf else "-"
+        good_counts = f"{good_way_count} and {good_turn_count}" if limits[0] < math.inf else "-"
         is_good = 100 * min(good_way_count, good_turn_count) >= WANTED_PERCENT * len(offsets)
         return cls(
-            tuple(wanted_quantile(column) for column in zip(*offsets, strict=True)), within, is_good
+            tuple(wanted_quantile(column) for column in zip(*offsets, strict=True)),
+            good_counts,
+            is_good,
         )
 
     def cells(self) -> tuple[str, str, str]:
-        along, aside, turn = self.worst
+        along, aside, turn = self.worst_offsets
         return f"{along:.1f} cm", f"{aside:.1f} cm", f"{turn:.1f}°"
 
 

@@ -19,7 +19,7 @@ KIT = robots.load(robots.DEFAULT).kit
 SENSOR = [sensor.name for sensor in KIT.sensors].index("DISTANCE")
 
 
-class Work(NamedTuple):
+class Workload(NamedTuple):
     """A loop that runs so many `loop_count`, between reading its constants and showing its
     results."""
 
@@ -45,9 +45,9 @@ class WrongResult(Exception):
     """A machine that is fast and wrong."""
 
 
-WORKS = (
-    Work("A", "K = DISTANCE; X = 0;", "X = X + K;", 10_000, "SHOW(X);", (3,)),
-    Work(
+WORKLOADS = (
+    Workload("A", "K = DISTANCE; X = 0;", "X = X + K;", 10_000, "SHOW(X);", (3,)),
+    Workload(
         "B",
         "D = 0; E = 0;",
         "D = D + 1; IF(D > 500); E = E + 1; ENDIF;",
@@ -55,7 +55,7 @@ WORKS = (
         "SHOW(D); SHOW(E);",
     ),
     # S, M, B and L are words of the language: the sum is named Y here, and the others P, Q and N
-    Work(
+    Workload(
         "C",
         "P = DISTANCE; Q = DISTANCE; N = DISTANCE; A = 0; Y = 0;",
         "Y = Y + A*P; Y = Y/Q; Y = Y%N; A = A + 1;",
@@ -69,18 +69,18 @@ MOST_CYCLES = (120.0, 200.0, 2400.0)  # cycles of one iteration, at most
 
 
 @lru_cache
-def image_of(work: Work) -> bytes:
+def image_of(work: Workload) -> bytes:
     compilation = compile_text(work.text, KIT)
     assert compilation.image, compilation.diagnostics
     return compilation.image
 
 
-def code_of(work: Work) -> bytes:
+def code_of(work: Workload) -> bytes:
     return image_of(work)[HEADER_BYTES:]
 
 
 @lru_cache
-def expected_values(work: Work) -> tuple[int, ...]:
+def expected_values(work: Workload) -> tuple[int, ...]:
     """Return the values that the machine in Python shows, in thousandths."""
     *events, ending = run(code_of(work), KIT, Senses(KIT, {SENSOR: work.thousandths}))
     assert isinstance(ending, Ending) and ending.kind == "DONE", ending
@@ -92,7 +92,7 @@ def expected_values(work: Work) -> tuple[int, ...]:
     )
 
 
-def check(machine: str, work: Work, shown_values: Sequence[object]) -> None:
+def check(machine: str, work: Workload, shown_values: Sequence[object]) -> None:
     """Raise WrongResult where a machine does not say the same as the one in Python."""
     if tuple(shown_values) != expected_values(work):
         raise WrongResult(

@@ -95,7 +95,7 @@ CHIPS = {
 }  # fmt: skip
 
 
-def why_missing(chip: Chip, can_run: bool = False) -> str:
+def missing_reason(chip: Chip, can_run: bool = False) -> str:
     """Return the reason why building for a chip, or running on it, is impossible, or ""."""
     tools = [chip.compiler, chip.assembler, chip.linker, (chip.measurer,)]
     if can_run:

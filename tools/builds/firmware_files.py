@@ -86,7 +86,7 @@ def build_all(target: Path, licence: Path) -> list[Path]:
     if building.platformio() is None:
         install_command = install_advice.command(install_advice.FIRMWARE)
         raise CannotMake(f"PlatformIO is not installed. Install it:  {install_command}")
-    os.environ.update(settings_for(PROJECT, offline=False))
+    os.environ.update(settings_for(PROJECT, is_offline=False))
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         new_folder = Path(scratch) / "ready"

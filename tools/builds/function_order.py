@@ -95,7 +95,7 @@ def calls(disassembly: str, sections: list[Section]) -> list[Call]:
     return calls
 
 
-def count_far(order: list[int], all_pieces: list[Piece], all_calls: list[Call]) -> int:
+def count_far_calls(order: list[int], all_pieces: list[Piece], all_calls: list[Call]) -> int:
     """Return the number of far calls in an order."""
     begin = [0] * len(all_pieces)
     address = 0
@@ -108,16 +108,16 @@ def count_far(order: list[int], all_pieces: list[Piece], all_calls: list[Call]) 
     )
 
 
-def move_some(order: list[int], random_source: random.Random) -> list[int]:
+def rearranged(order: list[int], random_source: random.Random) -> list[int]:
     """Return an order in which some neighbours lie elsewhere, or the other way round."""
     begin = random_source.randrange(len(order))
     end = begin + random_source.choice((1, 1, 1, 2, 3, 5, 8, 12))
-    moved, others = order[begin:end], order[:begin] + order[end:]
+    moved_pieces, other_pieces = order[begin:end], order[:begin] + order[end:]
     if random_source.random() < 0.8:
-        begin = random_source.randrange(len(others) + 1)
+        begin = random_source.randrange(len(other_pieces) + 1)
     else:
-        moved.reverse()
-    return others[:begin] + moved + others[begin:]
+        moved_pieces.reverse()
+    return other_pieces[:begin] + moved_pieces + other_pieces[begin:]
 
 
 def best_order(
@@ -125,11 +125,11 @@ def best_order(
 ) -> list[int]:
     """Search by simulated annealing."""
     order = best = list(range(len(all_pieces)))
-    far_count = least_far_count = count_far(order, all_pieces, all_calls)
+    far_count = least_far_count = count_far_calls(order, all_pieces, all_calls)
     for number in range(try_count):
         temperature = 3.0 * (1 - number / try_count) + 0.05
-        candidate = move_some(order, random_source)
-        count = count_far(candidate, all_pieces, all_calls)
+        candidate = rearranged(order, random_source)
+        count = count_far_calls(candidate, all_pieces, all_calls)
         if count <= far_count or random_source.random() < math.exp(
             (far_count - count) / temperature
         ):
@@ -151,8 +151,8 @@ def main() -> int:
     all_calls = calls(completed.stdout, sections)
     order = best_order(all_pieces, all_calls, TRY_COUNT, random.Random(1))
     print(f"{sketch.flash:,} bytes before; calls that lead far: "
-          f"{count_far(list(range(len(all_pieces))), all_pieces, all_calls)} before, "
-          f"{count_far(order, all_pieces, all_calls)} then")  # fmt: skip
+          f"{count_far_calls(list(range(len(all_pieces))), all_pieces, all_calls)} before, "
+          f"{count_far_calls(order, all_pieces, all_calls)} then")  # fmt: skip
     text = SCRIPT.read_text(encoding="utf-8")
     begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
     rows = "".join(f"    *({all_pieces[number].pattern})\n" for number in order)

@@ -18,7 +18,7 @@ from pathlib import Path
 from tiniscript import __version__, compile_text, robots
 from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
 from tools import ROOT
-from tools.release.facts import PEOPLE, address
+from tools.release.facts import AUTHORS, address
 
 SOURCES = ROOT / "vm_arduino" / "src"
 LIBRARY_SOURCES = ROOT / "vm_arduino" / "extras" / "library"
@@ -105,8 +105,8 @@ def properties(url: str) -> str:
     fields = {
         "name": "TiniScript",
         "version": __version__,
-        "author": PEOPLE,
-        "maintainer": PEOPLE,
+        "author": AUTHORS,
+        "maintainer": AUTHORS,
         "sentence": SENTENCE,
         "paragraph": PARAGRAPH,
         "category": "Device Control",
@@ -127,7 +127,7 @@ def manifest(url: str) -> str:
         "keywords": list(KEYWORDS),
         "repository": {"type": "git", "url": url},
         "homepage": url,
-        "authors": [{"name": PEOPLE, "maintainer": True}],
+        "authors": [{"name": AUTHORS, "maintainer": True}],
         "license": "MIT",
         "frameworks": ["arduino"],
         "platforms": list(PLATFORMS),

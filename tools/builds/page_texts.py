@@ -24,7 +24,7 @@ COMMAND_TEXTS = {
 }  # fmt: skip
 
 
-def looked_for(language: str) -> dict[str, str]:
+def search_words(language: str) -> dict[str, str]:
     """Return the search words of blocks: those of the lexicon, by their meaning.
 
     The key is a word of the text, or `turn` for those of them that turn.
@@ -54,7 +54,7 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
     }
     return {
         "": info.form_digits,
-        **looked_for(language),
+        **search_words(language),
         **{
             key: value if isinstance(value, str)
             else [value.get(form, value["other"]) for form in info.forms]

@@ -87,12 +87,12 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def settings_for(project: Path, offline: bool) -> dict[str, str]:
+def settings_for(project: Path, is_offline: bool) -> dict[str, str]:
     """Return the environment in which `pio` works, with everything made that it needs."""
     if importlib.util.find_spec("platformio") is None:
         raise CannotMake("PlatformIO is not installed. Try:  pip install platformio")
-    if why := why_needless(project, offline):
-        say(f"nothing to do: {why}")
+    if reason := needless_reason(project, is_offline):
+        say(f"nothing to do: {reason}")
         return {}
     check_packages()
     check_versions(project)
@@ -115,7 +115,7 @@ def say(text: str) -> None:
 # -- whether there is anything to do ------------------------------------------------------------
 
 
-def why_needless(project: Path, offline: bool) -> str:
+def needless_reason(project: Path, is_offline: bool) -> str:
     """Return the reason why PlatformIO needs no stand-ins here, or ""."""
     platforms = Path(config_of(project).get("platformio", "platforms_dir")).resolve()
     if STAND_IN_HOME in platforms.parents:
@@ -123,7 +123,7 @@ def why_needless(project: Path, offline: bool) -> str:
     own_platforms = sorted(path.parent.name for path in platforms.glob("*/platform.json"))
     if own_platforms:
         return f"PlatformIO has platforms of its own ({', '.join(own_platforms)})"
-    if not offline and registry_answers():
+    if not is_offline and registry_answers():
         return "PlatformIO's registry answers"
     return ""
 
@@ -192,12 +192,12 @@ def check_versions(project: Path) -> None:
     config = config_of(project)
     for environment in config.envs():
         platform = config.get(f"env:{environment}", "platform")
-        required = PackageSpec(platform)
-        stand_in = STAND_INS / str(required.name)
-        if not stand_in.is_dir() or not required.requirements:
+        required_package = PackageSpec(platform)
+        stand_in = STAND_INS / str(required_package.name)
+        if not stand_in.is_dir() or not required_package.requirements:
             continue
         version = version_of(stand_in)
-        if Version(version) not in required.requirements:
+        if Version(version) not in required_package.requirements:
             raise CannotMake(
                 f"[env:{environment}] wants {platform}, the stand-in is one for {version}"
             )
@@ -207,11 +207,11 @@ def wanted_scons() -> tuple[str, str]:
     """Return the version of the package tool-scons that PlatformIO wants, and that of SCons."""
     from platformio.dependencies import get_core_dependencies
 
-    required = get_core_dependencies()["tool-scons"]
-    match = re.fullmatch(r"~(4\.(\d)(\d\d)(\d\d)\.\d+)", required)
+    requirement = get_core_dependencies()["tool-scons"]
+    match = re.fullmatch(r"~(4\.(\d)(\d\d)(\d\d)\.\d+)", requirement)
     if not match:
         raise CannotMake(
-            f"PlatformIO wants tool-scons {required}: which SCons that is, I cannot say"
+            f"PlatformIO wants tool-scons {requirement}: which SCons that is, I cannot say"
         )
     return match[1], ".".join(str(int(part)) for part in match.groups()[1:])
 
@@ -228,10 +228,10 @@ def add_doctest(folder: Path, project: Path) -> None:
     requirement = re.search(r"doctest/doctest@[^\"']+", runner)
     if requirement is None:
         raise CannotMake("vm_arduino/test/test_custom_runner.py names no doctest/doctest@")
-    required = PackageSpec(requirement[0])
-    if Version(version) not in required.requirements:
+    required_spec = PackageSpec(requirement[0])
+    if Version(version) not in required_spec.requirements:
         raise CannotMake(
-            f"doctest-dev is doctest {version}, the tests want {required.requirements}"
+            f"doctest-dev is doctest {version}, the tests want {required_spec.requirements}"
         )
     if folder.exists():
         return
@@ -239,7 +239,7 @@ def add_doctest(folder: Path, project: Path) -> None:
     def fill(new_folder: Path) -> None:
         (new_folder / "include").mkdir()
         shutil.copy(DOCTEST, new_folder / "include" / "doctest.h")
-        describe(new_folder, "library.json", "library", "doctest", version, required.owner)
+        describe(new_folder, "library.json", "library", "doctest", version, required_spec.owner)
 
     make(folder, fill)
 

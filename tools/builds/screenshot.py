@@ -52,7 +52,7 @@ LOOP(6)
 END_LOOP
 """
 # Kinds of pictures: blocks after a run; a breakpoint with values; the start screen with saved work;
-# a checked lesson; and SHEETS.
+# a checked lesson; and those of SHOTS_OF_SCENE.
 SCENES = {
     "": PROGRAM,
     ".held": COUNTING_PROGRAM,
@@ -96,21 +96,21 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--check", action="store_true", help="only say whether they are stale")
     options = parser.parse_args(arguments)
     if not options.check:
-        why = studio.missing()
-        if why:
-            print(f"screenshot: {why}", file=sys.stderr)
+        reason = studio.missing()
+        if reason:
+            print(f"screenshot: {reason}", file=sys.stderr)
             return 2
         for language, scene in product(LANGUAGES, SCENES):
             take(language, scene, picture(language, scene))
             print(f"wrote {picture(language, scene).relative_to(ROOT)}")
         return 0
     complaints = [
-        why
+        reason
         for language_and_scene in product(LANGUAGES, SCENES)
-        if (why := why_stale(*language_and_scene))
+        if (reason := unusable_reason(*language_and_scene))
     ]
-    for why in complaints:
-        print(f"screenshot: {why}", file=sys.stderr)
+    for reason in complaints:
+        print(f"screenshot: {reason}", file=sys.stderr)
     return 1 if complaints else 0
 
 
@@ -140,7 +140,7 @@ def take(language: str, scene: str, target: Path) -> None:
         studio.speak(page, language)
         if scene != WALL_SCENE:
             studio.write(page, PROGRAM)
-        SHEETS.get(scene, _take_single)(page, scene, take_shot)
+        SHOTS_OF_SCENE.get(scene, _take_single)(page, scene, take_shot)
         pages.close()
     if pages.wrong:
         raise SystemExit(f"the page said {pages.wrong[0]}")
@@ -148,7 +148,9 @@ def take(language: str, scene: str, target: Path) -> None:
     visible_lines = sorted(
         {row.strip() for word in words for row in word.splitlines() if row.strip()}
     )
-    metadata.add_text(WORDS_SCENE, json.dumps([line for line in visible_lines if is_said(line)]))
+    metadata.add_text(
+        WORDS_SCENE, json.dumps([line for line in visible_lines if is_page_text(line)])
+    )
     _sheet(shots).quantize(COLOUR_COUNT).save(target, optimize=True, pnginfo=metadata)
 
 
@@ -342,7 +344,7 @@ def _take_more(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
 
 
 # Scenes of several pictures, or next to the program.
-SHEETS = {
+SHOTS_OF_SCENE = {
     ".more": _take_more,
     ".wall": _wall,
     ".drawing": _drawing,
@@ -372,12 +374,12 @@ def _sheet(shots: list[Image.Image]) -> Image.Image:
     return sheet
 
 
-def is_said(words: str) -> bool:
+def is_page_text(words: str) -> bool:
     """Return whether the page's sentences contain these words."""
     return any(words in _shown_words(language) for language in languages())
 
 
-def why_stale(language: str, scene: str = "") -> str:
+def unusable_reason(language: str, scene: str = "") -> str:
     """Return the reason why a picture is not of this page, or ""."""
     path = picture(language, scene)
     if not path.is_file():
@@ -386,7 +388,7 @@ def why_stale(language: str, scene: str = "") -> str:
         words = json.loads(str(image.info.get(WORDS_SCENE, "[]")))
     if not words:
         return f"{path.name} does not say what can be read in it. Take it:  {COMMAND}"
-    missing_words = [word for word in words if not is_said(word)]
+    missing_words = [word for word in words if not is_page_text(word)]
     if missing_words:
         word = missing_words[0]
         return f"{path.name} shows “{word}”, which the page says no more. Take it:  {COMMAND}"

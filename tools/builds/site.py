@@ -2,7 +2,7 @@
 
     python -m tools.builds.site site
 
-writes a folder for any static host: a half for each language with a search, `en/` and `es/`,
+writes a folder for any static host: a part for each language with a search, `en/` and `es/`,
 `studio/` where its page is built (`python -m tools.builds.studio`), and `files/` with the other
 files that the documents link to. Needs `pip install -e ".[site]"`. A link that leads nowhere ends
 it, so does every warning of Sphinx.
@@ -31,7 +31,7 @@ from tools.site.documents import FRONT_PAGE, PARTS, Document, documents, sources
 from tools.site.pages import FILES_FOLDER, Shelf, SitePage, page, shelf
 
 SITE_SOURCES = ROOT / "tools" / "site"
-HALVES_AT_ONCE = 2  # halves of the site
+LANGUAGES_AT_ONCE = 2  # parts of the site, one for each language
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -43,9 +43,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         print(f"site: {folder} is there already, and is not empty.", file=sys.stderr)
         return 2
-    why = "" if options.no_studio else studio.why_stale()
-    if why:
-        print(f"site: {why} Without it:  --no-studio", file=sys.stderr)
+    reason = "" if options.no_studio else studio.unusable_reason()
+    if reason:
+        print(f"site: {reason} Without it:  --no-studio", file=sys.stderr)
         return 2
     try:
         build(ROOT, folder, has_studio=not options.no_studio)
@@ -71,15 +71,15 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
     texts = build_all()
     site_documents = documents(root, texts)
     shelf_ = shelf(root, site_documents, texts)
-    halves = halves_of(site_documents)
+    site_languages = languages_of(site_documents)
 
     def make(language: str) -> None:
-        half = scratch / language
-        stage(half, site_documents, shelf_, language)
-        render(half, folder / language, site_documents, has_studio)
+        source_folder = scratch / language
+        stage(source_folder, site_documents, shelf_, language)
+        render(source_folder, folder / language, site_documents, has_studio)
 
-    with ThreadPoolExecutor(HALVES_AT_ONCE) as pool:
-        list(pool.map(make, halves))
+    with ThreadPoolExecutor(LANGUAGES_AT_ONCE) as pool:
+        list(pool.map(make, site_languages))
     for name in sorted(shelf_.linked_files):
         shelf_.copy(name, folder / FILES_FOLDER / name)
     link = ""
@@ -88,8 +88,8 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
                         ignore=shutil.ignore_patterns(studio.STAMP))  # fmt: skip
         link = '<a href="studio/index.html">TiniScript Studio</a>'
     start_page = (SITE_SOURCES / "choice.html").read_text(encoding="utf-8")
-    rows = "\n".join(map(_start_page, reversed(halves)))
-    start_page = start_page.replace("STUDIO", link).replace("HALVES", rows)
+    rows = "\n".join(map(_start_page, reversed(site_languages)))
+    start_page = start_page.replace("STUDIO", link).replace("LANGUAGES", rows)
     (folder / "index.html").write_text(start_page, encoding="utf-8")
     (folder / ".nojekyll").touch()  # without this file, some hosts omit folders that begin with _
     dead_links = links.dead_links(folder)
@@ -97,7 +97,7 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
         raise CannotMake("\n".join(dead_links))
 
 
-def halves_of(documents: list[Document]) -> list[str]:
+def languages_of(documents: list[Document]) -> list[str]:
     """Return the languages of the documents, English first."""
     return [
         language
@@ -111,8 +111,8 @@ def _start_page(language: str) -> str:
     return f'<a href="{language}/index.html" lang="{language}" hreflang="{language}">{sentence}</a>'
 
 
-def stage(half: Path, documents: list[Document], shelf_: Shelf, language: str) -> None:
-    """Write the sources of one half, as Sphinx reads them. Raises CannotMake.
+def stage(source_folder: Path, documents: list[Document], shelf_: Shelf, language: str) -> None:
+    """Write the sources of one language, as Sphinx reads them. Raises CannotMake.
 
     A language without a front page has the English one.
     """
@@ -124,22 +124,22 @@ def stage(half: Path, documents: list[Document], shelf_: Shelf, language: str) -
     front = sources(shelf_.root, FRONT_PAGE)
     front_page = page(front.get(language, FRONT_PAGE), shelf_, SitePage(language, "index"))
     for name, markdown in {**pages, "index": front_page + contents(documents, language)}.items():
-        target = half / f"{name}.md"
+        target = source_folder / f"{name}.md"
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(markdown, encoding="utf-8")
     for name in sorted(shelf_.pictures):
-        shelf_.copy(name, half / FILES_FOLDER / name)
+        shelf_.copy(name, source_folder / FILES_FOLDER / name)
     for name in ("templates", "static"):
-        shutil.copytree(SITE_SOURCES / name, half / name)
-    shutil.copy(SITE_SOURCES / "conf.py", half)
+        shutil.copytree(SITE_SOURCES / name, source_folder / name)
+    shutil.copy(SITE_SOURCES / "conf.py", source_folder)
 
 
-def render(half: Path, folder: Path, documents: list[Document], has_studio: bool) -> None:
-    """Make the pages of one half with Sphinx. It raises CannotMake with the complaints."""
+def render(source_folder: Path, folder: Path, documents: list[Document], has_studio: bool) -> None:
+    """Make the pages of one language with Sphinx. It raises CannotMake with the complaints."""
     language = folder.name
     language_names = {
         other_language: language_info(other_language).name
-        for other_language in halves_of(documents)
+        for other_language in languages_of(documents)
         if other_language != language
     }
     settings = {
@@ -147,23 +147,24 @@ def render(half: Path, folder: Path, documents: list[Document], has_studio: bool
         "pages": {page.name: list(page.sources) for page in documents},
         "has_studio": has_studio,
     }
-    (half / "half.json").write_text(json.dumps(settings), encoding="utf-8")
+    (source_folder / "settings.json").write_text(json.dumps(settings), encoding="utf-8")
     command = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going",
-             "-E", "-D", f"language={language}", "-d", str(half.parent / f"{language}.trees"),
-             str(half), str(folder)]  # fmt: skip
+             "-E", "-D", f"language={language}",
+             "-d", str(source_folder.parent / f"{language}.trees"),
+             str(source_folder), str(folder)]  # fmt: skip
     paths = os.pathsep.join([str(ROOT), str(ROOT / "compiler")])
     completed = subprocess.run(command, capture_output=True, text=True, errors="replace",
                                env={**os.environ, "PYTHONPATH": paths})  # fmt: skip
     if completed.returncode:
         raise CannotMake(
-            (completed.stdout + completed.stderr).replace(f"{half}{os.sep}", "").strip()
+            (completed.stdout + completed.stderr).replace(f"{source_folder}{os.sep}", "").strip()
         )
     if language != SOURCE_LANGUAGE:
         theme.translate(folder, language)
 
 
 def contents(documents: list[Document], language: str) -> str:
-    """Return the table of contents of one half, which the page's side shows."""
+    """Return the table of contents of one language, which the page's side shows."""
     rows: list[str] = []
     for part in PARTS:
         names = [

@@ -71,24 +71,24 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         if options.check or options.sizes:
-            why = why_stale(options.output)
-            if why:
-                raise CannotMake(why)
+            reason = unusable_reason(options.output)
+            if reason:
+                raise CannotMake(reason)
         elif options.again:
-            build_again(options.output)
+            rebuild(options.output)
         else:
             build(options.output)
             if options.firmware:
                 bring_firmware(options.output)
-    except CannotMake as why:
-        print(f"build_studio: {why}", file=sys.stderr)
+    except CannotMake as reason:
+        print(f"build_studio: {reason}", file=sys.stderr)
         return 2
     if not options.check:
         print("\n".join(size_rows(options.output)))
     return 0
 
 
-def why_stale(page: Path = PAGE) -> str:
+def unusable_reason(page: Path = PAGE) -> str:
     """Return the reason why the existing page cannot be used, or ""."""
     if not (page / STAMP).is_file():
         return f"the page is not built. Do that with:  {COMMAND}"
@@ -129,7 +129,7 @@ def build(page: Path = PAGE) -> None:
             shutil.copyfile(MODULES / "pyodide" / name, new_page / name)
         for name in BLOCKLY_PICTURES:
             shutil.copyfile(BLOCKLY / "media" / name, new_page / name)
-        put_own_files(new_page)
+        write_own_files(new_page)
         (new_page / FIRMWARE_FILE).write_text("[]\n", encoding="utf-8")
         (new_page / LICENCES_FILE).write_text(licences(), encoding="utf-8")
         write_service_worker(new_page)
@@ -143,7 +143,7 @@ def build(page: Path = PAGE) -> None:
         new_page.rename(page)
 
 
-def put_own_files(page: Path) -> None:
+def write_own_files(page: Path) -> None:
     """Put the page's own files into a folder, but for its modules."""
     for name in COPIED_FILES:
         shutil.copyfile(SOURCES / "src" / name, page / Path(name).name)
@@ -154,11 +154,11 @@ def put_own_files(page: Path) -> None:
             content_json = json.dumps(content, ensure_ascii=False, separators=(",", ":"))
             (page / name).write_text(content_json, encoding="utf-8")
     html = (SOURCES / "src" / "index.html").read_text(encoding="utf-8")
-    html = html.replace("POLICY", POLICY).replace("COMING", coming_text())
+    html = html.replace("POLICY", POLICY).replace("COMING", loading_text())
     (page / "index.html").write_text(html, encoding="utf-8")
 
 
-def coming_text() -> str:
+def loading_text() -> str:
     """Return the page's text before a language is loaded, in each language."""
     texts = [(code, page_texts(code)["page_waits"]) for code in languages()]
     return "".join(f'<span lang="{code}">{escape(str(text))}</span>' for code, text in texts)
@@ -169,17 +169,17 @@ def language_files(language: str) -> tuple[str, str]:
     return f"texts.{language}.json", f"messages.{language}.json"
 
 
-def build_again(page: Path) -> None:
+def rebuild(page: Path) -> None:
     """Rebuild the page's own files in an existing page: for changes without Python."""
     sources = building.digest()
     tools = find_tools()
     if not (page / STAMP).is_file():
-        raise CannotMake(why_stale(page))
+        raise CannotMake(unusable_reason(page))
     check_types(tools)
     for old_file in page.glob("*.js"):
         old_file.unlink()
     bundle(tools, page)
-    put_own_files(page)
+    write_own_files(page)
     (page / STAMP).unlink()
     write_service_worker(page)
     stamp = {"sources": sources, "node": tools.version}
@@ -278,8 +278,8 @@ def write_service_worker(target: Path) -> None:
         if code != SOURCE_LANGUAGE
         for name in files_by_language[code]
     }
-    not_cached = {"index.html", LICENCES_FILE, FIRMWARE_FILE, *later_files}
-    files = ["./", *(name for name in names if name not in not_cached)]
+    uncached_names = {"index.html", LICENCES_FILE, FIRMWARE_FILE, *later_files}
+    files = ["./", *(name for name in names if name not in uncached_names)]
     constants = {
         "VERSION": build_hash.hexdigest()[:16],
         "FILES": files,

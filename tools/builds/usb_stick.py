@@ -39,12 +39,12 @@ INSTALLER_URL = "https://www.python.org/ftp/python/{0}/python-{0}-amd64.exe"
 INSTALLER_SHA256 = "200ddff856bbff949d2cc1be42e8807c07538abd6b6966d5113a094cf628c5c5"
 
 
-class Missing(NamedTuple):
+class MissingPart(NamedTuple):
     """A missing part: the key of its sentence, its values, and the reason for the builder."""
 
     key: str
     name: str
-    why: str
+    reason: str
 
     def sentence(self, language: str) -> str:
         return text("documents", f"stick/{self.key}", language).format(what=self.name)
@@ -65,33 +65,33 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     wheels = folder / "wheels"
     wheels.mkdir(parents=True)
-    missing: list[Missing] = []
+    missing_parts: list[MissingPart] = []
     if not options.no_firmware and not options.wheel:
-        missing += _firmware()
+        missing_parts += _firmware()
     systems, pythons = options.system or list(SYSTEMS), options.python or list(PYTHONS)
     try:
-        missing += add_wheels(wheels, systems, pythons, options.wheel)
+        missing_parts += add_wheels(wheels, systems, pythons, options.wheel)
     except CannotMake as error:
         print(f"usb_stick: {error} Is this computer online?", file=sys.stderr)
         return 2
     if not options.no_installer and "windows" in systems:
-        missing += add_installer(folder, INSTALLER_URL.format(INSTALLER))
+        missing_parts += add_installer(folder, INSTALLER_URL.format(INSTALLER))
     add_texts(folder)
     titles = ", ".join(SYSTEMS[system].title for system in systems)
-    add_readme(folder, titles, ", ".join(pythons), missing)
-    for missing_part in missing:
+    add_readme(folder, titles, ", ".join(pythons), missing_parts)
+    for missing_part in missing_parts:
         print(
-            f"missing: {missing_part.sentence(SOURCE_LANGUAGE)} ({missing_part.why})",
+            f"missing: {missing_part.sentence(SOURCE_LANGUAGE)} ({missing_part.reason})",
             file=sys.stderr,
         )
     size_bytes = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"{folder}: {size_bytes / 1e6:.0f} MB. Copy what is in it to the stick.")
-    return 1 if missing else 0
+    return 1 if missing_parts else 0
 
 
 def add_wheels(
     wheels: Path, systems: Sequence[str], pythons: Sequence[str], given_wheel: Path | None = None
-) -> list[Missing]:
+) -> list[MissingPart]:
     """Put all wheels into a folder; return the missing parts. Raises CannotMake.
 
     `given_wheel` is the wheel of TiniScript; if there is none, build it.
@@ -102,7 +102,7 @@ def add_wheels(
         if given_wheel
         else stick_wheels.make_own_wheel(ROOT, wheels)
     )
-    missing: list[Missing] = []
+    missing_parts: list[MissingPart] = []
     for name in systems:
         for python in pythons:
             title = f"{SYSTEMS[name].title}, Python {python}"
@@ -110,21 +110,23 @@ def add_wheels(
             try:
                 stick_wheels.fetch(wheel, wheels, SYSTEMS[name], python, EXTRAS)
             except CannotMake as error:
-                missing.append(_with_fewer(wheel, wheels, name, python, str(error)))
-    return missing
+                missing_parts.append(_fetch_fewer_parts(wheel, wheels, name, python, str(error)))
+    return missing_parts
 
 
-def _with_fewer(wheel: Path, wheels: Path, name: str, python: str, why: str) -> Missing:
+def _fetch_fewer_parts(
+    wheel: Path, wheels: Path, name: str, python: str, reason: str
+) -> MissingPart:
     """Download the most important parts for a class; return the missing ones."""
     title = f"{SYSTEMS[name].title}, Python {python}"
     try:
         stick_wheels.fetch(wheel, wheels, SYSTEMS[name], python, FEWER_EXTRAS)
     except CannotMake:
-        return Missing("no_system", title, why)
-    return Missing("no_radio", title, why)
+        return MissingPart("no_system", title, reason)
+    return MissingPart("no_radio", title, reason)
 
 
-def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> list[Missing]:
+def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> list[MissingPart]:
     """Download the installer of Python for Windows; return the missing parts."""
     target = folder / url.rsplit("/", 1)[1]
     try:
@@ -132,11 +134,11 @@ def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> lis
             shutil.copyfileobj(answer, file)
         if hashlib.sha256(target.read_bytes()).hexdigest() == sha256:
             return []
-        why = "what came is not that installer"
+        reason = "what came is not that installer"
     except (OSError, ValueError) as error:  # includes the errors of urllib
-        why = str(getattr(error, "reason", error))
+        reason = str(getattr(error, "reason", error))
     target.unlink(missing_ok=True)
-    return [Missing("no_installer", url, why)]
+    return [MissingPart("no_installer", url, reason)]
 
 
 def add_texts(folder: Path) -> None:
@@ -154,7 +156,9 @@ def add_texts(folder: Path) -> None:
             target.chmod(0o755)
 
 
-def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[Missing]) -> None:
+def add_readme(
+    folder: Path, systems: str, pythons: str, missing_parts: Sequence[MissingPart]
+) -> None:
     parts = [f"TiniScript {__version__}\n{systems}\nPython {pythons}\n"]
     for language in translated_languages("documents", "stick/title"):
         index = name_in(language, stick_pages.INDEX)
@@ -164,7 +168,7 @@ def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[Missi
             instructions,
             *(
                 lacks_format.format(what=missing_part.sentence(language))
-                for missing_part in missing
+                for missing_part in missing_parts
             ),
         ]
         title = text("documents", "stick/title", language)
@@ -173,14 +177,14 @@ def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[Missi
     (folder / "README.txt").write_text(readme_text, encoding="utf-8-sig", newline="\r\n")
 
 
-def _firmware() -> list[Missing]:
+def _firmware() -> list[MissingPart]:
     """Put the firmware into our wheel; return the parts that cannot be built."""
     if any(ready.FOLDER.glob("*.hex")):
         return []
     from tools.builds import firmware_files
 
     if firmware_files.main([]):
-        return [Missing("no_firmware", "", "see above")]
+        return [MissingPart("no_firmware", "", "see above")]
     return []
 
 

@@ -73,8 +73,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Make the WebAssembly modules from the C++.")
     parser.add_argument("--check", action="store_true", help="only say whether one is stale")
     only_check: bool = parser.parse_args(arguments).check
-    if why_not_here():
-        sys.exit(why_not_here())
+    if unavailable_reason():
+        sys.exit(unavailable_reason())
     exit_code = 0
     for module in MODULES:
         path = ROOT / module.path
@@ -90,7 +90,7 @@ def main(arguments: list[str] | None = None) -> int:
     return exit_code
 
 
-def why_not_here() -> str:
+def unavailable_reason() -> str:
     """Return the reason why the modules cannot be built here, or ""."""
     pin = re.search(r'"ziglang==([^"]+)"', (ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     assert pin, "pyproject.toml pins the compiler"

@@ -26,7 +26,7 @@ from tools.generate.arena import world_picture
 from tools.generate.cpp_cases import cases_table
 from tools.generate.documents import DOCUMENTS, list_of_documents, splice, table
 from tools.generate.driver_lists import with_drivers
-from tools.generate.front import fronts
+from tools.generate.front import front_pictures
 from tools.generate.guide_pictures import guide_pictures
 from tools.generate.link_header import payloads
 from tools.generate.poster import posters
@@ -267,7 +267,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     *((ROOT / name, make) for name, make in DOCUMENTS.items()),
     (PAYLOADS_FILE, partial(payloads, COMMAND)),
     *((DOCUMENT_FOLDER / "poster" / name, make) for name, make in posters(COMMAND).items()),
-    *((PICTURE_FOLDER / name, make) for name, make in fronts(COMMAND).items()),
+    *((PICTURE_FOLDER / name, make) for name, make in front_pictures(COMMAND).items()),
     (PICTURE_FOLDER / "worlds.svg", partial(world_picture, COMMAND)),
     *((PICTURE_FOLDER / name, make) for name, make in guide_pictures(COMMAND).items()),
     (

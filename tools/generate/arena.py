@@ -45,15 +45,15 @@ def drive_way(program: str, robot: str, world: World, duration_ms: int) -> Way:
     hull = Hull(simulation.robot.profile.body)
     poses = [simulation.robot.pose]
     for _ in range(0, duration_ms, SAMPLE_MS):
-        simulation.go(SAMPLE_MS)
+        simulation.advance(SAMPLE_MS)
         poses.append(simulation.robot.pose)
     points = [(pose.x_cm, pose.y_cm) for pose in poses]
     begin, end = ([(point.x, point.y) for point in hull.outline(poses[k])] for k in (0, -1))
     simulation.close()
-    return Way(bends(points), begin, end)
+    return Way(simplified_path(points), begin, end)
 
 
-def bends(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
+def simplified_path(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
     """Return the points between which the others are on a straight way, to 2 mm."""
     if len(points) < 3:
         return points
@@ -62,7 +62,7 @@ def bends(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
     k = distances_cm.index(max(distances_cm)) + 1
     if distances_cm[k - 1] < 0.2:
         return [points[0], points[-1]]
-    return [*bends(points[: k + 1])[:-1], *bends(points[k:])]
+    return [*simplified_path(points[: k + 1])[:-1], *simplified_path(points[k:])]
 
 
 def arena(world: World, way: Way, left: float, top: float, scale: float) -> list[str]:

@@ -35,7 +35,7 @@ def header(command: str) -> str:
             *(f"#define tini_{name} {number}\n" for name, number in numbers),
             "\n// What a machine without tasks does about theirs.\n",
             f"#ifndef tiniscript_has_tasks\n{without_tasks()}#endif\n",
-            *acts(),
+            *act_macros(),
             "\n// The low bits of an instruction that compares are its comparator.\n",
             f"#define tini_comparator_bits {comparator_bits()}\n",
             "\n.macro jumps count, target\n",
@@ -73,7 +73,7 @@ def without_tasks() -> str:
     return "".join(f"#define {label} op_none\n" for label in labels)
 
 
-def acts() -> Iterator[str]:
+def act_macros() -> Iterator[str]:
     """Yield a macro for each size of instruction: the labels of those that are left to C++."""
     labels = {size: dict.fromkeys(map(handler, codes)) for size, codes in acts_by_size().items()}
     assert {*labels} == {1, 2, 3, 4}, "execute_statements_avr.S has a place for each size"

@@ -17,7 +17,7 @@ from tiniscript.base.words import WORDS
 from tiniscript.lessons.lesson import AREA_KEYS, DEVICE_KINDS, KINDS, CriterionKind
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools import ROOT, measures
-from tools.generate.poster import as_block
+from tools.generate.poster import text_beside_block
 from tools.site.documents import INDEX_PAGE, documents, sources
 
 PACKAGE = ROOT / "compiler" / "tiniscript"
@@ -38,9 +38,9 @@ def architecture_document() -> str:
 
 def _modules() -> str:
     """Return the picture of the package's modules, in the language of Mermaid."""
-    graph = measures.arrows(measures.imports_of(sorted(PACKAGE.rglob("*.py"))))
+    graph = measures.module_imports(measures.imports_of(sorted(PACKAGE.rglob("*.py"))))
     lines = [f"  {name} --> {' & '.join(sorted(targets))}"
-             for name, targets in sorted(measures.direct(graph).items())
+             for name, targets in sorted(measures.direct_imports(graph).items())
              if targets and (PACKAGE / name / "__init__.py").is_file() and name]  # fmt: skip
     return "\n".join(["```mermaid", "flowchart TD", *lines, "```", ""])
 
@@ -107,7 +107,7 @@ def language_document(document: str, language: str) -> str:
             f"`{word.usage.upper()}` = `{word.stands_for}`" for word in words if word.stands_for
         ],
         "others": [
-            f"`{word.usage.upper()}` {as_block(word, language)}".rstrip()
+            f"`{word.usage.upper()}` {text_beside_block(word, language)}".rstrip()
             for word in words
             if not word.stands_for and word.text not in words_by_hand
         ],

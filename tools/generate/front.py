@@ -42,15 +42,15 @@ GRAMMAR_ROLES = ("block", "arm", "end", "until", "forever", "operator")
 COLOURS = {"setup": SETUP_COLOUR, **dict.fromkeys(GRAMMAR_ROLES, GRAMMAR_COLOUR)}
 
 
-def fronts(command: str) -> dict[str, partial[str]]:
+def front_pictures(command: str) -> dict[str, partial[str]]:
     """Return the makers of the pictures in `docs/pictures/`, by name. `command` runs them."""
     return {
-        f"front.{language}.svg": partial(front, language, command)
+        f"front.{language}.svg": partial(front_picture, language, command)
         for language in sources(ROOT, "README.md")
     }
 
 
-def front(language: str, command: str) -> str:
+def front_picture(language: str, command: str) -> str:
     """Return the picture in a language, as SVG."""
     body = "\n".join([*_program(), *_terminal(language), *_arena(language)])
     return (

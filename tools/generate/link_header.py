@@ -66,8 +66,9 @@ def header(command: str) -> str:
                 name, [(value_name, k, meaning) for k, (value_name, meaning) in enumerate(rows)]
             )
             for name, rows in (
-                ("State", messages.STATES), ("Saved", messages.SAVED), ("Cause", messages.CAUSES),
-                ("Reset", messages.RESETS), ("TextLevel", messages.TEXT_LEVELS),
+                ("State", messages.STATES), ("Saved", messages.SAVED_STATES),
+                ("Cause", messages.CAUSES), ("Reset", messages.RESETS),
+                ("TextLevel", messages.TEXT_LEVELS),
                 ("Key", messages.KEYS), ("WifiStep", messages.WIFI_STEPS),
                 ("WifiMode", messages.WIFI_MODES), ("WifiState", messages.WIFI_STATES),
                 ("ResumeHow", messages.RESUMES), ("TaskState", messages.TASK_STATES),
@@ -219,7 +220,7 @@ DOCUMENT_TABLES: dict[str, dict[str, Callable[[], Rows]]] = {
         "text levels": lambda: number_rows(messages.TEXT_LEVELS),
         "statuses": status_rows,
         "states": lambda: number_rows(messages.STATES),
-        "saved": lambda: number_rows(messages.SAVED),
+        "saved": lambda: number_rows(messages.SAVED_STATES),
         "causes": lambda: number_rows(messages.CAUSES),
         "resets": lambda: number_rows(messages.RESETS),
         "resumes": lambda: number_rows(messages.RESUMES),

@@ -105,9 +105,9 @@ def refusals(runs: list[Run]) -> Iterator[dict[str, object]]:
     for run in runs:
         code = run.image[HEADER_BYTES:]
         verdicts = {
-            verdict_on(code, 0),
-            verdict_on(code, 255),
-            verdict_on(code, len(TINIBOT_KIT.readings)),
+            verdict_of(code, 0),
+            verdict_of(code, 255),
+            verdict_of(code, len(TINIBOT_KIT.readings)),
         }
         if len(verdicts) > 1 or "" in verdicts or len(code) > MOST_BYTES:
             continue
@@ -115,7 +115,7 @@ def refusals(runs: list[Run]) -> Iterator[dict[str, object]]:
         yield {"name": run.name, "code": code.hex(), "rule": rule, "at": int(offset)}
 
 
-def verdict_on(code: bytes, device_count: int) -> str:
+def verdict_of(code: bytes, device_count: int) -> str:
     try:
         verify(code, device_count, device_count)
     except Refused as error:

@@ -83,9 +83,9 @@ class Run(NamedTuple):
 
     def at_pace(self, pace: Pace) -> Run:
         """Return this run at a pace, with some late readings."""
-        slow = dict.fromkeys(pace.slow, (pace.period_ms, pace.from_ms, pace.to_ms))
-        name = f"{self.name} ({' and '.join(slow)} late, called every {pace.every_ms} ms)"
-        return self._replace(name=name, schedule=(0, (pace.every_ms,)), slow=slow)
+        slow_readings = dict.fromkeys(pace.slow, (pace.period_ms, pace.from_ms, pace.to_ms))
+        name = f"{self.name} ({' and '.join(slow_readings)} late, called every {pace.every_ms} ms)"
+        return self._replace(name=name, schedule=(0, (pace.every_ms,)), slow=slow_readings)
 
     @property
     def needs(self) -> int:
@@ -283,8 +283,10 @@ def late_runs() -> Iterator[Run]:
     """Return runs whose readings come late, and the actions of each task meanwhile."""
     first_pace, echo_pace = Pace(1, ECHO, 1000, 0, 12), Pace(1, ECHO, 1000, 0, 30)
     rivals = "WHEN(LIGHT_R > 5);B(0.1, 50);END_WHEN;TASK;{};SHOW(TIME);END_TASK"
-    looks = rivals.format("F(FOREVER, 40) UNTIL(DISTANCE < 10)")
-    begins = rivals.format("W(0.13);M(20, 30);F(0.05, 40) UNTIL(LIGHT_L > 5 AND DISTANCE < 10)")
+    looking_text = rivals.format("F(FOREVER, 40) UNTIL(DISTANCE < 10)")
+    beginning_text = rivals.format(
+        "W(0.13);M(20, 30);F(0.05, 40) UNTIL(LIGHT_L > 5 AND DISTANCE < 10)"
+    )
     for name, text, pace in (
         ("the first turn of the main task waits", "N = DISTANCE;TASK;SHOW(N);END_TASK;SHOW(TIME)",
          first_pace),
@@ -292,8 +294,8 @@ def late_runs() -> Iterator[Run]:
          first_pace),
         ("the others do not wait",
          "WHEN(DISTANCE < 10);SHOW(1);END_WHEN;TASK;SHOW(2);W(0.005);SHOW(3);END_TASK", echo_pace),
-        ("a look is over when the motors are taken", looks, Pace(1, ECHO, 1000, 100, 150)),
-        ("a first look is, too", begins, Pace(1, ECHO, 1000, 125, 150)),
+        ("a look is over when the motors are taken", looking_text, Pace(1, ECHO, 1000, 100, 150)),
+        ("a first look is, too", beginning_text, Pace(1, ECHO, 1000, 125, 150)),
         ("the UNTIL of a wait is looked at whoever has the motors",
          "TASK;W(0.01);B(0.1, 50);END_TASK;TASK;W(FOREVER) UNTIL(DISTANCE < 10);SHOW(TIME);"
          "END_TASK", echo_pace),

@@ -91,7 +91,7 @@ def _poster_text(key: str, language: str) -> str:
     return text("documents", f"poster/{key}", language)
 
 
-def _with_fixed(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]:
+def _rows_with_fixed_forms(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]:
     """Yield words with their explanations; below a word, its forms with fixed values."""
     for code in rows:
         shown_code = translated("documents", f"code/{code}", language) or code
@@ -102,18 +102,20 @@ def _with_fixed(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]
         for word in WORDS.values():
             first_word = word.stands_for.partition("(")[0].rpartition(";")[2]  # the first call
             if first_word and f"{{{first_word}}}" in code:
-                yield word.example, as_block(word, language) or f"= {word.stands_for}"
+                yield word.example, text_beside_block(word, language) or f"= {word.stands_for}"
 
 
 def _other_instructions(language: str) -> Iterator[tuple[str, str]]:
     """Yield the instructions without a row in GROUPS, and their explanations."""
-    shown = {word for _, rows in GROUPS for row in rows for word in re.findall(r"[A-Z_]+", row)}
+    shown_words = {
+        word for _, rows in GROUPS for row in rows for word in re.findall(r"[A-Z_]+", row)
+    }
     for word in WORDS.values():
-        if word.role.is_instruction and not word.stands_for and word.text not in shown:
-            yield word.example, as_block(word, language)
+        if word.role.is_instruction and not word.stands_for and word.text not in shown_words:
+            yield word.example, text_beside_block(word, language)
 
 
-def as_block(word: Word, language: str) -> str:
+def text_beside_block(word: Word, language: str) -> str:
     """Return the text next to a word's block, or ""."""
     return (translated("studio", f"block/{word.text}", language) or "").partition("} ")[2]
 
@@ -142,7 +144,7 @@ def page(language: str) -> Page:
     ]
     y = 74.0
     shown_words: list[str] = []
-    groups = [(heading, list(_with_fixed(rows, language))) for heading, rows in GROUPS]
+    groups = [(heading, list(_rows_with_fixed_forms(rows, language))) for heading, rows in GROUPS]
     next(rows for heading, rows in groups if heading == HEADING_OF_OTHERS).extend(
         _other_instructions(language)
     )

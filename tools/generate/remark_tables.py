@@ -82,10 +82,10 @@ def rows(language: str, is_small: bool = False) -> list[str]:
     rows = [("problem", problem) for problem in PROBLEMS] + [
         ("remark", remark) for remark in REMARKS
     ]
-    unused = _unused_remarks() if is_small else set()
+    unused_rows = _unused_remarks() if is_small else set()
     return [
-        *("" if row in unused else problem_text(*row, language) for row in rows),
-        *("" if ("fault", name) in unused else name for name in names),
+        *("" if row in unused_rows else problem_text(*row, language) for row in rows),
+        *("" if ("fault", name) in unused_rows else name for name in names),
     ]
 
 

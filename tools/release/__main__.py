@@ -81,9 +81,9 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
             clones = _clones(Path(scratch), options.url, options.whole_stick)
         except CannotMake as error:
             return _fail_to_begin(str(error))
-        complaints = list(facts.complaints(clones[0].root))
+        complaints = list(facts.release_problems(clones[0].root))
         complaints += [
-            complaint for complaint in facts.complaints(ROOT) if "not committed" in complaint
+            complaint for complaint in facts.release_problems(ROOT) if "not committed" in complaint
         ]
         for line in complaints:
             _say(line)

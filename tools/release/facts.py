@@ -11,7 +11,7 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
-PEOPLE = "The TiniScript developers"
+AUTHORS = "The TiniScript developers"
 _DATED_SECTION = re.compile(r"^## (\d+\.\d+\.\d+) \((\d{4}-\d{2}-\d{2})\)$", re.MULTILINE)
 # Each place that repeats the version, and how.
 _VERSION_PATTERNS = {
@@ -20,7 +20,7 @@ _VERSION_PATTERNS = {
 }
 NO_CONTACT = "(whoever publishes this repository writes an address here)"
 # Each place that repeats the authors.
-_PEOPLE_PATTERNS = {
+_AUTHOR_PATTERNS = {
     "LICENSE": r"Copyright \(c\) \d{4} (.+)",
     "CITATION.cff": r'  - name: "(.+)"',
     "pyproject.toml": r'authors = \[\{ name = "([^"]+)" \}\]',
@@ -54,7 +54,7 @@ def tags(root: Path) -> list[str]:
     return _git(root, "tag", "--points-at", "HEAD").splitlines()
 
 
-def complaints(root: Path) -> Iterator[str]:
+def release_problems(root: Path) -> Iterator[str]:
     """Yield a sentence for each thing that keeps a clone from being released."""
     changed_files = _git(root, "status", "--porcelain").splitlines()
     if changed_files:
@@ -70,10 +70,10 @@ def complaints(root: Path) -> Iterator[str]:
                 f"{name} has version {found_text or 'none'}; "
                 f"tiniscript/base/version.py has {own_version}."
             )
-    for name, pattern in _PEOPLE_PATTERNS.items():
+    for name, pattern in _AUTHOR_PATTERNS.items():
         found_text = _first_match(root / name, pattern)
-        if found_text != PEOPLE:
-            yield f"{name} names {found_text or 'nobody'}, not {PEOPLE}."
+        if found_text != AUTHORS:
+            yield f"{name} names {found_text or 'nobody'}, not {AUTHORS}."
     if _first_match(root / "SECURITY.md", "(?m)^Contact: (.+)$") in ("", NO_CONTACT):
         yield "SECURITY.md does not say how to reach somebody: write an address after Contact."
     if not address(root):

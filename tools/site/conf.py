@@ -1,4 +1,4 @@
-"""The Sphinx configuration of one half of the site; `tools/builds/site.py` sets `-D language`."""
+"""The Sphinx configuration of a language of the site; `tools/builds/site.py` sets `-D language`."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ templates_path = ["templates"]
 html_sidebars = {
     "**": [
         "sidebar/brand.html",
-        "halves.html",
+        "languages.html",
         "sidebar/search.html",
         "sidebar/scroll-start.html",
         "sidebar/navigation.html",
@@ -64,24 +64,24 @@ PLAIN_FENCES = (
 )
 
 
-HALF_DATA = json.loads((Path(__file__).parent / "half.json").read_text(encoding="utf-8"))
+SITE_DATA = json.loads((Path(__file__).parent / "settings.json").read_text(encoding="utf-8"))
 
 
-def lead_to_the_other_halves(
+def add_language_links(
     app: Sphinx, name: str, template: str, context: dict[str, object], tree: object
 ) -> None:
     """Give a page its links to the other languages, and to the studio."""
     way_to_root = "../" * (name.count("/") + 1)
-    languages_there = HALF_DATA["pages"].get(name, [])
+    languages_there = SITE_DATA["pages"].get(name, [])
     context["others"] = [
         (
             language,
             language_name,
             f"{way_to_root}{language}/{name if language in languages_there else 'index'}.html",
         )
-        for language, language_name in HALF_DATA["others"].items()
+        for language, language_name in SITE_DATA["others"].items()
     ]
-    context["has_studio"] = HALF_DATA["has_studio"]
+    context["has_studio"] = SITE_DATA["has_studio"]
     context["studio_address"] = f"{way_to_root}studio/index.html"
 
 
@@ -98,7 +98,7 @@ def find_words_of_the_language() -> None:
 
 def setup(app: Sphinx) -> None:
     find_words_of_the_language()
-    app.connect("html-page-context", lead_to_the_other_halves)
+    app.connect("html-page-context", add_language_links)
     app.add_lexer("tiniscript", TiniScriptLexer)
     app.add_lexer("verifier", PythonLexer)
     for name in PLAIN_FENCES:

@@ -18,7 +18,7 @@ from tiniscript.base.languages import SOURCE_LANGUAGE, language_info, languages
 
 INDEX_PAGE = "docs/README.md"  # generated page about all others
 PAGES = "docs/en/"
-FRONT_PAGE = "README.md"  # first page of each half of the site
+FRONT_PAGE = "README.md"  # first page in each language of the site
 PARTS = ("teach", "write", "wiring", "pupils", "teachers", "trust", "build")
 FILE_ENDING = re.compile(r"(?:\.en)?(\.\w+)$")
 

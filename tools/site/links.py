@@ -1,7 +1,7 @@
 """Checks that every link of the finished site leads somewhere, and that no page loads files from
 other sites.
 
-Knows HTML files in a folder. Sphinx looks at the links inside of one half; this looks at all of
+Knows HTML files in a folder. Sphinx looks at the links inside of one language; this looks at all of
 them, as a browser would follow them.
 """
 
@@ -67,8 +67,8 @@ def dead_links(folder: Path) -> list[str]:
     for path, page in pages.items():
         for address, is_fetched in page.links:
             is_here = address.startswith(("#", "?"))
-            if why := find_problem(path if is_here else path.parent / "*", address, is_fetched):
-                problem_lines.append(f"{path.relative_to(folder).as_posix()}: {address}: {why}")
+            if reason := find_problem(path if is_here else path.parent / "*", address, is_fetched):
+                problem_lines.append(f"{path.relative_to(folder).as_posix()}: {address}: {reason}")
     return problem_lines
 
 

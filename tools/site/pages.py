@@ -1,7 +1,7 @@
 """A document of the repository becomes a page of the site: its links lead to pages.
 
 Knows Markdown as far as its links go. A link to a document that the site has leads to its page, in
-the other language's half if it is there; one to another file of the repository to a copy of it.
+the other language's page if it is there; one to another file of the repository to a copy of it.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from tools.site.documents import Document
 
 _FENCED = re.compile(r"(^ *```.*?^ *```$)", re.DOTALL | re.MULTILINE)
 _LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]*)(#[^)\s]*)?\)")
-FILES_FOLDER = "files"  # the folder of the copies, next to the halves of the languages
+FILES_FOLDER = "files"  # the folder of the copies, next to those of the languages
 
 
 class SitePage(NamedTuple):
-    """A page: which half of the site it is in, and its name without an ending."""
+    """A page: its language, and its name without an ending."""
 
     language: str
     name: str
@@ -135,7 +135,7 @@ def _resolved_link(link: re.Match[str], source: str, place: SitePage, shelf: She
 
 
 def _outside_link(text: str, address: str) -> str:
-    """Return a link that Sphinx leaves as it is: it leads out of this half of the site."""
+    """Return a link that Sphinx leaves as it is: it leads out of this part of the site."""
     return f'<a href="{escape(address)}">{text}</a>'
 
 

@@ -55,14 +55,14 @@ ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 Files = dict[str, bytes]
 
 
-def imports_of(source: bytes, name: str, is_package: bool, everywhere: bool) -> set[str]:
+def imports_of(source: bytes, name: str, is_package: bool, includes_functions: bool) -> set[str]:
     """Return the modules that a module names in its imports."""
     tree = ast.parse(source)
     skipped_asts: set[ast.AST] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
             skipped_asts |= {inner_node for part in node.body for inner_node in ast.walk(part)}
-        elif not everywhere and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+        elif not includes_functions and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             skipped_asts |= set(ast.walk(node))
     imports: set[str] = set()
     for node in ast.walk(tree):
@@ -90,7 +90,7 @@ class Packer:
         self.names = set(library.namelist())
         self.own_files: Files = {}
         self.standard_files: Files = {}
-        self._seen: set[str] = set()
+        self._seen_modules: set[str] = set()
 
     def add(self, name: str) -> None:
         """Add a module and what it needs; a list, because this does not recurse."""
@@ -103,14 +103,14 @@ class Packer:
     def _pack_module(self, name: str) -> list[str]:
         parents = (name.rsplit(".", k)[0] for k in range(name.count(".") + 1))
         if (
-            name in self._seen
+            name in self._seen_modules
             or not MODULES_NOT_HERE.isdisjoint(parents)
             or name.startswith(LEFT_OUT_MODULES)
         ):
             return []
         if name.startswith("_py") and f"_{name[3:]}" in sys.builtin_module_names:
             return []  # `_pydatetime`, which replaces a missing `_datetime`
-        self._seen.add(name)
+        self._seen_modules.add(name)
         path = name.replace(".", "/")
         for candidate in (f"{path}/__init__.py", f"{path}.py"):
             is_package = candidate.endswith("__init__.py")
@@ -222,19 +222,19 @@ def pack(start_modules: list[str], package: str, cobs: str, library_path: str, t
         {**compile_all(packer.own_files), **data_of(package, DATA_PATTERNS)},
     )
     packer.add(LESSONS_MODULE)  # its archive contains the standard modules that these need
-    lessons = {
+    lesson_sources = {
         name: source for name, source in packer.own_files.items() if name not in packed_names
     }
-    packed_names |= set(lessons)
+    packed_names |= set(lesson_sources)
     packer.add(TOGETHER_MODULE)
-    together = {
+    together_sources = {
         name: source for name, source in packer.own_files.items() if name not in packed_names
     }
     data = data_of(package, LESSON_DATA_PATTERNS)
     data |= {name: text_on_page(page.decode()).encode() for name, page in data.items()
              if name.endswith(".md")}  # fmt: skip
-    write_archive(f"{target}/lessons.zip", {**compile_all(lessons), **data})
-    small_files = {name: small_source(source) for name, source in together.items()}
+    write_archive(f"{target}/lessons.zip", {**compile_all(lesson_sources), **data})
+    small_files = {name: small_source(source) for name, source in together_sources.items()}
     write_archive(f"{target}/together.zip", small_files)
     write_archive(f"{target}/python.zip", compile_all(packer.standard_files))
     own_count, standard_count = len(packer.own_files), len(packer.standard_files)

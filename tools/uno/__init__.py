@@ -26,14 +26,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from tools.uno.build import build, missing
-from tools.uno.log import CYCLES_PER_MS, HERTZ, Byte, Event, Masked, PinChange, Pins, Stack
+from tools.uno.log import CYCLES_PER_MS, HERTZ, Byte, Event, MaskedSpan, PinChange, Pins, Stack
 
 __all__ = [
     "CYCLES_PER_MS",
     "HERTZ",
     "Byte",
     "Event",
-    "Masked",
+    "MaskedSpan",
     "PinChange",
     "Pins",
     "Stack",
@@ -41,7 +41,7 @@ __all__ = [
     "missing",
 ]
 
-PATIENCE_S = 120.0  # timeout of a simulator command
+TIMEOUT_S = 120.0  # timeout of a simulator command
 
 
 class Uno:
@@ -133,8 +133,8 @@ class Uno:
         mark = len(self.events)
         end = self.cycle + round(limit_ms * CYCLES_PER_MS)
         self._send_lines(f"watch {number} {state}", f"run {end} 0")
-        why = self._wait_for_pause(mark)["why"]
-        assert why == "pin", f"{pin} has not become {state} in {limit_ms} ms"
+        reason = self._wait_for_pause(mark)["why"]
+        assert reason == "pin", f"{pin} has not become {state} in {limit_ms} ms"
         return self.pins[pin]
 
     def go(self, speed: float = 1.0) -> None:
@@ -167,7 +167,7 @@ class Uno:
     def wait_for(
         self,
         is_wanted: Callable[[Event], bool],
-        timeout_s: float = PATIENCE_S,
+        timeout_s: float = TIMEOUT_S,
         first_number: int = 0,
     ) -> Event:
         """Return the first wanted event from `first_number` on; wait for it if need be."""
@@ -265,7 +265,7 @@ class Uno:
 
     # -- interrupts ---------------------------------------------------------------------------
 
-    def longest_masked(self) -> list[Masked]:
+    def longest_masked_spans(self) -> list[MaskedSpan]:
         """Say for how long each place has kept interrupts off, at most.
 
         Needs `watches_masked`, which makes it about half as fast.
@@ -276,7 +276,7 @@ class Uno:
             lambda event: event.kind == "masked" and "places" in event.values, first_number=mark
         )
         events = [event for event in self.events[mark:] if event.kind == "masked"]
-        return [Masked.of(event) for event in events if "vector" in event.values]
+        return [MaskedSpan.of(event) for event in events if "vector" in event.values]
 
     # -- inside -------------------------------------------------------------------------------
 

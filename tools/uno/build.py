@@ -35,8 +35,8 @@ def build() -> Path:
 
     Several may build at the same time: each builds for itself, and the last one stays.
     """
-    if why := missing():
-        raise RuntimeError(why)
+    if reason := missing():
+        raise RuntimeError(reason)
     inputs = sorted(SOURCE_FOLDER.glob("*.[ch]"))
     key = hashlib.sha256(
         repr((WARNINGS, FLAGS, LIBRARIES)).encode() + SIMULATOR_HEADER.read_bytes()

@@ -89,7 +89,7 @@ class Stack:
 
 
 @dataclass(frozen=True)
-class Masked:
+class MaskedSpan:
     """The longest time, in cycles, for which a place has kept interrupts off.
 
     `vector` is that of the interrupt at work, 0 in the program. `is_entry`: from its entry on;
@@ -102,7 +102,7 @@ class Masked:
     cycle_count: int
 
     @classmethod
-    def of(cls, event: Event) -> Masked:
+    def of(cls, event: Event) -> MaskedSpan:
         return cls(event["vector"], event["is_entry"], event["pc"], event["cycles"])
 
 

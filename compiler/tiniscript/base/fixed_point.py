@@ -45,7 +45,7 @@ def subtract(a: int, b: int) -> int:
 
 
 def multiply(a: int, b: int) -> int:
-    return in_range(whole(a * b))  # thousandths times thousandths are millionths
+    return in_range(round_to_whole(a * b))  # thousandths times thousandths are millionths
 
 
 def divide(a: int, b: int) -> int:
@@ -69,14 +69,14 @@ def absolute(a: int) -> int:
     return in_range(abs(a))
 
 
-def whole(a: int) -> int:
+def round_to_whole(a: int) -> int:
     """Return the nearest whole number (not thousandths), half away from zero. It never faults."""
     return (a + 500) // ONE if a >= 0 else -((500 - a) // ONE)
 
 
 def round_to(a: int, decimal_count: int) -> int:
     """ROUND(a, decimals): their count is rounded to a whole number first; 3 or more keep `a`."""
-    decimals = whole(decimal_count)
+    decimals = round_to_whole(decimal_count)
     if decimals >= 3:
         return a
     if decimals < -6:  # half of 10**7 is more than any number
@@ -133,5 +133,5 @@ def next_random(state: int) -> int:
 
 def random_between(low: int, high: int, state: int) -> int:
     """Return a whole number from `low` to `high`, for a `state` that has just been stepped."""
-    lowest, highest = sorted((whole(low), whole(high)))
+    lowest, highest = sorted((round_to_whole(low), round_to_whole(high)))
     return in_range((lowest + state % (highest - lowest + 1)) * ONE)

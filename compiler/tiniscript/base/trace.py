@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import clamp, value_text, whole
+from tiniscript.base.fixed_point import clamp, round_to_whole, value_text
 from tiniscript.base.kit import Kit
 
 
@@ -93,5 +93,5 @@ class TracedRobot:
     def set(self, actuator: int, value: int) -> None:
         device = self.kit.actuators[actuator]
         if not device.is_yes_no:
-            value = clamp(whole(value) * 1000, device.low, device.high)
+            value = clamp(round_to_whole(value) * 1000, device.low, device.high)
         self.record("SET", (actuator, value), f"SET {device.name} {device.text(value)}")

@@ -41,7 +41,7 @@ class Operand(NamedTuple):
     kind: OperandKind
 
 
-class Implied(NamedTuple):
+class ImpliedOperand(NamedTuple):
     """An operand that no byte holds: the code says it."""
 
     kind: OperandKind
@@ -63,7 +63,7 @@ class Op(NamedTuple):
     size: int
     pops: int
     pushes: int
-    implied: Implied | None = None
+    implied: ImpliedOperand | None = None
     needs: int = 0  # the bit of `needs` without which no code has it
     since: int = 0  # the minor version that it came with: a new one, once that has been released
 
@@ -166,7 +166,7 @@ def _shorts(code: int, name: str, kind: str, effect: str, role: str, meaning: st
     """Return the instructions of one byte that have `n` of 0 to 7 in their code."""
     assert code % SHORTS == 0
     return [_op(code + n, f"{name}_{n}", "", effect, role, meaning.format(n))
-            ._replace(implied=Implied(OPERAND_KINDS[kind], n)) for n in range(SHORTS)]
+            ._replace(implied=ImpliedOperand(OPERAND_KINDS[kind], n)) for n in range(SHORTS)]
 
 
 def _comparison_ops(code: int, name: str, operands: str, effect: str, role: str, meaning: str) -> list[Op]:

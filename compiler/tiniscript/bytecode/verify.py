@@ -143,10 +143,10 @@ class _Routine:
 class _Verifier:
     def __init__(self, code: bytes, sensors: int, actuators: int, needs: int) -> None:
         self.code = code
-        self.allowed = needs
+        self.allowed_needs = needs
         self.devices = {"sensor": sensors, "actuator": actuators}
         self.at = 0  # offset of the current instruction
-        self.after = 0  # offset of the next instruction
+        self.next_offset = 0  # offset of the next instruction
         self.target = 0  # target of its jump, if any
         self.depth = 0  # values on the stack
         self.joins: list[_Join] = []  # open joins, the innermost last
@@ -155,7 +155,7 @@ class _Verifier:
         self.counters = 0  # counted loops that are open in this routine
         self.main = _Routine(_TASK, 0, 0)
         self.routine = self.main  # the current routine
-        self.closed: list[_Routine] = []  # the procedures that have ended
+        self.defs: list[_Routine] = []  # the procedures that have ended
         self.tasks: list[_Routine] = [self.main]  # all tasks begun so far
         self.reads_inside = False  # a PUSH_READ has been met with values below it, or in a join
         # Stack values that the whole code needs.
@@ -173,7 +173,7 @@ class _Verifier:
             self.stack(op)
             self.place(op)
             _STEPS[op.control_role](self)
-            self.at = self.after
+            self.at = self.next_offset
         self.arrive()
         self.finish()
         uses, tasks = tuple(self.uses), len(self.tasks) - 1
@@ -204,14 +204,14 @@ class _Verifier:
 
     def opcode(self) -> Op:
         op = op_at(self.code, self.at)
-        if self.code[self.at] == ESCAPE and self.allowed & NEEDS_GO:
+        if self.code[self.at] == ESCAPE and self.allowed_needs & NEEDS_GO:
             if self.at + 1 == len(self.code):
                 self.refuse("CUT_OPERAND")
-        if op is None or op.needs & ~self.allowed:
+        if op is None or op.needs & ~self.allowed_needs:
             self.refuse("UNKNOWN_OPCODE")
         self.needs |= op.needs
-        self.after = self.at + op.size
-        if self.after > len(self.code):
+        self.next_offset = self.at + op.size
+        if self.next_offset > len(self.code):
             self.refuse("CUT_OPERAND")
         return op
 
@@ -229,9 +229,9 @@ class _Verifier:
                 self.refuse("NO_SUCH_DEVICE")
             self.uses.append((kind.name, value))
         if kind.name.startswith("fwd"):
-            self.target = self.after + value
+            self.target = self.next_offset + value
         elif kind.name.startswith("back"):
-            self.target = self.after - value
+            self.target = self.next_offset - value
 
     def stack(self, op: Op) -> None:
         if self.depth < op.pops:
@@ -285,7 +285,7 @@ class _Verifier:
                 return  # the loop shares the block around it
         if sum(_NEST_WORDS[block.kind] for block in self.blocks) + _NEST_WORDS[kind] > NEST_WORDS:
             self.refuse("TOO_DEEP")
-        self.blocks.append(_Block(kind, self.after, end))
+        self.blocks.append(_Block(kind, self.next_offset, end))
         if kind == _COUNT:
             self.counters += 1
             self.opens(self.counters, 0)
@@ -299,7 +299,7 @@ class _Verifier:
         loop = self.blocks[-1]
         if self.target != loop.start:
             self.refuse("BAD_LOOP_START")
-        if loop.end not in (0, self.after):
+        if loop.end not in (0, self.next_offset):
             self.refuse("BAD_LOOP_END")
         self.blocks.pop()
         if kind == _COUNT:
@@ -321,9 +321,9 @@ class _Verifier:
         routine = self.routine
         routine.counters = max(routine.counters, counters)
         routine.calls = max(routine.calls, calls)
-        running = [routine] if routine.kind == _DEF else self.tasks
-        most_counters = sum(routine.counters for routine in running)
-        most_calls = sum(routine.calls for routine in running)
+        running_routines = [routine] if routine.kind == _DEF else self.tasks
+        most_counters = sum(routine.counters for routine in running_routines)
+        most_calls = sum(routine.calls for routine in running_routines)
         if most_counters > COUNTERS or most_calls > CALLS:
             self.refuse("TOO_DEEP")
         self.most_counters = max(self.most_counters, most_counters)
@@ -343,8 +343,8 @@ class _Verifier:
     def watch(self) -> None:
         self.check = _UNTIL
 
-    def end_check(self, whose: str) -> None:
-        if self.check != whose:
+    def end_check(self, role: str) -> None:
+        if self.check != role:
             self.refuse("NOT_OPEN")
         self.check = ""
 
@@ -354,7 +354,7 @@ class _Verifier:
         self.open(_IF, self.target)
 
     def else_(self) -> None:
-        if self.innermost != _IF or self.blocks[-1].end != self.after:
+        if self.innermost != _IF or self.blocks[-1].end != self.next_offset:
             self.refuse("NOT_OPEN")
         self.blocks.pop()
         self.open(_IF, self.target)
@@ -370,7 +370,7 @@ class _Verifier:
             self.refuse("BAD_DEF")
         if is_one_too_many:
             self.refuse(rule)
-        self.routine = _Routine(kind, self.after, self.target)
+        self.routine = _Routine(kind, self.next_offset, self.target)
 
     def close_routine(self, kind: str) -> _Routine:
         """Close the open routine, and return it."""
@@ -379,15 +379,15 @@ class _Verifier:
             self.refuse("NOT_OPEN")
         if self.blocks:
             self.refuse("STILL_OPEN")
-        if routine.end != self.after:
+        if routine.end != self.next_offset:
             self.refuse("BAD_DEF")
         return routine
 
     def call(self) -> None:
-        called = next((routine for routine in self.closed if routine.start == self.target), None)
-        if called is None:
+        callee = next((routine for routine in self.defs if routine.start == self.target), None)
+        if callee is None:
             self.refuse("BAD_CALL")
-        self.opens(self.counters + called.counters, called.calls + 1)
+        self.opens(self.counters + callee.counters, callee.calls + 1)
 
 
 _STEPS: dict[str, Callable[[_Verifier], object]] = {
@@ -407,8 +407,8 @@ _STEPS: dict[str, Callable[[_Verifier], object]] = {
     "break": lambda verifier: verifier.leave(_REPEAT),
     "drop": lambda verifier: verifier.leave(_COUNT),
     "call": _Verifier.call,
-    "def": lambda verifier: verifier.begin(_DEF, len(verifier.closed) == DEFS, "TOO_MANY_DEFS"),
-    "return": lambda verifier: verifier.closed.append(verifier.close_routine(_DEF)),
+    "def": lambda verifier: verifier.begin(_DEF, len(verifier.defs) == DEFS, "TOO_MANY_DEFS"),
+    "return": lambda verifier: verifier.defs.append(verifier.close_routine(_DEF)),
     "task": lambda verifier: verifier.task(_TASK),
     "end_task": lambda verifier: verifier.close_routine(_TASK),
     "when": lambda verifier: verifier.task(_WHEN),

@@ -41,7 +41,7 @@ def build(options: Namespace, language: str) -> None:
             2, "studio_no_node", oldest=str(building.OLDEST_NODE), how=install_command
         )
     missing_text = text("studio_missing", language)
-    fetching.ask_to_fetch(missing_text, parts, building.MINUTES, options, language)
+    fetching.ask_to_fetch(missing_text, parts, building.BUILD_MINUTES, options, language)
     if not has_node:
         fetching.install(install_advice.STUDIO, NODE, language)
     progress = fetching.FolderProgress(building.MODULES, building.NODE_MODULES_MB)

@@ -239,8 +239,8 @@ _MAP_START = re.compile(rb'\{"version": \d+, "name": "')
 def is_recording(data: bytes) -> bool:
     """Return whether a file is a recorded run, even if another program has saved it."""
     is_utf16 = data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
-    beginning = data[:200].decode("utf-16" if is_utf16 else "utf-8-sig", "replace").lstrip()
-    return beginning.startswith((RECORDING.decode(), OLDER_RECORDING.decode()))
+    first_text = data[:200].decode("utf-16" if is_utf16 else "utf-8-sig", "replace").lstrip()
+    return first_text.startswith((RECORDING.decode(), OLDER_RECORDING.decode()))
 
 
 def is_foreign(path: Path) -> bool:

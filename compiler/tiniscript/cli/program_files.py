@@ -48,12 +48,12 @@ def _is_folder(name: str) -> bool:
     return os.path.isdir(name)  # noqa: PTH112 - a name that no file can have gets no Path
 
 
-def in_folder(top: str, endings: tuple[str, ...] = PROGRAM_ENDINGS) -> Iterator[str]:
+def in_folder(folder: str, endings: tuple[str, ...] = PROGRAM_ENDINGS) -> Iterator[str]:
     """Yield the names of visible programs in a folder and its subfolders, in order.
 
     `endings` are the ends of their names. A folder that cannot be read is yielded itself.
     """
-    pending_folders = [top]
+    pending_folders = [folder]
     while pending_folders:
         folder = pending_folders.pop()
         try:

@@ -12,7 +12,7 @@ DEFs where they are.
 from collections.abc import Callable
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import clamp, whole
+from tiniscript.base.fixed_point import clamp, round_to_whole
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.base.source import Span
 from tiniscript.bytecode.opcodes import BY_NAME, time8
@@ -186,7 +186,7 @@ class _Lowering:
             return None
         if kind == "time8":
             return time8(max(0, value))
-        return whole(value) if limits is None else clamp(whole(value), *limits)
+        return round_to_whole(value) if limits is None else clamp(round_to_whole(value), *limits)
 
     def motors(self, motors: ir.Motors) -> None:
         left, right = self.percentage(motors.left, -100), self.percentage(motors.right, -100)
@@ -265,7 +265,7 @@ class _Lowering:
             emitter.add("FOREVER")
         else:
             value = self.constant_of(loop.times)
-            count = None if value is None else whole(value)
+            count = None if value is None else round_to_whole(value)
             if count is not None and 1 <= count <= 255:
                 emitter.add("LOOP8", count)
             else:
@@ -317,7 +317,7 @@ class _Lowering:
         value = self.constant_of(power)
         if value is None:
             return power
-        return (power[0]._replace(value=clamp(whole(value), low, 100) * 1000),)
+        return (power[0]._replace(value=clamp(round_to_whole(value), low, 100) * 1000),)
 
 
 # A statement of the IR that has no row here is a KeyError, not a program that lacks it.

@@ -187,9 +187,9 @@ def emit_unless(emitter: Emitter, condition: Expression, target: int) -> None:
         if operator == "NOT":
             pending_branches.append((start, end - 1, not wanted_answer))
         elif operator == ("OR" if wanted_answer else "AND"):
-            split = _matching_index(condition, range(end - 2, -1, -1), _JOIN_OPS, _LEFT_OPS)
-            pending_branches.append((split + 1, end - 1, wanted_answer))
-            pending_branches.append((start, split, wanted_answer))
+            split_index = _matching_index(condition, range(end - 2, -1, -1), _JOIN_OPS, _LEFT_OPS)
+            pending_branches.append((split_index + 1, end - 1, wanted_answer))
+            pending_branches.append((start, split_index, wanted_answer))
         else:
             _emit_branch(emitter, condition[start:end], wanted_answer, target)
 

@@ -26,7 +26,7 @@ from tiniscript.link.wire import Wire
 
 MOST_TRIES = 6
 HEARTBEAT_INTERVAL_S = 0.2
-LOOK_INTERVAL_MS = 20
+POLL_INTERVAL_MS = 20
 HELLO_TRIES = 8  # HELLOs: a board may have been reset, or be in its bootloader
 
 
@@ -145,7 +145,7 @@ class WireRobot:
 
     def _replies(self) -> list[Frame]:
         """Process the received frames: keep events and the epoch, and return the replies."""
-        *packets, self._unread = (self._unread + self.wire.receive(LOOK_INTERVAL_MS, 1)).split(
+        *packets, self._unread = (self._unread + self.wire.receive(POLL_INTERVAL_MS, 1)).split(
             b"\0"
         )
         self._unread = self._unread[-1024:]

@@ -154,7 +154,9 @@ def _removes_warning(
         sum(diagnostic.code is code for diagnostic in each_list)
         for each_list in (diagnostics, diagnostics_after)
     )
-    return count_after < count_before and _mistakes(diagnostics_after) <= _mistakes(diagnostics)
+    return count_after < count_before and _count_mistakes(diagnostics_after) <= _count_mistakes(
+        diagnostics
+    )
 
 
 def drop_wrong_offers(
@@ -305,8 +307,8 @@ def is_better(
     Or as many, where it has uncovered one elsewhere: how a block ends is not looked at before its
     header is right, and of several signs that are missing on a line the first one is reported.
     """
-    if _mistakes(diagnostics_after) != _mistakes(diagnostics):
-        return _mistakes(diagnostics_after) < _mistakes(diagnostics)
+    if _count_mistakes(diagnostics_after) != _count_mistakes(diagnostics):
+        return _count_mistakes(diagnostics_after) < _count_mistakes(diagnostics)
     shift = 0
     for span, new_text in sorted(edits):
         start = span.start + shift
@@ -320,5 +322,5 @@ def is_better(
     return True
 
 
-def _mistakes(diagnostics: Sequence[Diagnostic]) -> int:
+def _count_mistakes(diagnostics: Sequence[Diagnostic]) -> int:
     return sum(diagnostic.is_mistake for diagnostic in diagnostics)

@@ -212,10 +212,10 @@ def _format_text(
     template = _first_usable_template(key, values, language, is_on_blocks)
 
     def fill_gap(match: re.Match[str]) -> str:
-        longest = FIX_CHARACTERS if match[2] in _COPIED_GAPS else VALUE_CHARACTERS
+        most_characters = FIX_CHARACTERS if match[2] in _COPIED_GAPS else VALUE_CHARACTERS
         if match[2] == "said":
             return values["said"]  # a message, which is short as it is
-        return _value_text(values.get(match[2], ""), match[1] == "@", language, longest)
+        return _value_text(values.get(match[2], ""), match[1] == "@", language, most_characters)
 
     return _GAP.sub(fill_gap, template)
 

@@ -36,8 +36,8 @@ from tiniscript.link.robot_state import line_error_count
 PING_COUNT = 20
 PING_PAUSE_MS = 50  # between two of them
 MOST_LOST = 2  # most messages of 20 that may be repeated or damaged
-LOOK_COUNT = 6  # whether it is still the same robot, and was not restarted meanwhile
-LOOK_INTERVAL_MS = 250
+POLL_COUNT = 6  # whether it is still the same robot, and was not restarted meanwhile
+POLL_INTERVAL_MS = 250
 _STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
 _BROWN_OUT = "BROWN_OUT"
 _WATCHDOG = "WATCHDOG"
@@ -267,8 +267,8 @@ def _watch_restarts(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Rest
     """Look for a while whether the robot restarts: then its nonce is another one."""
     restarts = []
     nonce, is_running = hello.nonce, hello.state == STATE_RUNNING
-    for _ in range(max(LOOK_COUNT, watch_ms // LOOK_INTERVAL_MS)):
-        robot.pause(LOOK_INTERVAL_MS)
+    for _ in range(max(POLL_COUNT, watch_ms // POLL_INTERVAL_MS)):
+        robot.pause(POLL_INTERVAL_MS)
         hello_now = hello_values(robot.hello())
         if hello_now is None:
             continue

@@ -227,7 +227,7 @@ def _text_beside(received_bytes: bytes, sent_bytes: bytes) -> str:
 
 def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
     """Return the module that answers commands, or the board that does as one does."""
-    module = talk.find_module(wire, bauds, wakes=False)
+    module = talk.find_module(wire, bauds, wakes_module=False)
     if module is None:
         return None
     if not module.version:  # no module has identified itself

@@ -34,10 +34,10 @@ def head(mark: str, title: str, facts: Iterable[tuple[str, str]], port: str | No
     """Return the first lines of a report: its kind, and tsc's version, computer and port."""
     rows = [mark, title, "", f"tsc: {__version__}, Python {platform.python_version()}"]
     rows += [f"{name}: {value}" for name, value in facts]
-    return [*rows, "", f"port: {shown_port(port) if port else '-'}"]
+    return [*rows, "", f"port: {redacted_port(port) if port else '-'}"]
 
 
-def shown_port(name: str) -> str:
+def redacted_port(name: str) -> str:
     """Return a port's name without parts that identify its owner: `socket://…`,
     `/dev/tty.usbmodem…`."""
     if is_address(name):
@@ -55,7 +55,7 @@ def values_of(finding: Finding) -> dict[str, str]:
     values = {}
     for key, value in finding.values.items():
         if key == "ports":
-            values[key] = ", ".join(shown_port(part) for part in value.split(", "))
+            values[key] = ", ".join(redacted_port(part) for part in value.split(", "))
         elif key == "by":
             names = [part if part in PROGRAMS else HIDDEN for part in value.split(", ") if part]
             values[key] = ", ".join(names)
@@ -77,7 +77,7 @@ def facts(computer: Computer) -> list[tuple[str, str]]:
     )
     return [
         ("system", computer.platform),
-        ("ports", ", ".join(shown_port(port.port) for port in computer.ports) or "-"),
+        ("ports", ", ".join(redacted_port(port.port) for port in computer.ports) or "-"),
         ("usb", adapters or "-"),
         ("bluetooth", computer.bluetooth),
         ("modules", modules),

@@ -120,7 +120,7 @@ class SharedRobot(Robot):
     ) -> None:
         self.connection = connection
         self._wait = wait or connection.wait
-        self._unanswered = 0
+        self._unanswered_count = 0
 
     def pause(self, wait_ms: int) -> None:
         self.connection.event(wait_ms / 1000)
@@ -131,12 +131,12 @@ class SharedRobot(Robot):
             request.limit_ms = SHARED_TIMEOUT_MS
             return request
 
-        if self._unanswered < MOST_UNANSWERED:
+        if self._unanswered_count < MOST_UNANSWERED:
             reply: Reply[SentReply] = self._wait(self.connection.begin(with_limit))
             if reply.status not in (LOST, CANCELLED):
-                self._unanswered = 0
+                self._unanswered_count = 0
                 return reply
-        self._unanswered += 1
+        self._unanswered_count += 1
         self.missed_count += 1
         return None
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from threading import Thread, current_thread, main_thread
 
 LOG_BYTES = 1 << 20  # most bytes of a program's output that are kept, the last ones
-LOOK_INTERVAL_S = 0.1
+POLL_INTERVAL_S = 0.1
 KILL_DELAY_S = 5.0  # time that a program gets to exit by itself
 
 
@@ -67,7 +67,7 @@ def run(
             release_interrupt()
             reader.start()
             while True:  # looks at least once, because it may already have ended
-                reader.join(LOOK_INTERVAL_S)
+                reader.join(POLL_INTERVAL_S)
                 on_output(output.decode(errors="replace"))
                 if not reader.is_alive():
                     break

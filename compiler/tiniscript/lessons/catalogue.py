@@ -11,7 +11,7 @@ from pathlib import Path
 
 from tiniscript import robots
 from tiniscript.base.languages import SOURCE_LANGUAGE
-from tiniscript.lessons.forms import TEXT, in_form
+from tiniscript.lessons.forms import TEXT, sentences_in_form
 from tiniscript.lessons.lesson import Answer, Criterion, Lesson, LessonRefused
 from tiniscript.lessons.markdown import printed_part
 from tiniscript.lessons.reader import read, read_answers
@@ -19,7 +19,7 @@ from tiniscript.lessons.variation import point_of
 from tiniscript.robots.refusals import printable_value
 from tiniscript.virtual import worlds
 
-NAMED = re.compile(r"\{([a-z_]+(?:\.[a-z_]+)?)\}")
+NUMBER_GAP = re.compile(r"\{([a-z_]+(?:\.[a-z_]+)?)\}")
 
 
 def fill_numbers(page: str, file: str, lesson: Lesson) -> str:
@@ -34,7 +34,7 @@ def fill_numbers(page: str, file: str, lesson: Lesson) -> str:
             raise LessonRefused(("no_such_number", reason))
         return f"{number_of_name[match[1]]:.10g}"
 
-    return NAMED.sub(number, page)
+    return NUMBER_GAP.sub(number, page)
 
 
 def _numbers(lesson: Lesson) -> Iterator[tuple[str, float]]:
@@ -108,7 +108,7 @@ def whole_page(folder: Path, audience: str, language: str, form: str = TEXT) -> 
     path = next((path for path in paths if path.is_file()), None)
     if path is None:
         raise LessonRefused(("no_page", {"file": printable_value(paths[0].name)}))
-    text = in_form(_text(path), form)
+    text = sentences_in_form(_text(path), form)
     return fill_numbers(text, printable_value(path.name), load(folder))
 
 

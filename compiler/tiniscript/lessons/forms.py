@@ -12,6 +12,6 @@ TEXT, BLOCKS = "text", "blocks"  # ways to show programs
 _ALTERNATIVES = re.compile(r"\[\[([^|\]]*)\|([^|\]]*)\]\]")
 
 
-def in_form(sentences: str, form: str) -> str:
+def sentences_in_form(sentences: str, form: str) -> str:
     """Return the sentences as readers of this form see them."""
     return _ALTERNATIVES.sub(r"\1" if form == TEXT else r"\2", sentences)

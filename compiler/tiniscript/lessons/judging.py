@@ -47,10 +47,10 @@ def judge_run(run: Run, lesson: Lesson) -> list[Finding]:
     kinds = {criterion.kind for criterion in lesson.criteria}
     if kinds & MOVE_CRITERIA and _is_still(run):
         return [Finding("", "still/brief" if _had_power(run) else "still")]
-    busy = [Finding("", "busy", {"seconds": in_seconds(run.end_ms)})]
+    busy_findings = [Finding("", "busy", {"seconds": in_seconds(run.end_ms)})]
     stood_ms = run.end_ms - run.track[-1].ms
     if run.ending == BUSY and (stood_ms < STANDING_LOOP_MS or _is_still(run)):
-        return busy
+        return busy_findings
     findings: list[Finding] = []
     if (
         run.ending == LIMIT
@@ -66,7 +66,7 @@ def judge_run(run: Run, lesson: Lesson) -> list[Finding]:
         if finding is not None:
             findings.append(finding)
     if run.ending == BUSY and not findings:  # it is in the right place, and may drive on from there
-        return busy
+        return busy_findings
     return _drop_consequences(findings)
 
 
@@ -169,8 +169,8 @@ def _judge_line(criterion: Criterion, task: Task) -> Finding | None:
     if followed_cm >= least_cm:
         return None
     values["seconds"] = in_seconds(run.end_ms)
-    goes_on = run.ending == LIMIT and not _ends_at_rest(run)
-    return Finding("follows", f"follows/{'slow' if goes_on else 'short'}", values)
+    is_going_on = run.ending == LIMIT and not _ends_at_rest(run)
+    return Finding("follows", f"follows/{'slow' if is_going_on else 'short'}", values)
 
 
 def _judge_distance(criterion: Criterion, task: Task) -> Finding | None:
@@ -213,7 +213,7 @@ def _judge_pauses(criterion: Criterion, task: Task) -> Finding | None:
         if standstill[1] - standstill[0] >= least_s * 1000 - 1
     ]
     if len(long_pauses) >= times:
-        return _paused_at(criterion, task, long_pauses)
+        return _judge_pause_places(criterion, task, long_pauses)
     values = {"least": f"{least_s:g}", "times": str(times), "found": str(len(long_pauses))}
     if long_pauses:
         return Finding("pauses", "pauses/several", values)
@@ -223,7 +223,9 @@ def _judge_pauses(criterion: Criterion, task: Task) -> Finding | None:
     return Finding("pauses", "pauses/short" if standstills else "pauses/none", values)
 
 
-def _paused_at(criterion: Criterion, task: Task, pauses: list[tuple[int, int]]) -> Finding | None:
+def _judge_pause_places(
+    criterion: Criterion, task: Task, pauses: list[tuple[int, int]]
+) -> Finding | None:
     """Compare the robot's resting places in these times with the expected ones."""
     track = task.run.track
     poses = [next((pose for ms, pose in track if ms >= end), track[-1].pose) for _, end in pauses]
@@ -284,10 +286,10 @@ def _judge_keys(criterion: Criterion, task: Task) -> Finding | None:
         if not _stood_still(task.run, rested_ms, at_ms):
             return _motion_finding(rested_ms, at_ms)
         rested_ms = end_ms
-        what, is_done = _key_effect(press.key, task.run, at_ms, end_ms)
+        effect_key, is_done = _key_effect(press.key, task.run, at_ms, end_ms)
         if not is_done:
             values = {"seconds": in_seconds(at_ms), "word": press.key}
-            return Finding("obeys", f"obeys/{what}", values, ms=round(end_ms))
+            return Finding("obeys", f"obeys/{effect_key}", values, ms=round(end_ms))
     is_still = _stood_still(task.run, rested_ms, task.run.end_ms)
     return None if is_still else _motion_finding(rested_ms, task.run.end_ms)
 
@@ -345,15 +347,20 @@ def _judge_shown(criterion: Criterion, task: Task) -> Finding | None:
         return Finding("shows", "shows/nothing", values)
     right_count = 0
     for shown_value in run.shown_values:
-        expected = _expected_value(shown_value, sensor_name, expected_number, run)
-        right_count += expected is None or abs(shown_value.value - expected) <= tolerance
+        expected_value = _expected_value(shown_value, sensor_name, expected_number, run)
+        right_count += (
+            expected_value is None or abs(shown_value.value - expected_value) <= tolerance
+        )
     if right_count >= times:
         return None
     last_value = run.shown_values[-1]
-    expected = _expected_value(last_value, sensor_name, expected_number, run)
-    if expected is None or right_count == len(run.shown_values):
+    expected_value = _expected_value(last_value, sensor_name, expected_number, run)
+    if expected_value is None or right_count == len(run.shown_values):
         return Finding("shows", "shows/few", values)
-    values |= {"value": as_text(last_value.value), "wanted": as_text(round(expected / 100) * 100)}
+    values |= {
+        "value": as_text(last_value.value),
+        "wanted": as_text(round(expected_value / 100) * 100),
+    }
     key = "time" if sensor_name == TIME else "sensor" if sensor_name else "value"
     return Finding("shows", f"shows/{key}", values)
 

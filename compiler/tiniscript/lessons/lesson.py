@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from tiniscript.lessons.forms import TEXT, in_form
+from tiniscript.lessons.forms import TEXT, sentences_in_form
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.virtual.world import World
 
@@ -91,7 +91,7 @@ class Lesson(NamedTuple):
     presses: tuple[Press, ...] = ()
 
     def title(self, language: str, form: str = TEXT) -> str:
-        return in_form(self.title_by_language[language], form)
+        return sentences_in_form(self.title_by_language[language], form)
 
 
 class Answer(NamedTuple):
@@ -141,24 +141,24 @@ DEVICE_KINDS = ("value", "sensor", "switch")
 REMOVABLE_BLOCKS = ("LOOP", "DEF", "WHEN", "TASK")  # blocks that a lesson may remove from a program
 EVENTS = ("moves", "stops", "beeps", "shows")
 TIMES = Number("times", 1, 100, 1)
-WITHIN = Number("within_cm", 1, 500, 10)
+WITHIN_CM = Number("within_cm", 1, 500, 10)
 AREA_KEYS = ("x_cm", "y_cm")  # ranges around a place
 
 # fmt: off
 KINDS: dict[str, CriterionKind] = {
-    "ends_in": CriterionKind("at the end the robot is within `within_cm` of a place, or completely inside an area", (WITHIN,), places=1, has_area=True),
+    "ends_in": CriterionKind("at the end the robot is within `within_cm` of a place, or completely inside an area", (WITHIN_CM,), places=1, has_area=True),
     "reaches": CriterionKind("it comes within `within_cm` of each of these places, in order (`either_way`: or from the last to the first), in at most `by_seconds` and on a path of at most `by_cm`; with `what`, as that sensor measures it",
-                    (WITHIN, Number("by_seconds", 0.1, LARGEST_NUMBER, LARGEST_NUMBER), Number("by_cm", 1, LARGEST_NUMBER, LARGEST_NUMBER)), places=1, words="sensor", flags=("either_way",)),
+                    (WITHIN_CM, Number("by_seconds", 0.1, LARGEST_NUMBER, LARGEST_NUMBER), Number("by_cm", 1, LARGEST_NUMBER, LARGEST_NUMBER)), places=1, words="sensor", flags=("either_way",)),
     "stays_in": CriterionKind("it is never more than `within_cm` from a place, or its wheels never leave an area", (Number("within_cm", 1, 500, 500),), places=1, has_area=True),
     "stands_before": CriterionKind("at the end it stands `low_cm` to `high_cm` from whatever is ahead of it; with `at`, in front of that place", (Number("low_cm", 0, 400), Number("high_cm", 0, 400)), places=1, may_be_anywhere=True),
     "faces": CriterionKind("at the end it faces `heading`", (Number("heading", -360, 360), Number("within_degrees", 1, 180, 15))),
-    "never_touches": CriterionKind("it touches nothing; with `at`, until it has been within `within_cm` of this place", (WITHIN,), places=1, may_be_anywhere=True),
+    "never_touches": CriterionKind("it touches nothing; with `at`, until it has been within `within_cm` of this place", (WITHIN_CM,), places=1, may_be_anywhere=True),
     "follows": CriterionKind("its line sensors stay on the black line for at least `at_least_cm`", (Number("within_cm", 1, 500, 6), Number("at_least_cm", 1, LARGEST_NUMBER))),
     "drives": CriterionKind("it drives `at_least_cm` to `at_most_cm`", (Number("at_least_cm", 0, LARGEST_NUMBER, 0), Number("at_most_cm", 1, LARGEST_NUMBER, LARGEST_NUMBER))),
-    "pauses": CriterionKind("it waits `at_least_seconds` between two moves; with `at`, within `within_cm` of each of these places", (Number("at_least_seconds", 0.1, 600), TIMES, WITHIN), places=1, may_be_anywhere=True),
+    "pauses": CriterionKind("it waits `at_least_seconds` between two moves; with `at`, within `within_cm` of each of these places", (Number("at_least_seconds", 0.1, 600), TIMES, WITHIN_CM), places=1, may_be_anywhere=True),
     "shows": CriterionKind("it shows a value: any, this `value`, or that of a sensor or of TIME at that moment",
                   (TIMES, Number("value", -LARGEST_NUMBER, LARGEST_NUMBER, LARGEST_NUMBER + 1), Number("tolerance", 0, LARGEST_NUMBER, 0)), words="value"),
-    "beeps": CriterionKind("its buzzer sounds `times` times, at `pitches` different pitches; with `at`, within `within_cm` of each of these places", (TIMES, Number("pitches", 1, 100, 1), WITHIN), places=1, may_be_anywhere=True),
+    "beeps": CriterionKind("its buzzer sounds `times` times, at `pitches` different pitches; with `at`, within `within_cm` of each of these places", (TIMES, Number("pitches", 1, 100, 1), WITHIN_CM), places=1, may_be_anywhere=True),
     "blinks": CriterionKind("it switches `what` on `times` times while it moves", (TIMES,), words="switch"),
     "order": CriterionKind("these things happen one after the other: moves, stops, beeps, shows", words="event"),
     "obeys": CriterionKind("it obeys the keys: it goes forward for KEY_UP and back for KEY_DOWN, turns for KEY_LEFT and KEY_RIGHT, beeps for KEY_A and KEY_B, and stands still while nothing is held"),

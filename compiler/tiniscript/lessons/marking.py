@@ -75,18 +75,18 @@ class Marking:
     def run_to_end(self) -> Outcome:
         """Return the final result. Raises WorldRefused, like `go`."""
         while True:
-            outcome = self.go()
+            outcome = self.advance()
             if outcome is not None:
                 return outcome
 
-    def go(self, most_ms: int | None = None) -> Outcome | None:
+    def advance(self, most_ms: int | None = None) -> Outcome | None:
         """Advance the robot's time by at most `most_ms`; return the result once it is known.
 
         Raises WorldRefused if the robot does not fit into the world of `seed`.
         """
         if self._trial is None:
             self._trial = Trial(self._image, self._robot, self._lesson, self.seed)
-        run = self._trial.go(most_ms)
+        run = self._trial.advance(most_ms)
         if run is None:
             return None
         run_findings = judge_run(run, self._lesson)

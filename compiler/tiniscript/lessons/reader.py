@@ -24,7 +24,7 @@ from tiniscript.lessons.lesson import (
     KINDS,
     REMOVABLE_BLOCKS,
     TIME,
-    WITHIN,
+    WITHIN_CM,
     WORLD_PARTS,
     Answer,
     Criterion,
@@ -132,8 +132,8 @@ def _sentences(table: Table) -> dict[str, str]:
     table.finish()
     try:
         return {language: sentence(finding, language) for language in languages()}
-    except KeyError as lacking:
-        name = str(lacking.args[0])
+    except KeyError as error:
+        name = str(error.args[0])
         if name.startswith("said/"):
             table.complain("unknown_word", "key", found=printable_value(key), near="")
         else:
@@ -218,7 +218,7 @@ def _criterion(table: Table, world: World, known_words: Mapping[str, tuple[str, 
             )
         return Criterion("", {}, (), (), NO_LABELS)
     has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.check_for("at"))
-    numbers_asked = [number for number in kind.numbers if has_places or number is not WITHIN]
+    numbers_asked = [number for number in kind.numbers if has_places or number is not WITHIN_CM]
     numbers = {number.key: _number(table, number) for number in numbers_asked}
     numbers |= {flag: float(table.yes_no(flag, False)) for flag in kind.flags}
     for low, high in (("low_cm", "high_cm"), ("at_least_cm", "at_most_cm")):

@@ -24,7 +24,7 @@ from tiniscript.virtual.world import World
 
 STEP_MS = 20  # between two looks at where the robot is
 MOST_EVENTS = 200_000  # most events in a run
-BRINGING_MS = 60_000  # limit for the way of a program to the robot
+UPLOAD_LIMIT_MS = 60_000  # limit for the way of a program to the robot
 PUSH_MS = 60
 
 # The ways in which a run ends.
@@ -101,7 +101,7 @@ def run(image: Image, profile: Robot, lesson: Lesson, seed: int) -> Run:
 
     Raises WorldRefused if the robot does not fit into that world.
     """
-    run = Trial(image, profile, lesson, seed).go()
+    run = Trial(image, profile, lesson, seed).advance()
     assert run is not None, "it goes on to the end"
     return run
 
@@ -121,14 +121,14 @@ class Trial:
             return
         self._computer = _upload(robot, image)
         self._witness.record_state()
-        end_ms = robot.now_ms + BRINGING_MS
+        end_ms = robot.now_ms + UPLOAD_LIMIT_MS
         while self._witness.started_ms is None and robot.now_ms < end_ms:
             robot.step(robot.now_ms + 1)
             self._witness.record_state()
         assert self._witness.started_ms is not None, "the program does not begin"
         self._limit_ms = self._witness.started_ms + round(lesson.seconds * 1000)
 
-    def go(self, most_ms: int | None = None) -> Run | None:
+    def advance(self, most_ms: int | None = None) -> Run | None:
         """Advance the robot's time by at most `most_ms`; return the run once it is over."""
         robot, witness = self.robot, self._witness
         if self._is_ping:
@@ -190,7 +190,7 @@ class _Witness:
         self._presses = presses
         self.started_ms: int | None = None
         self.events = 0
-        self._bumps = 0
+        self._bump_count = 0
         self._track: list[Sample] = []
         self._collisions: list[Collision] = []
         self._shown_values: list[ShownValue] = []
@@ -217,8 +217,8 @@ class _Witness:
         ms = robot.now_ms - self.started_ms
         if pose != self._track[-1].pose:
             self._track.append(Sample(ms, pose))
-        if robot.driving.bumps != self._bumps:
-            self._bumps = robot.driving.bumps
+        if robot.driving.bumps != self._bump_count:
+            self._bump_count = robot.driving.bumps
             self._collisions.append(Collision(ms, self._nearest_obstacle(pose)))
 
     def _record_event(self, event: Event, ms: int, pose: Pose) -> None:

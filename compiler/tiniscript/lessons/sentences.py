@@ -9,7 +9,7 @@ from tiniscript.base.languages import find_text, text
 from tiniscript.base.source import printable
 from tiniscript.base.words import WORDS
 from tiniscript.lessons.findings import Finding
-from tiniscript.lessons.forms import TEXT, in_form
+from tiniscript.lessons.forms import TEXT, sentences_in_form
 
 # fmt: off
 # of words whose row in the table of words has no example, or one for another robot
@@ -42,7 +42,9 @@ def sentence(finding: Finding, language: str, form: str = TEXT) -> str:
         "before": _event(finding, 1, language),
         "then": _event(finding, 2, language),
     }
-    sentence_text = in_form(text("lessons", f"said/{key}", language), form).format(**values)
+    sentence_text = sentences_in_form(text("lessons", f"said/{key}", language), form).format(
+        **values
+    )
     if form == TEXT:
         sentence_text = sentence_text.replace("`", "")
     for pair in text("lessons", "contractions", language).split(", "):

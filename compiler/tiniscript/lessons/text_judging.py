@@ -50,19 +50,19 @@ def explain(findings: Sequence[Finding], text: str, lesson: Lesson, ending: str)
     words = [token.text for token in tokens if token.kind in (WORD, NUMBER)]
     is_endless = any(finding.key in ("ends", "long") for finding in findings)
     uncalled_findings: list[Finding] = []
-    explained = []
+    explained_findings = []
     for finding in findings:
         word = MISSING_KEYS.get(finding.key, "")
         name = _name_of_uncalled(word, tokens, words) if word else ""
         if name:
             uncalled_findings = [Finding("uses", "uses/uncalled", {"name": _call_of(name, tokens)})]
         elif word == "move":
-            explained.append(_with_condition(finding, tokens, words, lesson, ending))
+            explained_findings.append(_with_condition(finding, tokens, words, lesson, ending))
         elif word not in words:
-            explained.append(finding)
+            explained_findings.append(finding)
         elif not is_endless:
-            explained.append(finding._replace(key="unreached", values={"word": word}))
-    return uncalled_findings + explained
+            explained_findings.append(finding._replace(key="unreached", values={"word": word}))
+    return uncalled_findings + explained_findings
 
 
 def _name_of_uncalled(word: str, tokens: Sequence[Token], words: Sequence[str]) -> str:

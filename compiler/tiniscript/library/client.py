@@ -25,7 +25,7 @@ from tiniscript.link.connection import (
     reason_of,
 )
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
-from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, ConnectionLost, Event
+from tiniscript.link.outcomes import CANCELLED, LOST, POLL_INTERVAL_S, ConnectionLost, Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply
 from tiniscript.link.port_names import is_at_broker, is_bluetooth_le
 from tiniscript.link.requests import DeviceInfo, Reply
@@ -199,7 +199,7 @@ class Client:
             raise self.error_for_reply(reply)
         return reply
 
-    def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
+    def event(self, limit_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
         """Return the time (ms) and the next event, or None if none arrives in time."""
         self._poll()
         with self._convert_loss():

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 VERB = "python"  # the name that other commands show for the process that holds the port
 MOST_TIMEOUT_S = 10**9
-LOOK_INTERVAL_S = 0.1
+POLL_INTERVAL_S = 0.1
 
 
 class RobotInfo(NamedTuple):
@@ -186,7 +186,7 @@ class RobotConnection:
         any_run_follower = Follower(None)
         while self._follower is None or self._ending is None:
             follower = self._follower or any_run_follower
-            left_s = LOOK_INTERVAL_S if end_s is None else min(LOOK_INTERVAL_S, end_s - monotonic())
+            left_s = POLL_INTERVAL_S if end_s is None else min(POLL_INTERVAL_S, end_s - monotonic())
             timed_event = self._client.event(max(left_s, 0.0))
             robot_event = None
             if timed_event is not None and self._follow(follower, timed_event[1]):
@@ -325,7 +325,7 @@ class RobotConnection:
         for _ in saving.polls():
             saving.update(self._client.request(Requester.status).values)
             if not saving.is_over:
-                self._client.event(LOOK_INTERVAL_S)
+                self._client.event(POLL_INTERVAL_S)
         if saving.reason:
             raise RobotError(saving.reason, self.language)
 
@@ -390,9 +390,9 @@ def _default_port(language: Language) -> str:
     if (usable_port := opening.usable_last_port()) is not None:
         return usable_port
     last_port = known_ports.remembered_ports().last_port
-    running = directory.unclaimed_robots()
-    if len(running) == 1:
-        return running[0].address
+    running_robots = directory.unclaimed_robots()
+    if len(running_robots) == 1:
+        return running_robots[0].address
     port_names = [port_info.port for port_info in ports.list_ports()]
     values = {"known": opening.printable_name(", ".join(port_names)) or "-",
               "example": port_names[0] if port_names else "/dev/ttyUSB0"}  # fmt: skip

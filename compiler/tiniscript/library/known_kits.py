@@ -49,12 +49,12 @@ def find_robot_for(image: Image, preferred_robot: Robot) -> Robot | None:
     """
     if is_runnable(image, preferred_robot):
         return preferred_robot
-    shipped = (robots.load(name) for name in robots.names())
+    shipped_robots = (robots.load(name) for name in robots.names())
     given_robots = (robot for _, robot in given.profiles())
     return next(
         (
             robot
-            for robot_group in (shipped, given_robots)
+            for robot_group in (shipped_robots, given_robots)
             for robot in robot_group
             if is_runnable(image, robot)
         ),

@@ -112,7 +112,7 @@ def hints_among(
                     robot not in LESSON_ROBOTS,
                 )
             )
-            if any(hinted <= {*robots_with_word} for hinted in hinted_robot_sets):
+            if any(hinted_robots <= {*robots_with_word} for hinted_robots in hinted_robot_sets):
                 continue
             hinted_robot_sets.append({*robots_with_word})
             values = {

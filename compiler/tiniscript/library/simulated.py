@@ -72,36 +72,36 @@ class VirtualRobotConnection(RobotConnection):
 
     def __init__(self, simulated_robot: SimulatedRobot, profile: Robot, language: Language) -> None:
         """Internal: use `virtual_robot` instead."""
-        self._simulated = simulated_robot
+        self._simulated_robot = simulated_robot
         super().__init__(simulated_robot.port, profile, True, None, language)
 
     @property
     def pose(self) -> tuple[float, float, float]:
         """The position, x and y in cm from the lower left corner of the floor, and the heading in
         degrees, 0 to the right and 90 up."""
-        x_cm, y_cm, heading = self._simulated.drive_state.pose
+        x_cm, y_cm, heading = self._simulated_robot.drive_state.pose
         return x_cm, y_cm, heading
 
     @property
     def driven_cm(self) -> float:
         """The distance that it has driven, in cm."""
-        return self._simulated.drive_state.driven_cm
+        return self._simulated_robot.drive_state.driven_cm
 
     @property
     def bumps(self) -> int:
         """The number of collisions."""
-        return self._simulated.drive_state.bumps
+        return self._simulated_robot.drive_state.bumps
 
     def push_button(self) -> None:
         """Push and release its start button."""
-        self._simulated.push()
+        self._simulated_robot.push()
 
     def _close_port(self, holds_port: bool = False) -> None:
         """Close it at once: a virtual robot that has ended cannot be driven."""
         try:
             super()._close_port()
         finally:
-            self._simulated.close()
+            self._simulated_robot.close()
 
 
 class DriveState(NamedTuple):

@@ -13,9 +13,9 @@ from tiniscript.bytecode.image import Image
 from tiniscript.link.outcomes import (
     CANCELLED,
     DETAIL_MIDWAY,
-    LOOK_S,
     LOST,
     OTHER_ROBOT,
+    POLL_INTERVAL_S,
     UNPROVEN,
     Event,
 )
@@ -236,7 +236,7 @@ class LinkConnection:
         """Wait for the outcome of a request, and call `look` periodically."""
         raise NotImplementedError
 
-    def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
+    def event(self, limit_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
         """Return the next event and its arrival time (ms), or None after the time limit."""
         raise NotImplementedError
 

@@ -47,12 +47,12 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
             newest = next(iter(known_ports.name_by_port.items()), None)
             if newest == (port, name) and (known_ports.last_port == port or not is_used):
                 return
-            others = {
+            other_names = {
                 value: name
                 for value, name in known_ports.name_by_port.items()
                 if not _is_same(value, port)
             }
-            name_by_port = {port: name, **others}
+            name_by_port = {port: name, **other_names}
             last_port = port if is_used else known_ports.last_port
             fields = {"last": last_port, "ports": list(name_by_port.items())[:MOST_PORTS]}
             files.replace(path, json.dumps(fields).encode())

@@ -394,7 +394,7 @@ STATES = (
     ("STOPPED", "The robot was stopped: nothing starts before CLEAR or the button."),
     ("FAULTED", "A fault has ended the program: nothing starts before CLEAR or the button."),
 )
-SAVED = (
+SAVED_STATES = (
     ("NOTHING",    "The robot holds no program."),
     ("MEMORY",     "The program is only in RAM: it is lost at power-off."),
     ("SAVING",     "It is being saved: saving ends when the motors have stood still for a moment."),
@@ -463,7 +463,7 @@ RESUME_GO, RESUME_STEP = _row_numbers(RESUMES, "GO STEP")
     SAVED_LOW_SUPPLY,
     SAVED_OTHER_VERSION,
     SAVED_UNREADABLE,
-) = _row_numbers(SAVED, "NOTHING SAVING STORED LOW_SUPPLY OTHER_VERSION UNREADABLE")
+) = _row_numbers(SAVED_STATES, "NOTHING SAVING STORED LOW_SUPPLY OTHER_VERSION UNREADABLE")
 FIRST_LINK_FAULT = LINK_FAULTS[0][0]  # faults from this number on are not caused by the program
 
 BY_NUMBER = {message.number: message for message in MESSAGES}

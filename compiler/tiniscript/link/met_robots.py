@@ -43,8 +43,10 @@ def remember_robot(path: Path, place: str, robot_id: int) -> None:
         return
 
     def with_place_added(met_robots: MetRobots) -> MetRobots:
-        others = {value: other for value, other in met_robots.id_by_place.items() if value != place}
-        return met_robots._replace(id_by_place={**others, place: robot_id})
+        other_places = {
+            value: other for value, other in met_robots.id_by_place.items() if value != place
+        }
+        return met_robots._replace(id_by_place={**other_places, place: robot_id})
 
     with suppress(OSError, ValueError):
         _change(path, with_place_added)
@@ -54,8 +56,8 @@ def accept(path: Path, robot_id: int) -> None:
     """Remember that a robot may answer where another one did. Raises OSError."""
 
     def with_robot_accepted(met_robots: MetRobots) -> MetRobots:
-        others = [other_id for other_id in met_robots.accepted_ids if other_id != robot_id]
-        return met_robots._replace(accepted_ids=[*others, robot_id])
+        other_places = [other_id for other_id in met_robots.accepted_ids if other_id != robot_id]
+        return met_robots._replace(accepted_ids=[*other_places, robot_id])
 
     _change(path, with_robot_accepted)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.link.messages import CAUSES, LINK_FAULTS, SAVED
+from tiniscript.link.messages import CAUSES, LINK_FAULTS, SAVED_STATES
 
 _FAULTS = {number: name for number, name, _ in (*FAULTS, *LINK_FAULTS)}
 
@@ -24,4 +24,4 @@ def cause_name(number: int) -> str:
 
 def saved_name(number: int) -> str:
     """Return the state of a saved program; unknown states count as in memory."""
-    return SAVED[number][0] if number < len(SAVED) else "MEMORY"
+    return SAVED_STATES[number][0] if number < len(SAVED_STATES) else "MEMORY"

@@ -22,7 +22,7 @@ from tiniscript.link.payloads import (
 # key's robot does; OTHER_ROBOT: not the robot of our key; its id is the detail.
 LOST, CANCELLED, UNKEPT, UNPROVEN, OTHER_ROBOT = -1, -2, -3, -4, -5
 DETAIL_MIDWAY = 1  # detail of CANCELLED: it was under way, and the robot may have done it before
-LOOK_S = 0.1  # between two checks for events: Windows handles Ctrl-C only then
+POLL_INTERVAL_S = 0.1  # between two checks for events: Windows handles Ctrl-C only then
 
 
 class ShownEvent(NamedTuple):

@@ -16,7 +16,7 @@ import serial
 
 from tiniscript.base.bell import Bell
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
-from tiniscript.link.outcomes import LOOK_S, Backlog, ConnectionLost, Event, TimedEvent
+from tiniscript.link.outcomes import POLL_INTERVAL_S, Backlog, ConnectionLost, Event, TimedEvent
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.session import Session
 from tiniscript.link.transports import Port
@@ -92,11 +92,11 @@ class PortConnection(LinkConnection):
                     return request.outcome
                 if self._end_reason is not None:
                     raise self._bug or ConnectionLost(self._end_reason)
-            self._bell.wait(LOOK_S)
+            self._bell.wait(POLL_INTERVAL_S)
             if look is not None:
                 look()
 
-    def event(self, limit_s: float = LOOK_S) -> TimedEvent | None:
+    def event(self, limit_s: float = POLL_INTERVAL_S) -> TimedEvent | None:
         if not self._events and self._end_reason is None:
             self._bell.wait(limit_s)
         with self._session_lock:
@@ -155,7 +155,7 @@ class PortConnection(LinkConnection):
         with self._session_lock:
             self._is_closing = True
         self._wake()
-        self._thread.join(2 * LOOK_S)
+        self._thread.join(2 * POLL_INTERVAL_S)
         with suppress(OSError):  # the port is lost already
             self._port.close()
         if self._port_lock is not None:

@@ -11,7 +11,7 @@ ROUND_MS = 120  # round trip through two radios and a robot, without the bytes
 MOST_LEARNT_MS = 3000  # a learnt timer may be wrong after a suspension
 MOST_DOUBLED_MS = 1000  # doubling never exceeds this limit
 MOST_RETRY_MS = 400  # the longest timer for a robot that has to hear us regularly
-_MEAN, _VARIATION, _VARIATIONS = 1 / 8, 1 / 4, 4  # alpha, beta and K of the RFC
+_MEAN_WEIGHT, _VARIATION_WEIGHT, _VARIATION_COUNT = 1 / 8, 1 / 4, 4  # alpha, beta and K of the RFC
 
 
 class RoundTrips:
@@ -39,8 +39,10 @@ class RoundTrips:
         if self._mean_ms is None:
             self._mean_ms, self._variation_ms = took_ms, took_ms / 2
             return
-        self._variation_ms += (abs(self._mean_ms - took_ms) - self._variation_ms) * _VARIATION
-        self._mean_ms += (took_ms - self._mean_ms) * _MEAN
+        self._variation_ms += (
+            abs(self._mean_ms - took_ms) - self._variation_ms
+        ) * _VARIATION_WEIGHT
+        self._mean_ms += (took_ms - self._mean_ms) * _MEAN_WEIGHT
 
     def back_off(self) -> None:
         """Call this when no answer came in time. The time learnt from a request that was sent more
@@ -63,7 +65,7 @@ class RoundTrips:
         line_ms = ROUND_MS + -(-byte_count * 10_000 // self._baud)
         learnt_ms = ROUND_MS + byte_count * (self._byte_ms or 0)
         if self._mean_ms is not None:
-            learnt_ms = max(learnt_ms, self._mean_ms + _VARIATIONS * self._variation_ms)
+            learnt_ms = max(learnt_ms, self._mean_ms + _VARIATION_COUNT * self._variation_ms)
         needed_ms = max(line_ms, min(int(learnt_ms), MOST_LEARNT_MS))
         doubled_ms = needed_ms << min(self._doublings, 10)
         wait_ms = min(doubled_ms, max(MOST_DOUBLED_MS, needed_ms))

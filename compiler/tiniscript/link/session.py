@@ -1,10 +1,10 @@
 """The session with one robot: a state machine without I/O and without a clock.
 
-`receive` takes the bytes that have arrived, `poll` returns the bytes to send, `wakes_at` the time
-of the next poll, `events` the new events. One request is in flight at a time; it is repeated until
-it is answered or its exchange times out. Times are milliseconds. It knows which exchange is next,
-and when one ends. `transmission` times retries and stops, `requests` and `handshake` know the order
-of requests, and `robot_state` the state of the robot.
+`receive` takes the bytes that have arrived, `poll` returns the bytes to send, `next_wake_ms` the
+time of the next poll, `events` the new events. One request is in flight at a time; it is repeated
+until it is answered or its exchange times out. Times are milliseconds. It knows which exchange is
+next, and when one ends. `transmission` times retries and stops, `requests` and `handshake` know the
+order of requests, and `robot_state` the state of the robot.
 """
 
 from __future__ import annotations
@@ -146,12 +146,12 @@ class PendingExchange(PendingRequest[T]):
         self.may_be_done = False  # the robot has not reported whether it is
         self.is_midway = False  # a frame of the exchange is under way or has arrived
         self.key_showings = 0  # number of times a key was shown again for it
-        self.interrupted: InterruptedExchange | None = None
+        self.interrupted_exchange: InterruptedExchange | None = None
 
     @property
     def target(self) -> PendingExchange[Any]:
         """The exchange itself, or the one that has to wait for another one."""
-        return self if self.interrupted is None else self.interrupted.pending
+        return self if self.interrupted_exchange is None else self.interrupted_exchange.pending
 
 
 class InterruptedExchange(NamedTuple):
@@ -323,7 +323,7 @@ class Session(Requester):
             self._sealing.sealed_ms = now_ms
         return self._transmission.bytes_to_send(now_ms, self._sender)
 
-    def wakes_at(self) -> int | None:
+    def next_wake_ms(self) -> int | None:
         """Return when to call `poll` next if nothing arrives, or None."""
         if self._stop.due_ms is not None:
             return self._stop.due_ms
@@ -366,14 +366,14 @@ class Session(Requester):
         pending = self._pending
         if pending is None or self._is_heartbeat():
             return not (self._queue and self._has_pressed)
-        if pending.interrupted is not None or pending.presses_keys:
+        if pending.interrupted_exchange is not None or pending.presses_keys:
             return False
         return not self._transmission.is_sent and not self._transmission.is_of("AUTHENTICATE")
 
     def _is_heartbeat(self) -> bool:
         """Return whether a heartbeat, or keys without a following request, are under way."""
         pending = self._pending
-        is_alone = pending is not None and pending.is_own and pending.interrupted is None
+        is_alone = pending is not None and pending.is_own and pending.interrupted_exchange is None
         return is_alone and any(map(self._transmission.is_of, _HEARTBEAT_MESSAGES))
 
     def _press_next(self, now_ms: int) -> None:
@@ -387,9 +387,9 @@ class Session(Requester):
         exchange = self._handshake.open_then(self._send_keys)
         press = PendingExchange(exchange, DEAF_MS, is_own=True, presses_keys=True)
         if self._pending is not None and not self._is_heartbeat():
-            press.interrupted = InterruptedExchange(self._pending, self._transmission)
+            press.interrupted_exchange = InterruptedExchange(self._pending, self._transmission)
         self._pending, self._has_pressed = press, True
-        press.deadline_ms = self._deafness_time_ms(now_ms)
+        press.deadline_ms = self._loss_due_ms(now_ms)
         self._advance(None, now_ms)
 
     def _send_keys(self) -> Exchange[PingReply]:
@@ -402,12 +402,12 @@ class Session(Requester):
     def _end_press(self) -> None:
         """Resume the exchange that a key press has interrupted."""
         assert self._pending
-        interrupted_exchange, self._pending = self._pending.interrupted, None
+        interrupted_exchange, self._pending = self._pending.interrupted_exchange, None
         self._transmission.end()
         if interrupted_exchange is not None:
             self._go_on(interrupted_exchange)
 
-    def _deafness_time_ms(self, now_ms: int) -> int:
+    def _loss_due_ms(self, now_ms: int) -> int:
         """Return the time at which the link is lost without an answer to a heartbeat."""
         if now_ms - self._talked_ms > 2 * HEARTBEAT_MS:
             self._unanswered_since_ms = None  # no frame was sent for a while
@@ -422,7 +422,7 @@ class Session(Requester):
             heartbeat_ms = self._heartbeat_ms()
             if heartbeat_ms is None or now_ms < self._talked_ms + heartbeat_ms:
                 return
-            limit_ms = self._deafness_time_ms(now_ms) - now_ms
+            limit_ms = self._loss_due_ms(now_ms) - now_ms
             self._pending = PendingExchange(self._heartbeat(), limit_ms, is_own=True)
         self._pending.deadline_ms = now_ms + self._pending.limit_ms
         self._advance(None, now_ms)
@@ -462,13 +462,13 @@ class Session(Requester):
         self._transmission.end()
         if pending.presses_keys:
             self._remote.take_answer(outcome)
-        if pending.interrupted is None:
+        if pending.interrupted_exchange is None:
             self._finish_request(pending, outcome)
             self._end_orphan(now_ms)
         elif pending.ends_orphan or pending.presses_keys:
-            self._go_on(pending.interrupted)
+            self._go_on(pending.interrupted_exchange)
         else:
-            self._resume(pending.interrupted, outcome, now_ms)
+            self._resume(pending.interrupted_exchange, outcome, now_ms)
 
     def _begin_request(self, request: Request, now_ms: int) -> None:
         """Send a request, and repeat it until it is answered."""
@@ -483,8 +483,8 @@ class Session(Requester):
             return
         payload = encode_payload(message.request, request.values)
         frame = Frame(message.number, next_number(), self._epoch, payload)
-        largest = self.robot.values.largest if self.robot else 0
-        self._transmission = Transmission(self._round_trips, largest, self.is_running)
+        largest_frame = self.robot.values.largest if self.robot else 0
+        self._transmission = Transmission(self._round_trips, largest_frame, self.is_running)
         self._transmission.begin(frame, now_ms + request.pause_ms, seal)
         if seal is None and request.name in SEALED_ONLY_MESSAGES:
             self._authenticate_again(now_ms)  # authenticates before any of its bytes is sent
@@ -515,7 +515,7 @@ class Session(Requester):
             self._pending = None
             return
         self._pending = PendingExchange(self._handshake.show_keys(), is_own=pending.is_own)
-        self._pending.interrupted = InterruptedExchange(pending, transmission)
+        self._pending.interrupted_exchange = InterruptedExchange(pending, transmission)
         self._pending.deadline_ms = pending.deadline_ms
         self._advance(None, now_ms)
 
@@ -544,7 +544,7 @@ class Session(Requester):
             return
         pending, transmission = self._pending, self._transmission
         if pending is not None and (
-            pending.interrupted is not None
+            pending.interrupted_exchange is not None
             or pending.ends_runs  # such a request ends runs itself
             or transmission.is_sent
             or transmission.is_of("AUTHENTICATE")  # its tag is only valid in this epoch
@@ -556,7 +556,7 @@ class Session(Requester):
         if pending is None:
             self._queue.appendleft(stop_exchange)
             return
-        stop_exchange.interrupted = InterruptedExchange(pending, transmission)
+        stop_exchange.interrupted_exchange = InterruptedExchange(pending, transmission)
         stop_exchange.deadline_ms = now_ms + stop_exchange.limit_ms
         self._pending = stop_exchange
         self._advance(None, now_ms)
@@ -773,8 +773,8 @@ class Session(Requester):
         if has_ended and is_at_rest and self._reading_count != reading_count:
             # Readings of a run come before its end, but after each reply, because other requests
             # come first.
-            again = self._query_again(has_ended, False, run)
-            self._queue.append(PendingExchange(again, DEAF_MS, is_own=True))
+            repeated_query = self._query_again(has_ended, False, run)
+            self._queue.append(PendingExchange(repeated_query, DEAF_MS, is_own=True))
             return reply
         is_told = self._state.has_ended(run)  # an event may have arrived meanwhile
         if reply.status == OK and has_ended and self._state.run == run and not is_told:
@@ -881,8 +881,8 @@ class Session(Requester):
         elif self._is_one_fault(STATE_FAULTED, frame.epoch):
             self._handshake.doubted_epoch = None
             self._transmission.renew(self._epoch)
-            if self._pending and self._pending.interrupted:
-                self._pending.interrupted.transmission.renew(self._epoch)
+            if self._pending and self._pending.interrupted_exchange:
+                self._pending.interrupted_exchange.transmission.renew(self._epoch)
 
     def _ask_for_proof(self, event: StoppedEvent) -> None:
         """Ask the robot for a sealed confirmation of a stop that we sent."""

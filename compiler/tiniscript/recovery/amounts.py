@@ -7,7 +7,7 @@ from collections.abc import Container, Sequence
 
 from tiniscript.base.source import Span
 from tiniscript.base.words import WORDS, lexicon_meaning
-from tiniscript.recovery.meanings import meant_by, plain
+from tiniscript.recovery.meanings import certain_concept, plain
 
 _CALL_REACH = 80  # characters around a value in which its call is looked for
 _CALL_START = re.compile(r"([A-Za-z]+)[ \t]*\(([^()\r\n;]*)\Z")
@@ -30,7 +30,7 @@ def amount_values(text: str, span: Span, own_names: Container[str] = ()) -> dict
     text_before = text[max(0, span.start - _CALL_REACH) : span.start]
     amount = text[slice(*span)]
     if match := _COMPARED_WORD.search(text_before):
-        name = meant_by(match[1].upper()) or match[1].upper()
+        name = certain_concept(match[1].upper()) or match[1].upper()
         sample = _SAMPLE_CM if name == "DISTANCE" else _SAMPLE_NUMBER
         return {"amount": amount, "example": f"{name}{match[0][len(match[1]) :]}{sample}"}
     call_start, call_end = (

@@ -240,10 +240,12 @@ class Matching:
             return False
         block, next_item = self.open_blocks[-1], self.next_item
         is_arm = block.word == "IF" and next_item.kind == "arm"
-        goes_on = is_arm or (block.word and next_item.kind == "end" and next_item.word == block.end)
-        if goes_on or (block.asks_at_end and next_item.word == "WHILE"):
+        is_continued = is_arm or (
+            block.word and next_item.kind == "end" and next_item.word == block.end
+        )
+        if is_continued or (block.asks_at_end and next_item.word == "WHILE"):
             self.edit_item(1, ";")
-            block.has_brace = block.has_brace and not goes_on
+            block.has_brace = block.has_brace and not is_continued
             return True
         if not block.has_brace:
             return False

@@ -30,9 +30,9 @@ from tiniscript.recovery.meanings import (
     CALL_WORDS,
     LONG_TIME_S,
     MOST_POWER,
-    NEAR,
+    NEAR_COST,
     Names,
-    heard_as,
+    homophone_of,
     plain,
 )
 from tiniscript.recovery.writing import split_note
@@ -103,7 +103,7 @@ def run_on_calls(source: Source, names: Names) -> list[Diagnostic]:
             ]
             likely_words = {
                 *words,
-                *(names.find_meaning(word, NEAR) for word in words),
+                *(names.find_meaning(word, NEAR_COST) for word in words),
             }  # `Antil(LINE_R)`
             are_calls = {*words_meant} <= {*CALL_WORDS, *words, ""} and not likely_words & {
                 *ASKING_WORDS,
@@ -270,17 +270,21 @@ def likely_word(word: str, text: str) -> str:
     is_frequency = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
     expansions, similar_word = (
         expand_short(word),
-        "" if lexicon_concept(word) else heard_as(word) or "",
+        "" if lexicon_concept(word) else homophone_of(word) or "",
     )
     if similar_word in CALL_WORDS:
-        likely = similar_word
+        guessed_word = similar_word
     elif is_frequency:
-        likely = "BEEP" if word[:1] == "B" or "BEEP" in expansions else ""
+        guessed_word = "BEEP" if word[:1] == "B" or "BEEP" in expansions else ""
     elif len(expansions) == 1:
-        likely = expansions[0]
+        guessed_word = expansions[0]
     else:
-        likely = word[:1] if len(word) <= _MOST_ADDED_LETTERS else ""
-    return likely if likely in WORDS and len(WORDS[likely].arguments) == len(values) else ""
+        guessed_word = word[:1] if len(word) <= _MOST_ADDED_LETTERS else ""
+    return (
+        guessed_word
+        if guessed_word in WORDS and len(WORDS[guessed_word].arguments) == len(values)
+        else ""
+    )
 
 
 def usage_of_number(word: str, number_text: str) -> str:

@@ -35,8 +35,8 @@ from tiniscript.recovery.meanings import (
     ASKING_WORDS,
     CALL_WORDS,
     FULL_TURN,
-    NEAR,
     NEAR_CM,
+    NEAR_COST,
     WORD_OF_END,
     Lexeme,
     Names,
@@ -50,7 +50,7 @@ from tiniscript.recovery.notes import note_edits
 from tiniscript.recovery.rewrites import join_one_name
 from tiniscript.recovery.writing import PLAIN_SIGNS, instruction_at, split_note
 from tiniscript.syntax.lexer import NUMBER, WORD
-from tiniscript.syntax.operators import SUMS
+from tiniscript.syntax.operators import ARITHMETIC_SIGNS
 
 _COMPARISON_SENSES = {
     "<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>": ">", "!=": "<>",
@@ -68,7 +68,7 @@ _COUNTED_WORDS = frozenset((
     "TRUE", "FALSE", "TIME", "FOREVER",
 ))  # fmt: skip
 # Phrases without their own word: `repeat until` is WHILE, `void loop` is FOREVER.
-_COUNTED_AS = {
+_SUBSTITUTES_OF_WORD = {
     "LOOP": ("WHILE", "BREAK", "FOREVER"), "WHILE": ("BREAK", "UNTIL"), "UNTIL": ("WHILE", "BREAK"),
     "FOREVER": ("TRUE", "LOOP", "WHILE"), "TRUE": ("FOREVER",), "S": ("BREAK", "UNTIL"),
     "IF": ("WHEN",), "WHEN": ("IF", "UNTIL"), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
@@ -125,8 +125,8 @@ class Amount(NamedTuple):
     line: int
 
 
-MOST_LOOKS = 40  # most losses examined in one text, and most characters examined in each
-MOST_CHARACTERS_LOOKED_AT = 100_000
+MOST_EXAMINED_LOSSES = 40  # most losses examined in one text, and most characters examined in each
+MOST_EXAMINED_CHARACTERS = 100_000
 MOST_LAYERS = 8
 
 
@@ -223,7 +223,7 @@ def _losses_of_sure_repairs(
     return {key: loss for key, loss in loss_of_diagnostic.items() if is_only_joint or any(loss)}
 
 
-def which_keep_all(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[bool]:
+def are_lossless(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[bool]:
     """Return for each diagnostic whether its edits alone keep everything that was written."""
     return [not loss.losses for loss in _losses(diagnostics, text, kit)]
 
@@ -236,7 +236,7 @@ def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diff
     """
     edits = [edits_of(diagnostic) or () for diagnostic in diagnostics]
     changing_keys = [k for k, edits_of_one in enumerate(edits) if edits_of_one]
-    looks_left = min(MOST_LOOKS, MOST_CHARACTERS_LOOKED_AT // (len(text) + 1))
+    looks_left = min(MOST_EXAMINED_LOSSES, MOST_EXAMINED_CHARACTERS // (len(text) + 1))
     differences = [NO_DIFFERENCE] * len(edits)
     groups = deque([k] for k in changing_keys)
     if len(groups) > looks_left:
@@ -288,13 +288,13 @@ def _split_difference(joint: Difference, parts: Sequence[str]) -> list[Differenc
     """Return the losses of several edits in these parts: the text that they contain."""
     if len(parts) == 1:
         return [joint]
-    own_losses = [[loss for loss in joint.losses if loss in part] for part in parts]
+    losses_by_part = [[loss for loss in joint.losses if loss in part] for part in parts]
     is_complete = not joint.additions and {*joint.losses} == {
-        loss for losses in own_losses for loss in losses
+        loss for losses in losses_by_part for loss in losses
     }
     return [
         Difference(losses, []) if losses or is_complete else UNKNOWN_DIFFERENCE
-        for losses in own_losses
+        for losses in losses_by_part
     ]
 
 
@@ -320,13 +320,13 @@ def _unmentioned_losses(diagnostic: Diagnostic, losses: Sequence[str], text: str
     }
     kept_words = {*_COUNTED_TOKEN.findall(new_text)}
     is_only_cut = kept_words <= removed_words and diagnostic.code not in _NAMING_CODES
-    unmentioned = []
+    unmentioned_losses = []
     for loss in losses:
         unit_match = _NUMBER_WITH_UNIT.fullmatch(loss) if diagnostic.repair else None
         is_lost_unit = unit_match is not None and unit_match[1].upper() not in new_text
         if is_lost_unit or (is_only_cut and loss.upper() in removed_words - kept_words):
-            unmentioned.append(loss)
-    return unmentioned
+            unmentioned_losses.append(loss)
+    return unmentioned_losses
 
 
 def name_samples(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
@@ -337,7 +337,7 @@ def name_samples(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list
     shows an example anyway, nothing changes.
     """
     written_numbers: set[float] | None = None
-    named = []
+    named_diagnostics = []
     for diagnostic in diagnostics:
         fix = diagnostic.values.get("fix", "")
         samples = [] if diagnostic.values.get("example") else _possible_samples(fix)
@@ -352,8 +352,8 @@ def name_samples(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list
         )
         gap = "samples" if ", " in samples_text else "sample"
         values = {**diagnostic.values, gap: samples_text} if samples_text else diagnostic.values
-        named.append(diagnostic._replace(values=values))
-    return named
+        named_diagnostics.append(diagnostic._replace(values=values))
+    return named_diagnostics
 
 
 def _count_numbers(diagnostic: Diagnostic, text: str) -> int:
@@ -482,7 +482,9 @@ class _Statement:
     def _concepts_of(self, token: Lexeme) -> set[str]:
         concepts = {self._sure_word(token), lexicon_concept(token.text) or ""}
         concepts |= {
-            meaning.concept for meaning in self.names.meanings(token.text) if meaning.cost <= NEAR
+            meaning.concept
+            for meaning in self.names.meanings(token.text)
+            if meaning.cost <= NEAR_COST
         }
         return {"S" if concept == "STOP" else concept for concept in concepts}
 
@@ -519,7 +521,7 @@ class _Statement:
         return is_alone and bool(self._possible_words(header) & ASKING_WORDS)
 
     def _count_word(self, k: int, is_in_brackets: bool) -> None:
-        token, previous, following = (
+        token, previous, following_token = (
             self.tokens[k],
             self.tokens[k - 1] if k else _END,
             self._next_token(k),
@@ -530,24 +532,26 @@ class _Statement:
             )
             return
         word = self._sure_word(token)
-        neighbour_texts = {previous.text, following.text}
+        neighbour_texts = {previous.text, following_token.text}
         is_name_part = token.text in self._name_ends
         is_times_sign = (
-            token.text == "X" and previous.kind is NUMBER and following.kind in (NUMBER, WORD)
+            token.text == "X" and previous.kind is NUMBER and following_token.kind in (NUMBER, WORD)
         )
         is_joint = (
             word in ("AND", "OR")
             and not is_in_brackets
-            and bool(self._possible_words(following) & _DRIVING_WORDS)
+            and bool(self._possible_words(following_token) & _DRIVING_WORDS)
         )
         is_repetition = (word == "IF" and previous.text in ("AND", "OR")) or (
             word == "OR" and previous.text in _COMPARISON_SENSES
         )
         is_repetition |= (
-            following.text == "." and self._next_token(k + 1).kind is WORD
+            following_token.text == "." and self._next_token(k + 1).kind is WORD
         )  # `random.randint`
         is_repetition |= (
-            word in MOVES and following.kind is WORD and word == self._sure_word(following)
+            word in MOVES
+            and following_token.kind is WORD
+            and word == self._sure_word(following_token)
         )
         is_equal = any(
             text in ("=", "==") or lexicon_meaning(text, "is") for text in neighbour_texts
@@ -591,7 +595,7 @@ class _Statement:
 
     def _add_amount(self, k: int, value: float, slot_unit: str) -> int:
         """Keep the number at a place with its sign and its unit; return where to read on."""
-        token, following = self.tokens[k], self._next_token(k)
+        token, following_token = self.tokens[k], self._next_token(k)
         is_minus = self._is_minus(k)
         text = f"{'-' if is_minus else ''}{token.source or token.text}"
         while token.kind is WORD and value % 10 == 0:  # `ochenta y cinco`
@@ -608,7 +612,7 @@ class _Statement:
         if unit_and_scale := self._unit_after(k):
             unit, scale = unit_and_scale
             value, k = value * scale / 1000, k + 1
-            text += f"{following.space or ''}{following.source or following.text}"
+            text += f"{following_token.space or ''}{following_token.source or following_token.text}"
         signed_value = -value if is_minus else value
         self.amounts.append(Amount(signed_value, unit, text, self.line_of_token[k]))
         return k + 1
@@ -639,19 +643,19 @@ class _Statement:
 
     def _is_loose_unit(self, k: int) -> bool:
         """Return whether a word is only a unit, without a number."""
-        token, previous, following = (
+        token, previous, following_token = (
             self.tokens[k],
             self.tokens[k - 1] if k else _END,
             self._next_token(k),
         )
         kinds = {item.kind for item in lexicon().get(token.text, ())}
         ends_argument = (
-            len(token.text) == 1 and following.text in (",", ")") and previous.kind is WORD
+            len(token.text) == 1 and following_token.text in (",", ")") and previous.kind is WORD
         )
         is_only_unit = kinds == {"unit"} or (
             "unit" in kinds and (ends_argument or token.text in EXTENTS)
         )
-        is_unbound = not self.names.is_name(token.text) and following.kind is not NUMBER
+        is_unbound = not self.names.is_name(token.text) and following_token.kind is not NUMBER
         if not is_only_unit or not is_unbound or (len(token.text) == 1 and not ends_argument):
             return False
         return lexicon_meaning(token.text, "unit")[0] in _UNITS
@@ -749,7 +753,7 @@ class _Statement:
             is_first_value = left.text == ")" or self._has_value(left)
             is_other_value = self._has_value(token_after if right.text == "(" else right)
             is_plain = left.kind is NUMBER and right.kind is NUMBER
-            if sign.text in SUMS and is_first_value and is_other_value and not is_plain:
+            if sign.text in ARITHMETIC_SIGNS and is_first_value and is_other_value and not is_plain:
                 sign_counts[sign.text] += 1
         return sign_counts
 
@@ -956,7 +960,7 @@ def _lost_words(statement: _Statement, repaired_statement: _Statement) -> Iterat
             (
                 repaired_statement.sure_word_counts[replacement]
                 - statement.sure_word_counts[replacement]
-                for replacement in _COUNTED_AS.get(word, ())
+                for replacement in _SUBSTITUTES_OF_WORD.get(word, ())
             ),
             default=0,
         )
@@ -972,8 +976,8 @@ def _lost_questions(statement: _Statement, repaired_statement: _Statement) -> It
     lost_senses = _count_senses(statement) - (repaired_statement.note_words - statement.note_words)
     new_senses = _count_senses(repaired_statement)
     turner_counts = (
-        {word: counted.sure_word_counts[word] for word in _QUESTION_TURNERS}
-        for counted in (statement, repaired_statement)
+        {word: each_statement.sure_word_counts[word] for word in _QUESTION_TURNERS}
+        for each_statement in (statement, repaired_statement)
     )
     negations = (statement.negations, repaired_statement.negations)
     may_turn = (

@@ -82,7 +82,7 @@ def _merge_quotes(diagnostics: Sequence[Diagnostic], source: Source) -> list[Dia
     groups_by_line: dict[int, list[Diagnostic]] = {}
     for diagnostic in diagnostics:
         groups_by_line.setdefault(source.position(diagnostic.span.start)[0], []).append(diagnostic)
-    merged = []
+    merged_diagnostics = []
     for line_number, group in groups_by_line.items():
         repairs = [diagnostic.repair for diagnostic in group if diagnostic.repair]
         edits = sorted(edit for repair in repairs for edit in repair.edits)
@@ -96,8 +96,8 @@ def _merge_quotes(diagnostics: Sequence[Diagnostic], source: Source) -> list[Dia
             repair = Repair(tuple(edits), all(repair.is_sure for repair in repairs))
             span = Span(edits[0].span.start, edits[-1].span.end)
             group = [Diagnostic(codes.QUOTE, span, {"fix": fix}, span, repair)]
-        merged += group
-    return merged
+        merged_diagnostics += group
+    return merged_diagnostics
 
 
 def _merge_diagnostics(group: Sequence[Diagnostic], source: Source) -> Diagnostic:

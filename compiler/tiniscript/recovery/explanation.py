@@ -27,9 +27,9 @@ from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.meanings import (
     WORD_OF_END,
     Lexeme,
+    certain_concept,
     lexemes,
     lexicon_meaning,
-    meant_by,
     plain,
     texts,
 )
@@ -284,7 +284,7 @@ class _Explainer:
             explanation = explanation or self.add_explanation(k, instruction, code, step)
             explanation.opening_changes |= {closed_block.first_change} if closed_block else set()
             if code is codes.WRONG_END and isinstance(details := explanation.details, SlipDetails):
-                right = slips.right_of(details.slip)
+                right = slips.right_text_of(details.slip)
                 line = str(
                     self.changes[closed_block.first_change if closed_block else k].first_line + 1
                 )
@@ -432,7 +432,7 @@ class _Explainer:
     ) -> SlipDetails:
         slip = slips.slip_of(change, code, step)
         if code is codes.BRACES and change.old_tokens and not change.new_tokens:
-            return SlipDetails(slip, needless=slips.found_in(slip))
+            return SlipDetails(slip, needless=slips.wrong_text_of(slip))
         if code is codes.OTHER_NOTE:
             return SlipDetails(slip, right=self.changes[k].text.strip())
         if code is codes.EXTRA_WORD and not step:
@@ -440,8 +440,8 @@ class _Explainer:
                 self.program, self.widen_to_words(change.edit.span).start
             )
             second_word = arm_match[1].upper() if arm_match else ""
-            is_early_arm = bool({second_word, meant_by(second_word)} & {*_ARMS})
-            return SlipDetails(slip, early=slips.found_in(slip) if is_early_arm else "")
+            is_early_arm = bool({second_word, certain_concept(second_word)} & {*_ARMS})
+            return SlipDetails(slip, early=slips.wrong_text_of(slip) if is_early_arm else "")
         if code is codes.OTHER_CALL and (words := _words_of_numbers(change)):
             is_tone = all(lexicon_meaning(plain(word), "note") for word in words)
             return SlipDetails(slip, **{"tones" if is_tone else "digits": ", ".join(words)})
@@ -454,7 +454,7 @@ class _Explainer:
                 for name in new_texts
                 if name not in old_texts
             ]
-            if slips.right_of(slip) in names:
+            if slips.right_text_of(slip) in names:
                 return SlipDetails(slip, right=", ".join(dict.fromkeys(names)))
         return SlipDetails(slip)
 

@@ -32,7 +32,9 @@ def find_returned_values(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
     if "DEF" not in text.upper() or len(text) > _MOST_CHARACTERS:
         return [], []
     tokens = scan(text).tokens
-    names = {following.text for token, following in pairwise(tokens) if token.text == "DEF"}
+    names = {
+        following_token.text for token, following_token in pairwise(tokens) if token.text == "DEF"
+    }
     call_spans_by_name: dict[str, list[Span]] = {}
     for name, k in _value_calls(tokens, names):
         call_spans_by_name.setdefault(name, []).append(_call_span(tokens, k))
@@ -73,7 +75,7 @@ def _value_calls(tokens: Sequence[Token], names: set[str]) -> Iterator[tuple[str
         if previous is None or previous.kind in (*_INSTRUCTION_ENDS, WORD, NUMBER, ")"):
             if previous is None or previous.text not in _YES_NO_WORDS:
                 continue
-        if any(following.kind == ")" for following in _until_end(tokens, k)):
+        if any(following_token.kind == ")" for following_token in _until_end(tokens, k)):
             yield token.text, k
 
 

@@ -100,8 +100,8 @@ def spoken_instructions(words: Sequence[Lexeme], names: Names) -> list[SpokenIns
 
 def _join_words(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
     """Return words in which those that are one are one: `para adelante`, `si no`."""
-    while joined := rewrites.join_one_name(words, names):
-        words = joined[0]
+    while joined_name := rewrites.join_one_name(words, names):
+        words = joined_name[0]
     return words
 
 
@@ -114,7 +114,7 @@ def _instructions_with_condition(
         ["S"],
         ["STOP"],
     ):
-        return _stopped_when(instructions_before[:-1], words, names)
+        return _instructions_stopped_when(instructions_before[:-1], words, names)
     if not instructions_before or not question:
         return []
     header, first_instruction, *later_instructions = question.split(";")
@@ -136,7 +136,7 @@ def _instructions_with_condition(
     return [*instructions_before, SpokenInstruction("IF", question, samples)]
 
 
-def _stopped_when(
+def _instructions_stopped_when(
     instructions_before: list[SpokenInstruction], words: Sequence[Lexeme], names: Names
 ) -> list[SpokenInstruction]:
     """Return instructions whose last one ends by a condition: `anda y para cuando …`."""

@@ -15,7 +15,7 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import WORDS, lexicon, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.recovery.meanings import meant_by, plain
+from tiniscript.recovery.meanings import certain_concept, plain
 from tiniscript.recovery.writing import split_note
 
 _FIRST_NUMBERS = (1, 10, 100)
@@ -85,7 +85,7 @@ def _is_label(label_match: re.Match[str], text: str) -> bool:
 
 def _is_instruction(word: str, sign: str, text: str) -> bool:
     """Return whether an instruction begins with a word and the sign after it."""
-    known_words = {word, lexicon_concept(word), meant_by(word)} & WORDS.keys()
+    known_words = {word, lexicon_concept(word), certain_concept(word)} & WORDS.keys()
     return bool(sign or known_words or lexicon_meaning(word, "set", "declare")) or _is_name(
         word, text
     )
@@ -99,7 +99,10 @@ def _is_step(word: str) -> bool:
 
 def _is_free(word: str, text: str) -> bool:
     """Return whether a word is neither a word of the language nor a name of the text."""
-    is_instruction = (meant_by(word) or "S") not in ("S", "STOP")  # PARTE is no PARE with a number
+    is_instruction = (certain_concept(word) or "S") not in (
+        "S",
+        "STOP",
+    )  # PARTE is no PARE with a number
     return not (word in WORDS or lexicon().get(word) or is_instruction or _is_name(word, text))
 
 

@@ -20,9 +20,9 @@ from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import meanings, rewrites, rows
 from tiniscript.recovery.meanings import (
     CALL_WORDS,
-    KNOWN,
+    KNOWN_COST,
     LONG_TIME_S,
-    NEAR,
+    NEAR_COST,
     REMEMBERED_LINES,
     Lexeme,
     Meaning,
@@ -240,7 +240,7 @@ class _Search:
             texts_seen.add(texts)
             items = parse_line(reading.tokens, self.names)
             if not isinstance(items, Failure):
-                if not self.says_twice(reading, items, first_reading):
+                if not self.repeats_instruction(reading, items, first_reading):
                     readings.append(reading._replace(items=items))
                 continue
             for successor in successors(reading, items):
@@ -249,7 +249,9 @@ class _Search:
         return readings
 
     @staticmethod
-    def says_twice(reading: Reading, items: Sequence[Item], first_reading: Reading) -> bool:
+    def repeats_instruction(
+        reading: Reading, items: Sequence[Item], first_reading: Reading
+    ) -> bool:
         """Return whether two parts of the line became the same instruction, which nobody wrote."""
         instruction_texts = [texts(reading.tokens[item.start : item.end]) for item in items]
         for instruction, next_instruction, item in zip(
@@ -272,9 +274,9 @@ class _Search:
     def apply_first_rewrites(self, reading: Reading) -> Reading:
         """Make the rewrites that come before all others, and make words one that are one."""
         for _ in range(_MOST_FIRST_STEPS):
-            joined = rewrites.join_one_name(reading.tokens, self.names)
-            if joined is not None:
-                tokens, is_sensor_name = joined
+            joined_name = rewrites.join_one_name(reading.tokens, self.names)
+            if joined_name is not None:
+                tokens, is_sensor_name = joined_name
                 code = codes.NAME_WITH_SPACE if is_sensor_name else codes.OTHER_LANGUAGE
                 reading = reading.with_change(tokens, 1.0 if is_sensor_name else 0.5, code)
                 continue
@@ -294,7 +296,7 @@ class _Search:
 
     def _apply_patterns(self, reading: Reading, failure: Failure | None) -> Iterator[Reading]:
         """Apply the rows that touch a place; without a place, those that come before all others."""
-        encoded_words = rewrites.Encoded(reading.tokens, self.names)
+        encoded_words = rewrites.EncodedLine(reading.tokens, self.names)
         for row in rewrites.rows_to_try(encoded_words, is_first=failure is None):
             for match in encoded_words.matches(row.pattern):
                 start, end = encoded_words.span(match)
@@ -330,12 +332,12 @@ class _Search:
             is_function = padded_texts[k] in ("(", ",", *SIGNS) and padded_texts[k + 2] == "("
             is_misspelt = is_function and not lexicon_concept(token.text)
             suggestion = nearest(token.text, FUNCTIONS) if is_misspelt else None
-            guesses = (Meaning(suggestion, KNOWN),) if suggestion else ()
+            guesses = (Meaning(suggestion, KNOWN_COST),) if suggestion else ()
             word_meanings = guesses or self.names.meanings(token.text)
             if _has_unlikely_time(tokens, k, word_meanings[0].concept if word_meanings else ""):
                 continue
             for concept, cost in word_meanings:
-                cost = NEAR if token.text[-1].isdigit() else cost
+                cost = NEAR_COST if token.text[-1].isdigit() else cost
                 if (
                     concept == "TIME"
                     and k > 1

@@ -18,12 +18,12 @@ from tiniscript.base.words import ALIASES, BLOCK_ENDS, EXTENTS, WORDS, LexiconEn
 from tiniscript.base.words import lexicon_concept as lexicon_concept
 from tiniscript.base.words import lexicon_meaning as lexicon_meaning
 from tiniscript.syntax.blocks import ENDS
-from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
+from tiniscript.syntax.lexer import DASHES, NUMBER, UNKNOWN_SIGN, WORD
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.outline import KnownNames
 
 WORD_OF_END = ENDS
-KNOWN, MISSPELT, NEAR = 1, 2, 3  # costs of a meaning: exact, misspelt, one slip away
+KNOWN_COST, MISSPELT_COST, NEAR_COST = 1, 2, 3  # costs of a meaning: exact, misspelt, one slip away
 BLOCK_STARTS = frozenset(BLOCK_ENDS) - {"DEF"}
 SEPARATORS = frozenset(";|{}")
 UNNAMED_END = "FIN"  # stands for the end of a block whose word does not name it; a row replaces it
@@ -92,12 +92,12 @@ def lexemes(line: str) -> list[Lexeme]:
 def _lexemes(line: str) -> tuple[Lexeme, ...]:
     tokens_found, end_offset = [], 0
     for match in _TOKEN.finditer(line):
-        text, kind = match[0], NUMBER if match[1] else WORD if match[2] else ODD
+        text, kind = match[0], NUMBER if match[1] else WORD if match[2] else UNKNOWN_SIGN
         if kind is WORD:
             text = plain(text)
             if "Ñ" in match[0].upper() and not lexicon().get(text):
-                respelt = plain(re.sub("[ñÑ]", "ni", match[0]))
-                text = respelt if lexicon().get(respelt) or text in _YEAR_WORDS else text
+                respelt_word = plain(re.sub("[ñÑ]", "ni", match[0]))
+                text = respelt_word if lexicon().get(respelt_word) or text in _YEAR_WORDS else text
         elif text in _SIGNS or text in DASHES:
             kind = text = "-" if text in DASHES else text
         elif lexicon_concept(text[0]):
@@ -164,15 +164,15 @@ def _speller() -> Speller:
 def meanings(word: str) -> tuple[Meaning, ...]:
     """Return the possible meanings of a word, the likeliest first."""
     if word == "SI":
-        return (Meaning("IF", KNOWN),)
+        return (Meaning("IF", KNOWN_COST),)
     if concept := lexicon_concept(word):
-        return (Meaning(concept, KNOWN),)
+        return (Meaning(concept, KNOWN_COST),)
     if word in WORDS or word in lexicon():
         return ()
     shortened_word = re.sub(r"(.)\1\1+", r"\1\1", word)  # `BEEEEEP`
     if shortened_word != word:
         return (
-            (Meaning(shortened_word, MISSPELT),)
+            (Meaning(shortened_word, MISSPELT_COST),)
             if shortened_word in WORDS
             else meanings(shortened_word)
         )
@@ -184,18 +184,18 @@ def meanings(word: str) -> tuple[Meaning, ...]:
     ):
         return meanings("_".join(kept_parts))  # `SENSOR_LUZ_DERECHA`
     if concept := _sensor_with_side(parts):
-        return (Meaning(concept, KNOWN),)
+        return (Meaning(concept, KNOWN_COST),)
     near_miss = _speller().find_near_miss(word)
     guesses = (
-        (heard_as(word), KNOWN),
-        (lexicon_concept(near_miss or ""), MISSPELT),
-        (_in_two_words(word), KNOWN),
-        (nearest(word, WORDS), NEAR),
+        (homophone_of(word), KNOWN_COST),
+        (lexicon_concept(near_miss or ""), MISSPELT_COST),
+        (_in_two_words(word), KNOWN_COST),
+        (nearest(word, WORDS), NEAR_COST),
     )
     return next(((Meaning(concept, cost),) for concept, cost in guesses if concept), ())
 
 
-def heard_as(word: str) -> str | None:
+def homophone_of(word: str) -> str | None:
     """Return the word of the language that a word sounds like, which may itself mean another thing.
 
     No device is called a weight: `WEIGHT(1)` is how WAIT sounds when dictated.
@@ -218,10 +218,10 @@ def _sensor_with_side(parts: Sequence[str]) -> str:
     return ""
 
 
-def meant_by(word: str) -> str | None:
+def certain_concept(word: str) -> str | None:
     """Return the word of the language that a word of another language certainly means, misspelt or
     not."""
-    return next((meaning.concept for meaning in meanings(word) if meaning.cost < NEAR), None)
+    return next((meaning.concept for meaning in meanings(word) if meaning.cost < NEAR_COST), None)
 
 
 def _in_two_words(word: str) -> str | None:
@@ -469,7 +469,9 @@ class Names:
         compared_names = {
             name for line in names_of_lines for name in line.compared_words if name not in WORDS
         }
-        word_of_name = {name: self.find_meaning(name, NEAR) for name in compared_names - values}
+        word_of_name = {
+            name: self.find_meaning(name, NEAR_COST) for name in compared_names - values
+        }
         self.unknown_names = {
             name for name, concept in word_of_name.items() if not concept or concept in CALL_WORDS
         }
@@ -507,12 +509,12 @@ class Names:
         if self.is_name(word):
             return ()
         if word in self.block_of_word:
-            return (Meaning(self.block_of_word[word], KNOWN),)
+            return (Meaning(self.block_of_word[word], KNOWN_COST),)
         end, _, block = word.partition("_")
         if lexicon_meaning(end, "end") and block in (*WORDS, *self.defs):
-            return (Meaning(UNNAMED_END, KNOWN),)
+            return (Meaning(UNNAMED_END, KNOWN_COST),)
         if concept := self.sensor_with_side(word) or self._lamp_of(word):
-            return (Meaning(concept, KNOWN),)
+            return (Meaning(concept, KNOWN_COST),)
         word_meanings = meanings(word)
         return tuple(
             meaning
@@ -539,7 +541,7 @@ class Names:
         sensors = [name for name in self.sensors if name.endswith(f"_{side}")]
         return sensors[0] if len(sensors) == 1 and side in ("L", "R") else ""
 
-    def find_meaning(self, word: str, highest_cost: int = MISSPELT) -> str:
+    def find_meaning(self, word: str, highest_cost: int = MISSPELT_COST) -> str:
         """Return the word of the language that a word means, or "" if it has none, or a less likely
         one."""
         if word in WORDS and word != "SI":
@@ -578,7 +580,7 @@ class Names:
             return [text, "@num", *ANY_LABELS, *fitting_classes]
         if token.kind is not WORD:
             fitting_classes = (
-                name for name, excluded in _EXCLUSIONS.items() if text not in excluded
+                name for name, excluded_names in _EXCLUSIONS.items() if text not in excluded_names
             )
             own_classes = ["@close"] if text == ")" else ["@unit"] if text in "%°" else []
             return [f"s{text}", *fitting_classes, *own_classes]
@@ -594,11 +596,11 @@ class Names:
         classes += ["@cross"] if text == "X" and not is_own_name else []
         if "unit" not in kinds and text not in WORDS and not is_own_name:
             classes += [f"@like_{unit_word}" for unit_word in EXTENTS if is_slip(text, unit_word)]
-        meant = [meaning.concept for meaning in self.meanings(text) if meaning.cost < NEAR]
-        word = text if text in WORDS else meant[0] if meant else ""
+        concepts = [meaning.concept for meaning in self.meanings(text) if meaning.cost < NEAR_COST]
+        word = text if text in WORDS else concepts[0] if concepts else ""
         classes += [ALIASES[word]] if word in ALIASES else []
         is_name = self.is_name(text)
-        classes += meant
+        classes += concepts
         classes += [
             label
             for label in ANY_LABELS
@@ -626,7 +628,7 @@ class Names:
             classes += ["@start", "@startm"]
         if word in WORD_OF_END:
             classes.append("@close")
-        if text in self.variables or (text not in WORDS and not meant):
+        if text in self.variables or (text not in WORDS and not concepts):
             classes.append("@name")
             if "turn" not in classes and not re.fullmatch("[FBLRWM][0-9]+", text):
                 classes += ["@newname", *(["@usedname"] if text in self.in_brackets else [])]
@@ -670,7 +672,7 @@ _EXCLUSIONS: dict[str, tuple[str, ...]] = {
     "@noparen": (";", "{", "}", "(", ")"),
 }  # fmt: skip
 ANY_LABELS = tuple(_EXCLUSIONS)
-SEPARATOR = "|".join(
+SEPARATOR_LABELS = "|".join(
     ("s;", *(name for name, excluded in _EXCLUSIONS.items() if ";" not in excluded))
 )
 _LABELS_WITHOUT_DO = ("@cond", "@noparen")

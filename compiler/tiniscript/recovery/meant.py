@@ -12,7 +12,7 @@ from tiniscript.base.words import EXTENTS, MOVES, UNIT_OF, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import rows, slips
-from tiniscript.recovery.conserved import difference, which_keep_all
+from tiniscript.recovery.conserved import are_lossless, difference
 from tiniscript.recovery.explanation import Explanation, explain_candidate, trimmed_edit
 from tiniscript.recovery.meanings import lexemes, plain
 from tiniscript.recovery.search import Candidate, Recovery
@@ -70,7 +70,7 @@ def meant_diagnostics(
         kept_flags = (
             []
             if is_sure
-            else which_keep_all(
+            else are_lossless(
                 [diagnostic for _, diagnostic in explained_diagnostics], source.text, recovery.kit
             )
         )
@@ -182,8 +182,8 @@ def _diagnostic(
 def _code_and_values(explanation: Explanation) -> tuple[Code, dict[str, str]]:
     """Return the code of the message with a word for the subject, and its values."""
     code, slip = explanation.code, explanation.slip
-    if slip and code in _CODES_WITH_RIGHT and not slips.right_of(slip):
-        has_bracket = "(" in slips.text_before(slip) + slips.found_in(slip)
+    if slip and code in _CODES_WITH_RIGHT and not slips.right_text_of(slip):
+        has_bracket = "(" in slips.text_before(slip) + slips.wrong_text_of(slip)
         code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
     values = explanation.values_as(code)
     found_word, suggestion = values.get("found", "").upper(), values.get("right", "")

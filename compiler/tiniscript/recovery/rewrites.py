@@ -18,8 +18,8 @@ from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.recovery import rows
 from tiniscript.recovery.meanings import (
     ANY_LABELS,
-    NEAR,
-    SEPARATOR,
+    NEAR_COST,
+    SEPARATOR_LABELS,
     WORD_OF_END,
     Lexeme,
     Names,
@@ -38,7 +38,7 @@ _PART_REFERENCE = re.compile(r"<(\w+)>")
 _CONTINUATION = re.compile(r"\n    ")
 # Where an instruction begins and ends, including the labels around it, and its line.
 _EDGE_PATTERNS = {
-    "^": rf"(?:\A|(?<=\x01\|{re.escape(SEPARATOR)}\|\x02)|(?<=\x01\|s[{{}}]\|\x02))",
+    "^": rf"(?:\A|(?<=\x01\|{re.escape(SEPARATOR_LABELS)}\|\x02)|(?<=\x01\|s[{{}}]\|\x02))",
     "$": r"(?:\Z|(?=\x01\|s[;}]\|))",
     "^^": r"\A",
     "$$": r"\Z",
@@ -108,7 +108,7 @@ def _index_of(is_first: bool) -> RowIndex:
     )
 
 
-def rows_to_try(line: Encoded, is_first: bool) -> Iterator[TokenRow]:
+def rows_to_try(line: EncodedLine, is_first: bool) -> Iterator[TokenRow]:
     """Yield the rows that may match a line, in the order of the table."""
     return (token_rows()[k] for k in line.candidate_rows(_index_of(is_first)))
 
@@ -236,7 +236,7 @@ def index_rows(patterns: Mapping[int, Pattern]) -> RowIndex:
     return rows_by_label
 
 
-class Encoded:
+class EncodedLine:
     """The labels of a line as one text, and which token ends where in it."""
 
     def __init__(
@@ -318,7 +318,7 @@ class Encoded:
         return _FUNCTIONS[function](match_here)
 
     def translate(self, token: Lexeme) -> Lexeme:
-        concept = self.names.find_meaning(token.text, NEAR) if token.kind is WORD else ""
+        concept = self.names.find_meaning(token.text, NEAR_COST) if token.kind is WORD else ""
         concept = concept or "".join(lexicon_meaning(token.text, "number"))
         return make_token(concept) if concept not in ("", token.text) else token
 
@@ -330,7 +330,7 @@ def _numbers(tokens: Sequence[Lexeme]) -> Counter[str]:
 class _Match(NamedTuple):
     """The argument of a table's function: the line, its captures, and the start of the match."""
 
-    line: Encoded
+    line: EncodedLine
     captures: list[list[Lexeme]]
     start: int
 
@@ -374,7 +374,7 @@ def _decimal(match: _Match) -> _Replacement:
     return [whole_token._replace(text=text, source=text)]
 
 
-def _zero_after(match: _Match) -> _Replacement:
+def _joined_tens(match: _Match) -> _Replacement:
     """`8 0` is 80."""
     (number_token,), (zero_token,) = match.captures
     is_one_number = zero_token.space == " " and "." not in number_token.text
@@ -440,7 +440,7 @@ def _converted_number(match: _Match) -> _Replacement:
 _FUNCTIONS: dict[str, Callable[[_Match], _Replacement]] = {
     "not": lambda it: negate(it.captures[0]), "endof": _end_of, "dec": _decimal,
     "xn": _times_number,
-    "cat": _zero_after, "mmss": _seconds_of_minutes, "same": _equal_number, "label": _label,
+    "cat": _joined_tens, "mmss": _seconds_of_minutes, "same": _equal_number, "label": _label,
     "ms": _seconds, "own": _converted_number,
     "most": partial(_limit, True), "least": partial(_limit, False),
 }  # fmt: skip

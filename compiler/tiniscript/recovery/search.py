@@ -20,7 +20,7 @@ from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Line, Matching, TokenEdit
 from tiniscript.recovery.lines import BRACES, SURE_MARGIN, Reading, Step, is_right
 from tiniscript.recovery.meanings import (
-    NEAR,
+    NEAR_COST,
     WORD_OF_END,
     Lexeme,
     Names,
@@ -253,22 +253,24 @@ class Recovery:
             self.unread_count += 1
             line.reading = self.read_parts(tokens, names)
             return
-        cheapest = readings[0]
+        cheapest_readings = readings[0]
         line.rivals = [
-            reading for reading in readings[1:] if reading.normal_text != cheapest.normal_text
+            reading
+            for reading in readings[1:]
+            if reading.normal_text != cheapest_readings.normal_text
         ]
         has_close_rival = any(
             rival.is_sure
-            and rival.cost < cheapest.cost + SURE_MARGIN
-            and _count_kept(rival) >= _count_kept(cheapest)
+            and rival.cost < cheapest_readings.cost + SURE_MARGIN
+            and _count_kept(rival) >= _count_kept(cheapest_readings)
             for rival in line.rivals
         )
         is_sure = (
-            cheapest.is_sure
+            cheapest_readings.is_sure
             and not has_close_rival
-            and not _may_be_mistyped_bracket(tokens, cheapest.tokens)
+            and not _may_be_mistyped_bracket(tokens, cheapest_readings.tokens)
         )
-        line.reading = cheapest._replace(is_sure=is_sure)
+        line.reading = cheapest_readings._replace(is_sure=is_sure)
 
     def read_parts(self, tokens: list[Lexeme], names: Names) -> Reading:
         """Read each instruction of a line alone, where one cannot be read, if it is sure."""
@@ -355,11 +357,13 @@ class Recovery:
 
     def choices(self) -> Iterator[tuple[list[Reading], bool]]:
         """Yield the readings of each line; finally those without the program's blocks."""
-        cheapest = [line.reading for line in self.lines]
-        yield cheapest, True
+        cheapest_readings = [line.reading for line in self.lines]
+        yield cheapest_readings, True
         for _, k, rival in self.rivals()[:MOST_ALTERNATIVES]:
-            yield [*cheapest[:k], rival, *cheapest[k + 1 :]], True
-        sure_readings = [reading if reading.is_sure else _UNREAD_LINE for reading in cheapest]
+            yield [*cheapest_readings[:k], rival, *cheapest_readings[k + 1 :]], True
+        sure_readings = [
+            reading if reading.is_sure else _UNREAD_LINE for reading in cheapest_readings
+        ]
         unread_lines = (
             line
             for line, reading in zip(self.lines, sure_readings, strict=True)
@@ -383,7 +387,7 @@ class Recovery:
         return any(
             word in BRACES
             or lexicon_meaning(word, *_BLOCK_START_KINDS)
-            or self.names.find_meaning(word, NEAR) in _BLOCK_WORDS
+            or self.names.find_meaning(word, NEAR_COST) in _BLOCK_WORDS
             for word in texts(lexemes(line.body))
         )
 

@@ -13,7 +13,14 @@ from tiniscript.base.kit import Device, Kit
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.recovery.meanings import NEAR, Lexeme, Names, lexemes, lexicon_meaning, number_text
+from tiniscript.recovery.meanings import (
+    NEAR_COST,
+    Lexeme,
+    Names,
+    lexemes,
+    lexicon_meaning,
+    number_text,
+)
 from tiniscript.recovery.trailing_tokens import token_width
 from tiniscript.recovery.worded import sensors_of
 from tiniscript.recovery.writing import split_note
@@ -101,7 +108,7 @@ def _compared_index(tokens: Sequence[Lexeme], k: int) -> int:
 
 def _sensor(word: str, names: Names) -> Device | None:
     """Return the sensor that a word names, or one of those that it may mean."""
-    candidates = [word, names.find_meaning(word, NEAR)]
+    candidates = [word, names.find_meaning(word, NEAR_COST)]
     candidates += sensors_of(word, names) if lexicon_meaning(word, "stem", "ahead") else []
     return next(
         (names.number_readings[name] for name in candidates if name in names.number_readings), None

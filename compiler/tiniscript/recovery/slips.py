@@ -22,9 +22,9 @@ from tiniscript.recovery.meanings import (
     UNNAMED_END,
     WORD_OF_END,
     Lexeme,
+    certain_concept,
     lexemes,
     lexicon_meaning,
-    meant_by,
     setup_of,
     texts,
 )
@@ -162,7 +162,7 @@ def code_of(change: InstructionChange) -> tuple[Code, Step | None]:
     added_words = {*texts(new_tokens)} - {*texts(old_tokens)}
     if "SI" in lost_texts and "IF" in added_words:
         return codes.SPANISH_IF, None
-    dropped_ends = {text for text in lost_texts if {text, meant_by(text)} & {*WORD_OF_END}}
+    dropped_ends = {text for text in lost_texts if {text, certain_concept(text)} & {*WORD_OF_END}}
     if dropped_ends and not added_words and lost_texts.keys() <= dropped_ends | {";"}:
         return codes.EXTRA_WORD, None
     code, step = _code_of_steps(change) if steps else (_code_of_words(old_tokens, new_tokens), None)
@@ -181,7 +181,7 @@ def _translated_word(step: Step) -> str:
     """Return the word of a block that a rewrite has put for one of another language."""
     words = {*texts(step.old_tokens)}
     new_word = next((text for text in texts(step.new_tokens) if text in BLOCK_ENDS), "")
-    is_said = new_word in map(meant_by, words) or any(
+    is_said = new_word in map(certain_concept, words) or any(
         lexicon_meaning(word, "count") for word in words
     )
     return new_word if new_word not in words and is_said else ""
@@ -201,7 +201,7 @@ def _code_of_steps(change: InstructionChange) -> tuple[Code, Step]:
         token.text for token in old_tokens if token.kind is WORD and token.text not in new_texts
     )
     foreign_word = next(
-        (word for word in lost_words if meant_by(word) in new_texts - old_texts), ""
+        (word for word in lost_words if certain_concept(word) in new_texts - old_texts), ""
     )
     translating_step = next((step for step in steps if step.code is codes.OTHER_LANGUAGE), None)
     if translating_step and (foreign_word or not other_steps):
@@ -260,14 +260,14 @@ def _foreign_words(slip: Slip) -> Slip:
         slip.found_tokens,
         slip.right_tokens,
     )
-    with_next = old_tokens[start : start + len(found_tokens) + 1]
+    tokens_with_next = old_tokens[start : start + len(found_tokens) + 1]
     has_dot = texts(found_tokens[-1:]) == (".",)
     if has_dot and not right_tokens:
-        found_tokens, right_tokens = with_next, slip.step_result[start : start + 1]
+        found_tokens, right_tokens = tokens_with_next, slip.step_result[start : start + 1]
     elif not right_tokens and start and old_tokens[start - 1].text != "|":
         found_tokens, right_tokens = [old_tokens[start - 1], *found_tokens], [old_tokens[start - 1]]
     elif has_dot:
-        found_tokens = with_next
+        found_tokens = tokens_with_next
     end = next(
         (k for k, token in enumerate(found_tokens) if token.text in ("=", "(")), len(found_tokens)
     )
@@ -281,7 +281,7 @@ def _foreign_words(slip: Slip) -> Slip:
         and all(lexicon_meaning(token.text, "filler") for token in found_tokens)
     ):
         meant_lexemes = [
-            token for token in old_tokens if meant_by(token.text) == right_tokens[0].text
+            token for token in old_tokens if certain_concept(token.text) == right_tokens[0].text
         ]
         found_tokens = meant_lexemes[:1] or found_tokens  # `oi robô, anda`
     return slip._replace(found_tokens=found_tokens, right_tokens=right_tokens)
@@ -289,7 +289,9 @@ def _foreign_words(slip: Slip) -> Slip:
 
 def _is_counting(token: Lexeme) -> bool:
     """Return whether a word means repetition: FOR, and EACH after it."""
-    return meant_by(token.text) == "LOOP" or bool(lexicon_meaning(token.text, "count", "each"))
+    return certain_concept(token.text) == "LOOP" or bool(
+        lexicon_meaning(token.text, "count", "each")
+    )
 
 
 def _split_number(slip: Slip) -> Slip:
@@ -358,7 +360,7 @@ _EXACT_SLIPS: dict[Code, Callable[[Slip], Slip]] = {
 # -- the content of a message -------------------------------------------------------------------
 
 
-def found_in(slip: Slip) -> str:
+def wrong_text_of(slip: Slip) -> str:
     """Return the wrong text as written: the whole instruction if a sign is missing."""
     code, found_tokens = slip.code, slip.found_tokens
     if _is_between_words(slip):
@@ -387,7 +389,7 @@ def _is_between_words(slip: Slip) -> bool:
     return is_between and not slip.found_tokens and slip.start > 0
 
 
-def right_of(slip: Slip) -> str:
+def right_text_of(slip: Slip) -> str:
     """Return the correct form in TiniScript."""
     changed_text = _changed_text(slip)
     right_text = format_line(slip.right_tokens) or changed_text
@@ -408,7 +410,9 @@ def _word_in(text: str) -> str:
     heads = (part for part in text.split(";") if re.split(r"\W", part)[0] in BLOCK_WORDS)
     text = re.split("[()]", next(heads, text), maxsplit=1)[0]
     text = next((word for word in text.split() if word in WORDS), text)
-    return text if text in WORDS else meant_by(text) or text  # the last part of `bot.forward`
+    return (
+        text if text in WORDS else certain_concept(text) or text
+    )  # the last part of `bot.forward`
 
 
 def text_before(slip: Slip) -> str:
@@ -443,7 +447,7 @@ def _changed_text(slip: Slip) -> str:
 
 def fix_of(slip: Slip) -> str:
     """Return the offer: those instructions, or only `SI|` if its sign was wrong."""
-    right = right_of(slip) if slip.code is codes.OTHER_SIGN else ""
+    right = right_text_of(slip) if slip.code is codes.OTHER_SIGN else ""
     return f"{right}|" if right in ("SI", "SB") else _changed_text(slip)
 
 
@@ -519,7 +523,7 @@ def _usage(slip: Slip) -> str:
 
 def _letter(slip: Slip) -> str:
     """Return the letter that is in a number in the place of a digit."""
-    found_text, right_text = found_in(slip), right_of(slip)
+    found_text, right_text = wrong_text_of(slip), right_text_of(slip)
     letters = (
         {letter for letter in found_text if letter.isalpha()} - {*right_text}
         if len(found_text) == len(right_text)
@@ -534,14 +538,14 @@ def _usage_if_longer(slip: Slip) -> str:
         sum(token.kind is NUMBER for token in instructions_tokens)
         for instructions_tokens in (slip.old_instructions, slip.new_instructions)
     )
-    word = WORDS.get(right_of(slip))  # `avanza 2 s 3 veces`: F
+    word = WORDS.get(right_text_of(slip))  # `avanza 2 s 3 veces`: F
     usage = word.usage if word and word.arguments else _usage(slip)
     return usage if needed_count > number_count else ""
 
 
 _VALUE_GAPS: dict[str, Callable[[Slip], str]] = {
-    "found": found_in, "right": right_of, "before": text_before, "word": _word, "usage": _usage,
-    "fix": fix_of, "example": fix_of, "letter": _letter, "takes": _usage_if_longer,
+    "found": wrong_text_of, "right": right_text_of, "before": text_before, "word": _word,
+    "usage": _usage, "fix": fix_of, "example": fix_of, "letter": _letter, "takes": _usage_if_longer,
 }  # fmt: skip
 
 

@@ -26,7 +26,7 @@ from tiniscript.recovery.meanings import (
     FULL_TURN,
     INSTRUCTION_WORDS,
     LONG_TIME_S,
-    NEAR,
+    NEAR_COST,
     Lexeme,
     Names,
     lexemes,
@@ -125,11 +125,11 @@ class _Reader:
                 return False
             is_odd_comma = sign == "," and next_sign in (",", ")")
             has_second_group = sign == "(" and k > 2 and "(" in signs[:k]
-            is_call = sign == "(" and self.names.find_meaning(next_sign, NEAR) in CALL_WORDS
+            is_call = sign == "(" and self.names.find_meaning(next_sign, NEAR_COST) in CALL_WORDS
             if (
                 is_odd_comma
                 or has_second_group
-                or (is_call and self.names.find_meaning(signs[0], NEAR) != "M")
+                or (is_call and self.names.find_meaning(signs[0], NEAR_COST) != "M")
             ):
                 self.is_sure = False
         return True

@@ -30,7 +30,7 @@ from tiniscript.recovery.instructions import (
 )
 from tiniscript.recovery.meanings import (
     ASKING_WORDS,
-    NEAR,
+    NEAR_COST,
     WORD_OF_END,
     Lexeme,
     Names,
@@ -42,7 +42,7 @@ from tiniscript.recovery.meanings import (
 from tiniscript.recovery.slots import fill_call
 from tiniscript.recovery.trailing_tokens import (
     LineContext,
-    Trailing,
+    TrailingTokens,
     instruction_length,
     token_width,
     words_set,
@@ -244,7 +244,7 @@ def _trailing_words(body: str, start: int, line_context: LineContext) -> Iterato
 
 def matching_rows(subject: Subject) -> Iterator[tuple[SuggestionRow, Gaps]]:
     """Yield the rows that apply at a place, with the values of their gaps, in table order."""
-    encoded_line = rewrites.Encoded(
+    encoded_line = rewrites.EncodedLine(
         [make_token(";"), *subject.row_tokens], subject.names, subject.labels()
     )
     for k in encoded_line.candidate_rows(_row_index()):
@@ -265,7 +265,7 @@ def _suggestion_for(trailing: _TrailingWords) -> Suggestion | None:
     return None
 
 
-def _is_read_surely(trailing: Trailing) -> bool:
+def _is_read_surely(trailing: TrailingTokens) -> bool:
     """Return whether a repair of the whole instruction is unambiguous."""
     if trailing.command == "DEF":
         return False  # the first word may be a name of its own
@@ -273,7 +273,7 @@ def _is_read_surely(trailing: Trailing) -> bool:
     return bool(readings) and readings[0].is_sure and len(readings[0].items or ()) == 1
 
 
-class _TrailingWords(Trailing):
+class _TrailingWords(TrailingTokens):
     """Words after an instruction, or without one, as a place of rows."""
 
     def __init__(
@@ -334,7 +334,7 @@ def _suggestion(row: SuggestionRow, gaps: Gaps) -> Suggestion:
 
 def _spoken_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
     """Return the call that words before a condition say, and how many they are."""
-    concepts = [names.find_meaning(token.text, NEAR) for token in tokens]
+    concepts = [names.find_meaning(token.text, NEAR_COST) for token in tokens]
     condition_index = next((k for k in range(1, len(tokens)) if concepts[k] in ("IF", "WHILE")), 0)
     has_until = concepts[condition_index] == "WHILE"
     call = (
@@ -356,7 +356,7 @@ class Gaps(dict[str, str]):
     """
 
     def __init__(
-        self, subject: Subject, encoded_words: rewrites.Encoded, match: re.Match[str]
+        self, subject: Subject, encoded_words: rewrites.EncodedLine, match: re.Match[str]
     ) -> None:
         self.subject = subject
         self.filled_values: dict[str, str] = {}
@@ -364,8 +364,8 @@ class Gaps(dict[str, str]):
         self._match = match
 
     @property
-    def trailing(self) -> Trailing:
-        assert isinstance(self.subject, Trailing)
+    def trailing(self) -> TrailingTokens:
+        assert isinstance(self.subject, TrailingTokens)
         return self.subject
 
     def fill(self, row: SuggestionRow) -> None:
@@ -580,7 +580,7 @@ def _rest_of_words(gaps: Gaps, name: str) -> str:
     )
 
 
-def _instructions_said(part: Trailing) -> list[SpokenInstruction]:
+def _instructions_said(part: TrailingTokens) -> list[SpokenInstruction]:
     """The instructions that the words describe, or nothing if a turn among them lacks a
     direction."""
     found_instructions = spoken_instructions(part.row_tokens, part.names)
@@ -613,13 +613,13 @@ def _call_with_note(gaps: Gaps) -> str:
     )
 
 
-def _is_last(trailing: Trailing) -> bool:
+def _is_last(trailing: TrailingTokens) -> bool:
     """Return whether only a note follows the words on their line."""
     text_behind = trailing.text[trailing.whole_span.end :].split("\n")[0].lstrip(" \t;\r")
     return not text_behind or text_behind.startswith("//")
 
 
-def _note_values(trailing: Trailing) -> dict[str, str]:
+def _note_values(trailing: TrailingTokens) -> dict[str, str]:
     """Return the message values that turn the words after an instruction into a note, or {} if they
     may belong to it.
 

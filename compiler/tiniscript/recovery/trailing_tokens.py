@@ -24,14 +24,14 @@ from tiniscript.base.words import (
 from tiniscript.recovery import lines
 from tiniscript.recovery.meanings import (
     ASKING_WORDS,
-    NEAR,
+    NEAR_COST,
     WORD_OF_END,
     Lexeme,
     Names,
     brackets_end,
     lexemes,
 )
-from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
+from tiniscript.syntax.lexer import NUMBER, QUOTES, UNKNOWN_SIGN, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
@@ -76,7 +76,7 @@ def instruction_length(tokens: Sequence[Lexeme], names: Names) -> int:
         is_right = lines.is_right(tokens[:failure_index], names)
         return failure_index if is_right and tokens[failure_index].space else 0
     word_row = WORDS.get(first_text)
-    if word_row is None and not names.takes_values(names.find_meaning(first_text, NEAR)):
+    if word_row is None and not names.takes_values(names.find_meaning(first_text, NEAR_COST)):
         return 0
     if first_text == "DEF":
         return 2 if len(tokens) > 1 and tokens[1].kind is WORD else 0
@@ -89,7 +89,7 @@ def instruction_length(tokens: Sequence[Lexeme], names: Names) -> int:
     return end
 
 
-class Trailing:
+class TrailingTokens:
     """An instruction and the words after it; or words without one, where `instruction_size` is 0.
 
     `instructions_before` are the other instructions of its line, None for one of a block. `command`
@@ -125,7 +125,9 @@ class Trailing:
         self.words_text = text[slice(*self.words_span)]
         self.spans = [call_span, *spans[instruction_size:]]
         self.text = text
-        concept = self.names.find_meaning(self.tokens[0].text, NEAR) if instruction_size else ""
+        concept = (
+            self.names.find_meaning(self.tokens[0].text, NEAR_COST) if instruction_size else ""
+        )
         word_row = WORDS.get(concept)
         self.is_arm = word_row is not None and word_row.role.belongs_to_blocks
         self.command = WORD_OF_END.get(concept, concept)
@@ -304,7 +306,9 @@ class Trailing:
             is_number or (bool(k) and self.row_tokens[k - 1].kind is WORD)
         )
         if not k:
-            is_note_sign = text in _SIGNS_BEFORE_NOTE or (token.kind is ODD and text != "#")
+            is_note_sign = text in _SIGNS_BEFORE_NOTE or (
+                token.kind is UNKNOWN_SIGN and text != "#"
+            )
             return is_note_sign and not is_bracket and not self.is_arm
         is_list_of_words = text == "," and self.row_tokens[k - 1].kind is NUMBER
         return (

@@ -321,7 +321,7 @@ class Usage:
                 "@quoted": found_text in QUOTES,
             }
         if code is codes.RESERVED:
-            labels["@clocked"] = bool(self.other_name.is_set) and self.other_name.word == "TIME"
+            labels["@clocked"] = bool(self.other_name.assignment) and self.other_name.word == "TIME"
         if is_strange:
             labels |= {
                 "@strange": True,
@@ -839,7 +839,7 @@ class _OtherName(NamedTuple):
     right: str
     suggestion: str
     is_def: bool
-    is_set: re.Match[str] | None
+    assignment: re.Match[str] | None
     is_everywhere: bool
 
 
@@ -1059,11 +1059,11 @@ def _block_end(gaps: Gaps) -> str:
 
 def _method_call(gaps: Gaps) -> str:
     """Return the method of an object, if it is called: WRITE of `servo.write`."""
-    thing, _, action = plain(gaps.subject.text[slice(*_member_span(_usage_of(gaps)))]).rpartition(
-        "."
-    )
+    object_name, _, action = plain(
+        gaps.subject.text[slice(*_member_span(_usage_of(gaps)))]
+    ).rpartition(".")
     action_word = (
-        "" if lexicon_meaning(thing, "device") else gaps.subject.names.find_meaning(action)
+        "" if lexicon_meaning(object_name, "device") else gaps.subject.names.find_meaning(action)
     )
     return action_word if gaps.subject.names.takes_values(action_word) else ""
 
@@ -1491,9 +1491,9 @@ GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "name_lines": lambda gaps: _line_list(_other_lines(gaps)), "name_times": _times_in_line,
     "name_right": _gap_of(lambda it: it.other_name.suggestion or it.other_name.right),
     "time_right": _gap_of(lambda it: it.other_name.right
-                      if it.other_name.is_set and it.other_name.is_set[1] else ""),
+                      if it.other_name.assignment and it.other_name.assignment[1] else ""),
     "clock": _gap_of(lambda it: it.other_name.right
-                 if it.other_name.is_set and not it.other_name.is_set[1] else ""),
+                 if it.other_name.assignment and not it.other_name.assignment[1] else ""),
     "time_line": lambda gaps: _only_line(_later_lines(gaps)),
     "time_lines": lambda gaps: _line_list(_later_lines(gaps)),
     "note": _gap_of(lambda it: "/*" if it.text.startswith("/*", it.diagnostic.span.start) else ""),

@@ -12,7 +12,7 @@ from itertools import pairwise
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import Device
 from tiniscript.recovery.meanings import (
-    NEAR,
+    NEAR_COST,
     Lexeme,
     Names,
     lexicon_concept,
@@ -171,7 +171,7 @@ def _subjects(
     sensors += [
         concept
         for text in texts
-        if (concept := names.find_meaning(text, NEAR)) in names.number_readings
+        if (concept := names.find_meaning(text, NEAR_COST)) in names.number_readings
     ]
     subjects = sensors[:1] or list(own_names[:1])
     if not subjects and "light" in kinds_said and "ahead" not in kinds_said:

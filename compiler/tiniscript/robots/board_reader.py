@@ -25,7 +25,7 @@ NO_WIRING = Wiring("", {}, {})
 
 
 class PinUse(NamedTuple):
-    """A use of a pin: the path of the key, and the ability that it needs, one of `NEEDS`.
+    """A use of a pin: the path of the key, and the ability that it needs, one of `ABILITIES`.
 
     `shield` is the shield's name of the pin, if the shield decides the pin.
     """
@@ -72,7 +72,7 @@ class Pins:
             table.complain("pin_of_link", key, **values)
         elif ability == "count" and not chip.counting_pins:
             table.complain("no_discs", key, **values)
-        elif not chip.can(pin, ability):
+        elif not chip.has_ability(pin, ability):
             table.complain(
                 "pin_cannot", key, need=ability, **values, choices=_choices(chip, ability)
             )
@@ -159,7 +159,8 @@ def _choices(
     fitting_pins = [
         pin
         for pin in all_pins
-        if chip.can(pin, ability) and chip.timer_of_pwm_pin.get(pin, -1) not in excluded_timers
+        if chip.has_ability(pin, ability)
+        and chip.timer_of_pwm_pin.get(pin, -1) not in excluded_timers
     ]
     return ", ".join(chip.pin_name(pin) for pin in fitting_pins)
 

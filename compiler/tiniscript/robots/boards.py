@@ -45,8 +45,8 @@ class Chip(NamedTuple):
     pin_volts: int = 5 * ONE  # thousandths of a volt: output of its pins, and most input
     capabilities: int = 0  # features of its firmware, as bits of an image's `needs`
 
-    def can(self, pin: int, ability: str) -> bool:
-        """Return whether `pin` has the ability `ability`, one of NEEDS."""
+    def has_ability(self, pin: int, ability: str) -> bool:
+        """Return whether `pin` has the ability `ability`, one of ABILITIES."""
         if ability == "input":
             return pin in self.digital_pins or pin in self.reading_pins
         if ability == "analog":
@@ -80,7 +80,7 @@ class Chip(NamedTuple):
 
 
 ANALOG_DIGITS = frozenset(str(number) for number in range(16))
-NEEDS = ("input", "output", "pull_up", "analog", "pwm", "echo", "count", "servo", "tone")
+ABILITIES = ("input", "output", "pull_up", "analog", "pwm", "echo", "count", "servo", "tone")
 
 
 def _pins(*parts: int | range) -> frozenset[int]:

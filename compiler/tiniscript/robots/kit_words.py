@@ -9,7 +9,7 @@ from tiniscript.base.kit import REMOTE, Kit
 
 LAST_LETTER = 0x80  # marks the last letter of a word
 _YES_NO, _SENSOR, _ACTUATOR, _GIVES_WAY = 1, 2, 4, 8
-_GOES, _TURNS = 1, 2
+_HAS_SPEED, _HAS_TURN = 1, 2
 
 
 def kit_words(kit: Kit) -> bytes:
@@ -41,7 +41,7 @@ def remote_words(kit: Kit) -> bytes:
 
 def end_of_words(kit: Kit) -> bytes:
     """Return a 0, and whether the kit says how fast it goes and turns."""
-    return bytes((0, _GOES * bool(kit.speed) | _TURNS * bool(kit.turn)))
+    return bytes((0, _HAS_SPEED * bool(kit.speed) | _HAS_TURN * bool(kit.turn)))
 
 
 def pack_word(word: str) -> bytes:

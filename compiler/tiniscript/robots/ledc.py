@@ -13,7 +13,11 @@ from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import Board, Wiring
 
 CHANNELS_PER_TIMER = 2  # channels
-FREQUENCIES = ("tone", "pwm", "servo")  # names from `boards.NEEDS`, in the order of their channels
+FREQUENCIES = (
+    "tone",
+    "pwm",
+    "servo",
+)  # names from `boards.ABILITIES`, in the order of their channels
 
 
 def channels_of(board: Board) -> dict[int, int]:

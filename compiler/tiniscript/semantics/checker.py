@@ -67,7 +67,7 @@ class _Procedure(NamedTuple):
     call_depth: int
 
 
-class _Outside(NamedTuple):
+class _OuterScope(NamedTuple):
     """The known facts about the program around a DEF or a task."""
 
     definitely_read_mask: int
@@ -132,12 +132,12 @@ class _Checker(Scope):
     @staticmethod
     def unread_sensors(values: Sequence[Value], read_mask: int) -> tuple[int, ...]:
         """Return the sensors in `values`, each once, in order, that are not in `read_mask`."""
-        unread: list[int] = []
+        sensor_numbers: list[int] = []
         for value in values:
             for sensor in value.sensors:
-                if not read_mask >> sensor & 1 and sensor not in unread:
-                    unread.append(sensor)
-        return tuple(unread)
+                if not read_mask >> sensor & 1 and sensor not in sensor_numbers:
+                    sensor_numbers.append(sensor)
+        return tuple(sensor_numbers)
 
     # -- instructions -------------------------------------------------------------------------
 
@@ -499,8 +499,8 @@ class _Checker(Scope):
         self.calls_in_other_tasks += outer_scope.call_depth
         until = None
         if node.is_when:
-            nothing = ir.Until((), self.types.no_value.terms)
-            until = nothing if node.condition is None else self.until(node.condition, "WHEN")
+            no_until = ir.Until((), self.types.no_value.terms)
+            until = no_until if node.condition is None else self.until(node.condition, "WHEN")
         body = self.body(node.body)
         blocks, calls = self.deepest_block, self.call_depth
         self.restore_scope(outer_scope)
@@ -516,9 +516,9 @@ class _Checker(Scope):
         if excess is not None:
             self.wrong_calls.report_too_many_copies(program, excess)
 
-    def enter_scope(self) -> _Outside:
+    def enter_scope(self) -> _OuterScope:
         """Begin a DEF or a task, in which nothing is surely read or open; return what was."""
-        outer_scope = _Outside(
+        outer_scope = _OuterScope(
             self.definitely_read_mask,
             self.deepest_block,
             self.call_depth,
@@ -528,7 +528,7 @@ class _Checker(Scope):
         self.definitely_read_mask = self.deepest_block = self.call_depth = 0
         return outer_scope
 
-    def restore_scope(self, outer_scope: _Outside) -> None:
+    def restore_scope(self, outer_scope: _OuterScope) -> None:
         (
             self.definitely_read_mask,
             self.deepest_block,

@@ -17,9 +17,9 @@ from tiniscript.syntax.operators import SIGN_OF
 MANY_VALUES = 100_000  # thousandths: a sensor with such a range rarely reads exactly one of them
 TIME = Device("TIME", NUMBER, "s", 0, HIGHEST)
 _MIRRORED = {"LT": "GT", "LE": "GE", "GT": "LT", "GE": "LE", "EQ": "EQ", "NE": "NE"}
-_LESS, _MORE = ("LT", "LE"), ("GT", "GE")
+_LESS_OPS, _MORE_OPS = ("LT", "LE"), ("GT", "GE")
 # Comparisons that become true, by direction of the move.
-_OUTCOMES_BY_MOVE = {"F": _LESS, "B": _MORE}
+_OUTCOMES_BY_MOVE = {"F": _LESS_OPS, "B": _MORE_OPS}
 
 
 class Comparison(NamedTuple):
@@ -115,10 +115,10 @@ def answer_of_both(condition: Expression, kit: Kit) -> tuple[str, str]:
         return "", ""
     upper_bound, lower_bound = (
         (first_comparison, second_comparison)
-        if first_comparison.op in _LESS
+        if first_comparison.op in _LESS_OPS
         else (second_comparison, first_comparison)
     )
-    if upper_bound.op not in _LESS or lower_bound.op not in _MORE:
+    if upper_bound.op not in _LESS_OPS or lower_bound.op not in _MORE_OPS:
         return "", ""
     is_exact = upper_bound.op == "LE" and lower_bound.op == "GE"
     if op == "AND":
@@ -160,8 +160,8 @@ def can_come_true(condition: Expression, direction: str, kit: Kit) -> bool | Non
 def asks_if_near(condition: Expression, kit: Kit) -> bool:
     """Return whether a condition contains `DISTANCE < 20` for a sensor that looks ahead."""
     return any(
-        looks_ahead(compared.device) and compared.op in _LESS
-        for compared in comparisons_in(condition, kit)
+        looks_ahead(comparison.device) and comparison.op in _LESS_OPS
+        for comparison in comparisons_in(condition, kit)
     )
 
 
@@ -170,8 +170,10 @@ def comparisons_in(condition: Expression, kit: Kit) -> Iterator[Comparison]:
     for k in range(len(condition) - 2):
         terms = condition[k : k + 3]
         middle = next(((device.low + device.high) // 2 for device in _devices(terms, kit)), 0)
-        likely = tuple(Term("NUMBER", middle) if term.op == "VARIABLE" else term for term in terms)
-        comparison = comparison_of(likely, kit)
+        likely_terms = tuple(
+            Term("NUMBER", middle) if term.op == "VARIABLE" else term for term in terms
+        )
+        comparison = comparison_of(likely_terms, kit)
         if comparison is not None:
             yield comparison
 

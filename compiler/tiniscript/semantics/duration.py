@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import Fault, whole
+from tiniscript.base.fixed_point import Fault, round_to_whole
 from tiniscript.base.kit import Kit
 from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import known_value
@@ -121,7 +121,7 @@ class _Durations:
             body_duration = body_duration._replace(most_ms=body_duration.most_ms + self.turn_ms)
         if times_value is None:
             return _UNKNOWN if isinstance(loop, ir.While) or body_duration.most_ms != 0 else _NONE
-        times = max(whole(times_value), 0)
+        times = max(round_to_whole(times_value), 0)
         if body_duration.never_ends and times and not ir.breaks_out(loop.body):
             return Duration(body_duration.least_ms, None, True)
         most_ms = None if body_duration.most_ms is None else times * body_duration.most_ms

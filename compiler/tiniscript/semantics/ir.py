@@ -204,15 +204,17 @@ def walk(body: Body) -> Iterator[Statement]:
 
 
 def walk_with_calls(
-    body: Body, procedures: Sequence[Procedure], called: set[int] | None = None
+    body: Body, procedures: Sequence[Procedure], called_procedures: set[int] | None = None
 ) -> Iterator[Statement]:
     """Yield every statement of `body`, and after a call those of its DEF: of each DEF once."""
-    called = set() if called is None else called
+    called_procedures = set() if called_procedures is None else called_procedures
     for statement in walk(body):
         yield statement
-        if isinstance(statement, Call) and statement.procedure not in called:
-            called.add(statement.procedure)
-            yield from walk_with_calls(procedures[statement.procedure].body, procedures, called)
+        if isinstance(statement, Call) and statement.procedure not in called_procedures:
+            called_procedures.add(statement.procedure)
+            yield from walk_with_calls(
+                procedures[statement.procedure].body, procedures, called_procedures
+            )
 
 
 def all_statements(program: Program) -> Iterator[Statement]:
@@ -276,8 +278,8 @@ def changed_values(
     statement: Statement, change: Callable[[Expression], Expression]
 ) -> dict[str, Any]:
     """Return the fields of a statement that hold its expressions, each changed."""
-    changed = {name: change(value) for name, value in values_of(statement).items()}
-    return {"values": (*changed.values(),)} if isinstance(statement, Act) else changed
+    new_values = {name: change(value) for name, value in values_of(statement).items()}
+    return {"values": (*new_values.values(),)} if isinstance(statement, Act) else new_values
 
 
 def takes_time(statement: Statement) -> bool:

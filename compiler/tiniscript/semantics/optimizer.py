@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tiniscript.base import fixed_point
-from tiniscript.base.fixed_point import Fault, whole
+from tiniscript.base.fixed_point import Fault, round_to_whole
 from tiniscript.semantics import ir
 
 _BINARY: dict[str, Callable[[int, int], int]] = {
@@ -218,7 +218,7 @@ def _loop(loop: ir.Loop) -> tuple[ir.Statement, ...]:
         return (loop._replace(body=_body(loop.body)),)
     count = fold(loop.times)
     value = constant(count)
-    if value is not None and whole(value) <= 0:
+    if value is not None and round_to_whole(value) <= 0:
         return ()
     return (loop._replace(times=count, body=_body(loop.body)),)
 

@@ -20,7 +20,7 @@ def copy_defs_per_task(program: ir.Program) -> ir.Program:
     has_own_values = _owns_values(program)
     procedures: list[ir.Procedure] = []
     variables = list(program.variables)
-    numbers_by_task = [_Numbers({}, {}) for _ in reachable_defs]
+    numbers_by_task = [_TaskNumbers({}, {}) for _ in reachable_defs]
     for k, procedure in enumerate(program.procedures):
         tasks_reaching = [
             task for task, defs_reached in enumerate(reachable_defs) if k in defs_reached
@@ -93,7 +93,7 @@ def count_tasks_by_def(program: ir.Program) -> list[int]:
     ]
 
 
-class _Numbers(NamedTuple):
+class _TaskNumbers(NamedTuple):
     """A task's own numbers of DEFs and variables, instead of those in the text."""
 
     copy_of_def: dict[int, int]
@@ -120,16 +120,16 @@ def _owns_values(program: ir.Program) -> list[bool]:
     return has_own_values
 
 
-def _copy_procedure(procedure: ir.Procedure, numbers: _Numbers) -> ir.Procedure:
+def _copy_procedure(procedure: ir.Procedure, numbers: _TaskNumbers) -> ir.Procedure:
     values = tuple(numbers.copy_of_variable.get(value, value) for value in procedure.values)
     return procedure._replace(body=_body(procedure.body, numbers), values=values)
 
 
-def _body(body: ir.Body, numbers: _Numbers) -> ir.Body:
+def _body(body: ir.Body, numbers: _TaskNumbers) -> ir.Body:
     return tuple(_statement(item, numbers) for item in body)
 
 
-def _statement(statement: ir.Statement, numbers: _Numbers) -> ir.Statement:
+def _statement(statement: ir.Statement, numbers: _TaskNumbers) -> ir.Statement:
     new_fields = ir.changed_values(
         statement, lambda value: _expression(value, numbers.copy_of_variable)
     )

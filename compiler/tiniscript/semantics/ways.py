@@ -5,7 +5,7 @@ Knows how fast a kit says that its robot is.
 
 from __future__ import annotations
 
-from tiniscript.base.fixed_point import HIGHEST, Fault, clamp, whole
+from tiniscript.base.fixed_point import HIGHEST, Fault, clamp, round_to_whole
 from tiniscript.base.kit import Kit
 from tiniscript.semantics.ir import Move, Statement, Term
 from tiniscript.semantics.optimizer import known_value
@@ -20,7 +20,7 @@ def extent_move_ms(move: Move, kit: Kit) -> int | None:
     power = known_value(move.power)
     if extent is None or power is None:
         return None
-    return kit.go_ms(extent, clamp(whole(power), 0, 100), move.unit == "DEG")
+    return kit.go_ms(extent, clamp(round_to_whole(power), 0, 100), move.unit == "DEG")
 
 
 def has_unknown_extent(statement: Statement) -> bool:
@@ -31,7 +31,7 @@ def has_unknown_extent(statement: Statement) -> bool:
     return any(value is None or known_value(value) is None for value in values)
 
 
-def to_timed(move: Move, kit: Kit) -> Move:
+def timed_move(move: Move, kit: Kit) -> Move:
     """Return a move by its time in place of one by its way, which is not open.
 
     If the robot would fault, it never ends.

@@ -47,10 +47,10 @@ if TYPE_CHECKING:
 
 _MOVE_WITH_UNIT = re.compile(r"(?i)\b([FBLR])[ \t]*\([ \t]*(\w+)[ \t]*(CM|DEG)\b")  # `F(20 DEG`
 # How a condition ends an instruction, by the role of its word.
-_REPEATED = "WHILE(NOT ({c}));{call};END_WHILE"
-_ENDED_MOVE = {"motors": "{call};W(FOREVER) UNTIL({c});S",
+_REPEATED_CALL = "WHILE(NOT ({c}));{call};END_WHILE"
+_UNTIL_REPAIR_BY_ROLE = {"motors": "{call};W(FOREVER) UNTIL({c});S",
           **dict.fromkeys(("stop", "actuator"), "{call};W(FOREVER) UNTIL({c})"),
-          **dict.fromkeys(("show", "def"), _REPEATED)}  # fmt: skip
+          **dict.fromkeys(("show", "def"), _REPEATED_CALL)}  # fmt: skip
 _LONG_TIME_S = 20  # longer moves are rarely meant: the number is a power, degrees or steps
 _LOWEST_HERTZ = 30
 _HIGHEST_POWER = 100
@@ -117,7 +117,9 @@ class WrongCalls:
         own_name = self.scope.names.get(node.word)
         role = word.role.name if word else own_name.kind if own_name else "def"
         is_act = word is not None and word.is_call and not word.stands_for
-        template = _ENDED_MOVE.get(role, _REPEATED if is_act else "F(5, 60) UNTIL({c})")
+        template = _UNTIL_REPAIR_BY_ROLE.get(
+            role, _REPEATED_CALL if is_act else "F(5, 60) UNTIL({c})"
+        )
         example = template.format(call=call, c=source[until.span])
         until_span = Span(start, node.span.end)
         self.scope.report(codes.UNTIL_NOT_HERE, until_span, word=node.word, example=example)

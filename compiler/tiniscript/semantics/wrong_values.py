@@ -13,7 +13,7 @@ from tiniscript.base.words import OPPOSITE_MOVES, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
 from tiniscript.recovery.amounts import amount_values, is_amount
-from tiniscript.recovery.meanings import lexicon_meaning, meant_by
+from tiniscript.recovery.meanings import certain_concept, lexicon_meaning
 from tiniscript.semantics.comparisons import is_aside
 from tiniscript.semantics.named_values import value_of, yes_no_of
 from tiniscript.semantics.symbols import NUMBER, Operand, Scope
@@ -43,7 +43,7 @@ class WrongValues:
         if name in scope.def_names:
             scope.report(codes.NO_VALUE, span, word=name)
             return
-        concept = meant_by(name) or ""
+        concept = certain_concept(name) or ""
         text_before = scope.source.text[max(0, span.start - _MOST_CHARACTERS_BACK) : span.start]
         is_variable = concept == "TIME" and _BEFORE_TIME.search(text_before) is not None
         if concept == "BUTTON" or name == "BUTTON":

@@ -21,7 +21,7 @@ from tiniscript.studio.robot_link import BadRequest, Json, RobotLink
 ATTENDED_S = 0.5  # a page that is silent for longer does not drive
 LEFT_S = 3.0  # a page that is silent for longer has left
 LATCH_S = 2.0  # time after a teacher's STOP in which uploads under way are refused
-LOOK_S = 0.02
+POLL_INTERVAL_S = 0.02
 MOST_KEPT_NEWS = 1000  # news for a page that does not fetch them
 ASKED, CONFIRMED, SILENT = "asked", "confirmed", "silent"  # states of a teacher's STOP
 _DROPPABLE_EVENTS = ("SHOW", "TEXT", "PLACE")
@@ -130,7 +130,7 @@ class Attending:
 
     # -- the robot --------------------------------------------------------------------------------
 
-    def attend(self, link: RobotLink, limit_s: float = LOOK_S) -> None:
+    def attend(self, link: RobotLink, limit_s: float = POLL_INTERVAL_S) -> None:
         """Pass on waiting requests, and report new events."""
         if self._wants_stop:
             self._apply_news(link.news())  # no earlier stop confirms this one

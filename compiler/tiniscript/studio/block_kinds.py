@@ -55,7 +55,7 @@ def kind_of(word: Word) -> str:
 
 
 # fmt: off
-SUMS = {"ADD": "+", "SUB": "−", "MUL": "×", "DIV": "÷", "MOD": "%"}
+ARITHMETIC_SIGNS = {"ADD": "+", "SUB": "−", "MUL": "×", "DIV": "÷", "MOD": "%"}
 COMPARISONS = {"EQ": "=", "NE": "≠", "LT": "<", "LE": "≤", "GT": ">", "GE": "≥"}
 KINDS = {kind.name: kind for kind in (
     Kind("move", "move", ("number", "number"), words=MOVES, units=UNIT_OF, is_each_word=True),
@@ -87,7 +87,7 @@ KINDS = {kind.name: kind for kind in (
     Kind("truth", "decide", gives="truth", words=("TRUE", "FALSE"), says="%1"),
     Kind("time", "time", gives="number", part="TIME"),
     Kind("endless", "time", gives="number", part="FOREVER"),
-    Kind("math", "numbers", ("number", "number"), gives="number", words=tuple(SUMS), says="%2 %1 %3"),
+    Kind("math", "numbers", ("number", "number"), gives="number", words=tuple(ARITHMETIC_SIGNS), says="%2 %1 %3"),
     Kind("compare", "decide", ("any", "any"), gives="truth", words=tuple(COMPARISONS), says="%2 %1 %3"),
     Kind("logic", "decide", ("truth", "truth"), gives="truth", words=("AND", "OR"), says="%2 %1 %3"),
     Kind("not", "decide", ("truth",), gives="truth", part="NOT"),
@@ -100,19 +100,19 @@ KINDS = {kind.name: kind for kind in (
 )}
 # All other instructions: those with the same number of values are of one kind. Their text without a
 # `block/HORN` in the catalogue: `HORN = BEEP(0.5, 440)`, or the name.
-_PLAIN = [word for word in WORDS.values() if is_plain(word)]
-PLAIN = {
+_PLAIN_WORDS = [word for word in WORDS.values() if is_plain(word)]
+PLAIN_TEXTS = {
     word.text: f"{{{word.text}}} {word.usage.upper()} = {word.stands_for}"
     if word.stands_for else f"{{{word.text}}} {word.text}"
-    for word in _PLAIN
+    for word in _PLAIN_WORDS
 }
 KINDS |= {kind.name: kind for kind in (
     Kind(
         plain_kind(count), "time", ("number",) * count, is_each_word=True,
-        words=tuple(word.text for word in _PLAIN if len(word.arguments) == count),
+        words=tuple(word.text for word in _PLAIN_WORDS if len(word.arguments) == count),
         says=" ".join(f"%{k + 1}" for k in range(count + 1)),
     )
-    for count in sorted({0, *(len(word.arguments) for word in _PLAIN)})
+    for count in sorted({0, *(len(word.arguments) for word in _PLAIN_WORDS)})
 )}
 # fmt: on
 
@@ -134,7 +134,12 @@ def piece_of(kind: str, word: str) -> str:
     return f"{kind} {_KEY_SETS.get(name, name)}"
 
 
-SAYS = {**{kind.name: kind.says for kind in KINDS.values()}, **SUMS, **COMPARISONS, **PLAIN}
+BLOCK_TEXTS = {
+    **{kind.name: kind.says for kind in KINDS.values()},
+    **ARITHMETIC_SIGNS,
+    **COMPARISONS,
+    **PLAIN_TEXTS,
+}
 
 
 def table_data() -> dict[str, Any]:
@@ -142,4 +147,4 @@ def table_data() -> dict[str, Any]:
     kinds = {name: kind._asdict() for name, kind in KINDS.items()}
     for kind in kinds.values():
         del kind["name"], kind["says"]
-    return {"kinds": kinds, "says": {name: says for name, says in SAYS.items() if says}}
+    return {"kinds": kinds, "says": {name: says for name, says in BLOCK_TEXTS.items() if says}}

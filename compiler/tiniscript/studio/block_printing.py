@@ -13,7 +13,7 @@ from tiniscript.base.words import BLOCK_ENDS, FUNCTIONS, WORDS
 from tiniscript.studio.block_form import Block, Form, Stack, TextRange, Value
 from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.block_reading import LOOSE_PREFIX, LOOSE_VALUE_PREFIX
-from tiniscript.syntax.formatter import BEFORE_COMMENT, Row, lines_of
+from tiniscript.syntax.formatter import COMMENT_GAP, Row, lines_of
 from tiniscript.syntax.operators import BINARY, COMPARISON, MINUS, NOT
 
 ATOM = MINUS + 1  # needs no brackets anywhere
@@ -23,7 +23,7 @@ _WORDS_WITH_NOTE = frozenset((*BLOCK_ENDS.values(), "ELSE", "ELSEIF"))
 _NO_LINE = re.compile(r"[\r\n\0]+")
 
 
-class Printed(NamedTuple):
+class PrintedForm(NamedTuple):
     """`places` are those of the blocks of the body, in the order of the text; `lines` where each of
     their lines is, from 0."""
 
@@ -60,7 +60,7 @@ class _Line(NamedTuple):
     columns: tuple[tuple[int, int], ...]
 
 
-def format_blocks(form: Form) -> Printed:
+def format_blocks(form: Form) -> PrintedForm:
     """Return the text of a program's blocks, and where each of them is."""
     instructions: list[_Instruction] = []
     indexes_of_blocks: list[list[int]] = []  # indexes of each block's instructions
@@ -76,7 +76,7 @@ def format_blocks(form: Form) -> Printed:
         instruction_places += [
             (line_number, column_before + start, column_before + end) for start, end in line.columns
         ]
-    return Printed(
+    return PrintedForm(
         "".join(text + "\n" for text in texts),
         tuple(
             (
@@ -231,7 +231,7 @@ def _line(instructions: list[_Instruction], setup: str = "", end: str = "") -> _
 
 
 def _with_note(text: str, note: str) -> str:
-    return f"{text}{BEFORE_COMMENT}{note}" if note else text
+    return f"{text}{COMMENT_GAP}{note}" if note else text
 
 
 def _note(text: str) -> str:

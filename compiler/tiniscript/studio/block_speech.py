@@ -36,10 +36,10 @@ def mark_code(sentence: str, kit: Kit) -> str:
     if "`" in sentence:
         return sentence  # the sentence mentions its values
     parts, at = [], 0
-    while beginning := _BEGINNING.search(sentence, at):
-        start, word_end = beginning.start(), beginning.start() + len(beginning["word"])
+    while match := _BEGINNING.search(sentence, at):
+        start, word_end = match.start(), match.start() + len(match["word"])
         end = _end_of_code(sentence, start, kit)
-        parts += [sentence[at:start], f"`{sentence[start:end]}`" if end else beginning["word"]]
+        parts += [sentence[at:start], f"`{sentence[start:end]}`" if end else match["word"]]
         at = end or word_end
     return "".join((*parts, sentence[at:]))
 

@@ -36,7 +36,7 @@ PACKAGES, TYPES, PACKING, BUNDLING = STEPS = (
 # Measured with an empty cache, on Linux.
 NODE_MB, NPM_MB = 61, 40  # downloads of pip and npm
 NODE_MODULES_MB = 77  # size of the installed npm packages
-MINUTES = 2
+BUILD_MINUTES = 2
 
 
 class Tools(NamedTuple):

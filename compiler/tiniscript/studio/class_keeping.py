@@ -27,7 +27,7 @@ TEXT_CHARACTERS = 20_000  # most characters of a program
 MOST_PUPILS = 60
 MOST_WORKS = 120  # most works kept, for pupils present and absent
 MOST_LESSONS = 40
-FORM = 1  # version of the file's form; others are not read
+FORM_VERSION = 1  # version of the file's form; others are not read
 SAME_LESSON_S = 3600.0  # pupils of a class that was seen last before must join again
 FILE_BYTES = 24_000_000  # bytes of all works; a character may take six bytes
 _LESSON = re.compile(r"\w{1,60}")
@@ -115,7 +115,7 @@ class Keeper:
         aside."""
         try:
             state = json.loads(read_limited(path(), FILE_BYTES))
-            if not isinstance(state, dict) or state.get("form") != FORM:
+            if not isinstance(state, dict) or state.get("form") != FORM_VERSION:
                 raise ValueError
         except FileNotFoundError:
             return None
@@ -162,7 +162,7 @@ def _unread_path() -> Path:
 
 def _write(state: Json) -> None:
     """Write a class, so that not even a power cut loses it. Raises OSError or ValueError."""
-    data = json.dumps({"form": FORM, "kept_s": int(time()), **state}, ensure_ascii=False)
+    data = json.dumps({"form": FORM_VERSION, "kept_s": int(time()), **state}, ensure_ascii=False)
     replace(path(), data.encode("utf-8", "replace"), mode=0o600, is_lasting=True)
 
 

@@ -184,13 +184,13 @@ CONNECT_S = 10.0  # time for a page to take its turn
 QUEUE_S = 20.0  # a page that is silent for longer waits no more
 # A page that was heard since then may get a turn, and keeps one while others wait. It asks once a
 # second. With the time of one poll, the next one has waited less than 3 s.
-HERE_S = 2.0
+PRESENCE_S = 2.0
 # A page silent for longer may lose its place: at a full address, or to a pupil who returns with its
 # name.
 PLACE_S = 5.0
 REST_S = 10.0  # pause of a robot after a failed turn
 SILENT_S = 60.0  # silence after which a place in a full class may be given away
-OVER_S = 6.0  # time for pages to hear that the class is over
+END_NOTICE_S = 6.0  # time for pages to hear that the class is over
 # Wrong codes of a computer: twenty, then one in three seconds. A thousand million take a century.
 WRONG_CODE_RATE = (20, 1 / 3)
 # Burst and rate of a pupil's requests; a page that drives sends ten a second.
@@ -287,11 +287,11 @@ class Classroom:
         typed_name = plain_name(name)
         if not typed_name:
             return {"failure": "class_nameless"}
-        returning = self._returning_pupil(request.get("before"), typed_name, now_s)
-        if isinstance(returning, Pupil):  # the page has been away
-            returning.heard_s, returning.address = now_s, address
-            return {"token": returning.token, "name": returning.name}
-        if returning is None:  # a returning pupil is not counted twice
+        returning_pupil = self._returning_pupil(request.get("before"), typed_name, now_s)
+        if isinstance(returning_pupil, Pupil):  # the page has been away
+            returning_pupil.heard_s, returning_pupil.address = now_s, address
+            return {"token": returning_pupil.token, "name": returning_pupil.name}
+        if returning_pupil is None:  # a returning pupil is not counted twice
             same_pupils = [
                 pupil
                 for pupil in self._pupils_at(address)
@@ -306,16 +306,16 @@ class Classroom:
         pupils = list(self._pupil_by_token.values())
         if len(pupils) >= MOST_PUPILS and not self._give_place_away(now_s, SILENT_S, pupils):
             return {"failure": "class_full"}
-        if returning is None:
+        if returning_pupil is None:
             if self._work_count(address) >= WORKS_PER_PLACE * self._places_per_address:
                 return {"failure": "class_crowded"}
             if self._work_count() >= MOST_WORKS:
                 return {"failure": "class_full"}
-            returning = KeptWork(
+            returning_pupil = KeptWork(
                 free_name(typed_name, self._names()), typed_name, NOTHING, new_token()
             )
-        self._admit(returning, address, now_s)
-        return {"token": returning.token, "name": returning.name}
+        self._admit(returning_pupil, address, now_s)
+        return {"token": returning_pupil.token, "name": returning_pupil.name}
 
     def _admit(self, work: KeptWork, address: str, now_s: float) -> None:
         """Admit the author of this work to the class."""
@@ -372,7 +372,7 @@ class Classroom:
 
     def _report_page(self, pupil: Pupil, request: Json) -> Json:
         """A page reports its program, and hears its place: 0 is a turn, -1 none."""
-        self._hear_work(pupil, request)
+        self._update_work(pupil, request)
         robot_wish, hand_wish = request.get("wants"), request.get("hand")
         mates = self._mates(pupil)
         if robot_wish is False:
@@ -390,11 +390,11 @@ class Classroom:
         if self._ending:
             pupil.knows_end = True
             return {"over": self._ending}
-        turn, waiting = self._turn_of(mates), self._waiting_pupils()
+        turn, waiting_pupils = self._turn_of(mates), self._waiting_pupils()
         place = -1 if turn is None else 0
         for mate in mates:
-            if mate in waiting:
-                place = waiting.index(mate) + 1
+            if mate in waiting_pupils:
+                place = waiting_pupils.index(mate) + 1
         group, groups = self._groups.group_of(pupil.token), self._groups.overview()
         driver = turn.pupil if turn is not None else None
         given_work = next(
@@ -408,7 +408,7 @@ class Classroom:
         return {
             "name": pupil.name,
             "place": place,
-            "waiting": len(waiting),
+            "waiting": len(waiting_pupils),
             "robots": len(self._robots),
             "robot": turn.name if turn else "",
             "left_s": self._remaining_s(turn) if turn else 0,
@@ -429,7 +429,7 @@ class Classroom:
             ),
         }
 
-    def _hear_work(self, pupil: Pupil, request: Json) -> None:
+    def _update_work(self, pupil: Pupil, request: Json) -> None:
         """Update a pupil's work from a page; omitted parts stay. Raises BadRequest."""
         new_fields = {name: request[name] for name in Work._fields if request.get(name) is not None}
         if "robot" in new_fields:
@@ -445,9 +445,9 @@ class Classroom:
             pupil.is_right = request["is_right"]
         if request.get("own_robot") is not None:
             pupil.own_robot = OwnRobot.of(request["own_robot"])
-        self._hear_taken(pupil, request.get("took"))
+        self._confirm_receipt(pupil, request.get("took"))
 
-    def _hear_taken(self, pupil: Pupil, receipt: object) -> None:
+    def _confirm_receipt(self, pupil: Pupil, receipt: object) -> None:
         """A page says that it has what it was given: the very text proves it."""
         fields = receipt if isinstance(receipt, dict) else {}
         kept_work = self._kept_work_by_key.get(str(fields.get("key")))
@@ -575,7 +575,7 @@ class Classroom:
         assert pupil is not None
         if hosted_robot is None:
             # The page was closed, and a returning pupil keeps the place.
-            if now_s - pupil.heard_s > HERE_S:
+            if now_s - pupil.heard_s > PRESENCE_S:
                 pupil.queue_number = robot.queue_number
                 robot.end()
             elif now_s - robot.began_s > CONNECT_S:
@@ -588,14 +588,16 @@ class Classroom:
                 robot.free_at_s = now_s + REST_S
             robot.end()
         elif self._waiting_pupils() and (
-            now_s - robot.began_s >= self._turn_s or hosted_robot.attending.silent_s > HERE_S
+            now_s - robot.began_s >= self._turn_s or hosted_robot.attending.silent_s > PRESENCE_S
         ):
             robot.take_back()
 
     def _begin_turn(self, robot: ClassRobot, now_s: float) -> None:
         """Assign a robot to the next pupil, or to a present one of the same group."""
         for pupil in self._waiting_pupils():
-            present_mates = [mate for mate in self._mates(pupil) if now_s - mate.heard_s <= HERE_S]
+            present_mates = [
+                mate for mate in self._mates(pupil) if now_s - mate.heard_s <= PRESENCE_S
+            ]
             if present_mates and self._hosting.is_free(robot.port):
                 queue_number, pupil.queue_number = pupil.queue_number, None
                 present_mates[0].queue_number = queue_number
@@ -851,10 +853,10 @@ class Classroom:
                 pupil for pupil in self._pupil_by_token.values() if now_s - pupil.heard_s <= QUEUE_S
             ]
             are_told = all(pupil.knows_end for pupil in present_pupils)
-            return bool(self._ending) and (are_told or now_s - self._ended_s > OVER_S)
+            return bool(self._ending) and (are_told or now_s - self._ended_s > END_NOTICE_S)
 
     def _state(self) -> Json:
-        now_s, waiting = self._clock(), self._waiting_pupils()
+        now_s, waiting_pupils = self._clock(), self._waiting_pupils()
         return {
             "code": self.code,
             "turn_s": self._turn_s,
@@ -881,7 +883,7 @@ class Classroom:
                     "number": pupil.number,
                     "name": pupil.name,
                     "silent_s": round(now_s - pupil.heard_s),
-                    "place": waiting.index(pupil) + 1 if pupil in waiting else 0,
+                    "place": waiting_pupils.index(pupil) + 1 if pupil in waiting_pupils else 0,
                     "robot": turn.name or turn.port if (turn := self._turn(pupil)) else "",
                     "left_s": self._remaining_s(turn) if turn else 0,
                     "version": pupil.version,

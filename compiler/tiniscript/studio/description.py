@@ -54,7 +54,7 @@ def description() -> dict[str, Any]:
             "keys_every_ms": REPEAT_MS,
         },
         "class": {
-            "form": class_keeping.FORM,
+            "form": class_keeping.FORM_VERSION,
             "file_bytes": class_keeping.FILE_BYTES,
             "most_works": class_keeping.MOST_WORKS,
             "text_characters": class_keeping.TEXT_CHARACTERS,

@@ -51,8 +51,8 @@ MOST_MEMBERS = 4
 MOST_GROUPS = 30
 MOST_FOUNDED = 3  # groups with a program, by one pupil
 MOST_HELD_S = 8.0  # longest time that a request is held; slower connections are closed
-LOOK_S = 0.2  # interval between two looks at the robot's events
-GONE_S = 20.0  # a page silent for longer loses its place
+POLL_INTERVAL_S = 0.2  # interval between two looks at the robot's events
+ABSENCE_S = 20.0  # a page silent for longer loses its place
 MOST_CHANGES = 50  # most changes in a request
 CHANGE_BYTES = 64_000  # most bytes of a change as JSON; a whole program is smaller
 BYTES_PER_COST = 2000  # a change costs one for each of these that it begins
@@ -193,7 +193,7 @@ class Groups:
                 pupils = group.pupils
                 if token != TEACHER and len(pupils) >= MOST_MEMBERS:
                     silent_member = min(pupils, key=lambda pupil: pupil.heard_s)
-                    if now_s - silent_member.heard_s <= GONE_S:
+                    if now_s - silent_member.heard_s <= ABSENCE_S:
                         return {"failure": "group_full"}
                     del group.member_by_token[silent_member.token]
                 taken_marks = {member.mark for member in group.member_by_token.values()}
@@ -252,7 +252,7 @@ class Groups:
             member.heard_s = self._clock()
             self._drop_silent_teacher(group)
             is_slow = not self._decide(group, member, changes)
-            self._hear_caret(group, member, request)
+            self._update_caret(group, member, request)
             group.condition.notify_all()
             run_position = request.get("ran")
             if request.get("waits") is True and not changes:
@@ -277,7 +277,7 @@ class Groups:
     def _drop_silent_teacher(self, group: Group) -> None:
         """Remove a teacher whose page is silent; the page learns that when it returns."""
         teacher = group.member_by_token.get(TEACHER)
-        if teacher is not None and self._clock() - teacher.heard_s > GONE_S:
+        if teacher is not None and self._clock() - teacher.heard_s > ABSENCE_S:
             del group.member_by_token[TEACHER]
             _notify(group)
 
@@ -301,7 +301,7 @@ class Groups:
             and not group.runs.news_after(run_position, member.token)[1]
             and (left_s := end_s - monotonic()) > 0
         ):  # a robot's thread, which must not wait, wakes nobody
-            group.condition.wait(min(left_s, LOOK_S))
+            group.condition.wait(min(left_s, POLL_INTERVAL_S))
 
     def _decide(self, group: Group, member: Member, changes: list[object]) -> bool:
         """Decide on changes; return whether all of them were looked at. Raises BadRequest."""
@@ -328,7 +328,7 @@ class Groups:
                 group.condition.notify_all()
         return True
 
-    def _hear_caret(self, group: Group, member: Member, request: Json) -> None:
+    def _update_caret(self, group: Group, member: Member, request: Json) -> None:
         node_id, writes = request.get("at", member.node_id), request.get("writes", member.writes)
         if (
             not isinstance(node_id, str)
@@ -393,14 +393,14 @@ class Groups:
     def history_lines(self, group: Group) -> list[str]:
         """Return the newest of that, one a line, as the teacher's page shows it."""
         with group.condition:
-            deeds = [
+            actions = [
                 (
                     group.name_of_page.get(_page_name(taken_change), "?"),
                     ", ".join(map(_operation_text, taken_change.operations)),
                 )
                 for taken_change in reversed(group.program.taken_changes[-MOST_HISTORY_LINES:])
             ]
-        return [f"{who}: {did}" for who, did in deeds]
+        return [f"{member_name}: {action}" for member_name, action in actions]
 
     def end(self) -> None:
         """Forget all groups, and their stored data."""
@@ -453,7 +453,7 @@ class Groups:
                 }
                 members = row.get("members")
                 for member_data in members if isinstance(members, list) else ():
-                    self._bring_back(group, member_data, is_here)
+                    self._restore_member(group, member_data, is_here)
 
     def tidy(self) -> None:
         """Delete journals of groups that there are not any more."""
@@ -462,7 +462,7 @@ class Groups:
                 if path.name.partition(".")[0] not in self._group_by_key:
                     path.unlink()
 
-    def _bring_back(
+    def _restore_member(
         self, group: Group, member_data: object, is_here: Callable[[str], bool]
     ) -> None:
         if not isinstance(member_data, list) or len(member_data) != 3:

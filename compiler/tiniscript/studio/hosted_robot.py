@@ -21,7 +21,7 @@ from tiniscript.library.errors import RobotError, TiniScriptError
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import ConnectionLost
 from tiniscript.link.port_connection import PortConnection
-from tiniscript.studio.attending import LOOK_S, Attending
+from tiniscript.studio.attending import POLL_INTERVAL_S, Attending
 from tiniscript.studio.robot_link import RobotLink, robot_data
 
 PARTING_TIMEOUT_S = 8.0  # time to confirm a stop and close a port
@@ -133,7 +133,7 @@ class HostedRobot:
                 and monotonic() < end_s
                 and not self.was_left
             ):
-                earlier_robot.join(LOOK_S)
+                earlier_robot.join(POLL_INTERVAL_S)
         self._earlier_robots = ()
 
     def _ping_while_attended(self, client: Client, link: RobotLink) -> None:
@@ -176,7 +176,7 @@ class HostedRobot:
         end_s = monotonic() + opening.CONFIRM_TIMEOUT_S
         events: list[str | None] = []
         while monotonic() < end_s and "LOST" not in events:
-            news = link.news(LOOK_S)
+            news = link.news(POLL_INTERVAL_S)
             self.attending.queue_news(news)
             events = [news_item.get("event") for news_item in news]
             if "STOPPED" in events:

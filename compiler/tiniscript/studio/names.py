@@ -17,14 +17,14 @@ NAME_CHARACTERS = 24
 # Invisible letters and signs outside of the invisible categories.
 _BLANK = re.compile("[\u115f\u1160\u2800\u3164\uffa0\U00013441\U0001d159]")
 # Characters that only change their neighbours' look, or nothing.
-_UNSEEN = re.compile("[\u034f\u17b4\u17b5\u180b-\u180f\ufe00-\ufe0f\U000e0100-\U000e01ef]")
-_SHOWS_NOTHING = frozenset("CMZ")  # controls, marks without a letter, and spaces
+_INVISIBLE = re.compile("[\u034f\u17b4\u17b5\u180b-\u180f\ufe00-\ufe0f\U000e0100-\U000e01ef]")
+_INVISIBLE_CATEGORIES = frozenset("CMZ")  # controls, marks without a letter, and spaces
 
 
 def plain_name(typed_name: str) -> str:
     """Return a pupil's name as one line that hides nothing; empty if nothing of it is seen."""
     line = " ".join(_BLANK.sub(" ", normalize("NFC", typed_name)).split())
-    if all(category(letter)[0] in _SHOWS_NOTHING for letter in line):
+    if all(category(letter)[0] in _INVISIBLE_CATEGORIES for letter in line):
         return ""
     return printable(line, NAME_CHARACTERS)
 
@@ -52,7 +52,7 @@ def _looks(name: str) -> set[str]:
 def _case_folded(text: str) -> str:
     """Return a common form of all texts that look alike, as in Unicode standard 39."""
     table = _table()
-    text = _UNSEEN.sub("", text)
+    text = _INVISIBLE.sub("", text)
     for form in ("NFD", "NFKD"):  # the table contains what the normal forms leave
         text = normalize(form, text).translate(table)
     return normalize("NFC", text)

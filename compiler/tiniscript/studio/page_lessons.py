@@ -37,7 +37,7 @@ from tiniscript.virtual.score import Score
 from tiniscript.virtual.world import World
 
 MISTAKES = "mistakes"
-STEPS, TASK = 2, 3  # indexes of headings, after the list of materials
+STEPS_HEADING, TASK_HEADING = 2, 3  # indexes of headings, after the list of materials
 
 
 def titles(language: str) -> list[dict[str, Any]]:
@@ -59,13 +59,13 @@ def steps(number: int, language: str, form: str = TEXT) -> list[dict[str, Any]]:
     for block in blocks(studio_part(page)):
         if block.kind == "heading":
             section += 1
-            if section == TASK:
+            if section == TASK_HEADING:
                 blocks_and_hints.append(([], []))
         elif section == 0 and block.kind == "paragraph":
             intro_blocks.append(block)
-        elif section == STEPS and block.kind == "steps":
+        elif section == STEPS_HEADING and block.kind == "steps":
             blocks_and_hints += (([Block("paragraph", (row,))], []) for row in block.rows)
-        elif section in (STEPS, TASK) and block.kind in ("paragraph", "program"):
+        elif section in (STEPS_HEADING, TASK_HEADING) and block.kind in ("paragraph", "program"):
             text = block.rows[0][0] if block.rows else ""
             if text.startswith(HINT):
                 blocks_and_hints[-1][1].append(text.removeprefix(HINT))
@@ -107,8 +107,8 @@ def new_pieces(number: int, language: str) -> list[str]:
         piece for earlier in range(1, number) for piece in _pieces_with_use(earlier, language)
     )
     own_pieces = _pieces_with_use(number, language)
-    fewest = min((earlier_counts[piece] for piece in own_pieces), default=0)
-    return sorted({piece for piece, use in own_pieces if earlier_counts[piece, use] == fewest})
+    fewest_uses = min((earlier_counts[piece] for piece in own_pieces), default=0)
+    return sorted({piece for piece, use in own_pieces if earlier_counts[piece, use] == fewest_uses})
 
 
 @cache
@@ -210,7 +210,7 @@ class LessonCheck:
         lesson = _lesson(number)
         lesson = lesson._replace(robot=shipped_name_in(data) or lesson.robot)
         self._language = language
-        self._worlds = lesson.world_count
+        self._world_count = lesson.world_count
         self._marking: Marking | None = None
         profile = profile_of(lesson.robot)
         self._kit = profile.kit
@@ -220,7 +220,7 @@ class LessonCheck:
             text = compilation.source.text
             self._marking = Marking(text, image_maker(profile), profile, lesson, seeds)
 
-    def go(self, most_ms: int) -> dict[str, Any]:
+    def advance(self, most_ms: int) -> dict[str, Any]:
         """Advance the robot's time by at most `most_ms`.
 
         `verdict` is empty until it ends. `seed` is that of the world where it is, or where the
@@ -228,7 +228,7 @@ class LessonCheck:
         """
         if self._marking is None:
             return self._verdict_json(MISTAKES, 0)
-        outcome = self._marking.go(most_ms)
+        outcome = self._marking.advance(most_ms)
         if outcome is None:
             return self._verdict_json("", self._marking.seed)
         return self._verdict_json(outcome.verdict, outcome.seed, outcome)
@@ -248,7 +248,7 @@ class LessonCheck:
             until_ms = outcome.run.end_ms if failure_ms is None else failure_ms
             run = {"seed": outcome.run.seed, "until_ms": until_ms}
         return {
-            "verdict": verdict, "seed": seed, "worlds": self._worlds, "run": run,
+            "verdict": verdict, "seed": seed, "worlds": self._world_count, "run": run,
             "said": sentences, "block_said": block_sentences, "spoken": code_blocks,
         }  # fmt: skip
 
@@ -271,9 +271,9 @@ class JudgedRun(Simulation):
         self._owed_ms = 0  # time shorter than the judge's step, carried over
         assert self.robot.started_ms is not None, "the program does not begin"
         self._end_ms = self.robot.started_ms + min(until_ms, round(lesson.seconds * 1000))
-        self.go(0)
+        self.advance(0)
 
-    def go(self, duration_ms: int) -> None:
+    def advance(self, duration_ms: int) -> None:
         """Advance time in the judge's steps, which check the robot's place."""
         robot = self.robot
         self._owed_ms += duration_ms
@@ -285,7 +285,7 @@ class JudgedRun(Simulation):
             robot.rest()
 
     def step(self, limit_ms: int) -> None:
-        self.go(STEP_MS)
+        self.advance(STEP_MS)
 
     def press(self, keys: int, x: int, y: int) -> None:
         """Ignore keys, which only the judge presses."""

@@ -97,7 +97,7 @@ class PageLine(LinkConnection):
         self.session.stop(self.now_ms)
         return self.now_ms
 
-    def go(self, data: bytes, now_ms: int) -> bytes:
+    def advance(self, data: bytes, now_ms: int) -> bytes:
         """Take the bytes that have arrived; return those to send."""
         self.note_heard(data)
         self.now_ms = now_ms
@@ -120,7 +120,7 @@ class PageRobot:
         self.link = RobotLink(self.line, language)
         self._last_ms: int | None = None
 
-    def go(self, data: bytes, now_ms: int, requests: list[Json]) -> Json:
+    def advance(self, data: bytes, now_ms: int, requests: list[Json]) -> Json:
         """Advance the session with the received bytes and new requests.
 
         Returns the bytes to `send` as hexadecimal digits, the time at which to call again at the
@@ -132,11 +132,11 @@ class PageRobot:
             self.link.stop()
         for request in requests:
             self.link.ask(request)
-        data_to_send = self.line.go(data, now_ms)
+        data_to_send = self.line.advance(data, now_ms)
         answer: Json = {
             "send": data_to_send.hex(),
             "news": self.link.news(),
-            "wakes_ms": self.line.session.wakes_at(),
+            "wakes_ms": self.line.session.next_wake_ms(),
         }
         if self.keys.has_changed:
             answer["keys"] = self.keys.file()
@@ -160,7 +160,7 @@ def _connect(fields: Json, data: bytes) -> Json:
 def _link(fields: Json, data: bytes) -> Json:
     """Go on with the session; `data` has arrived."""
     assert _robot is not None, "no robot is connected"
-    return _robot.go(data, fields["now_ms"], fields["asked"])
+    return _robot.advance(data, fields["now_ms"], fields["asked"])
 
 
 def _import_keys(fields: Json, data: bytes) -> Json:

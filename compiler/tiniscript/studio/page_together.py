@@ -11,9 +11,9 @@ from difflib import SequenceMatcher
 from typing import Any, NamedTuple
 
 from tiniscript.studio.block_form import Form, from_data, in_order
-from tiniscript.studio.block_printing import Printed, format_blocks
+from tiniscript.studio.block_printing import PrintedForm, format_blocks
 from tiniscript.studio.block_reading import split_loose
-from tiniscript.syntax.formatter import BEFORE_COMMENT
+from tiniscript.syntax.formatter import COMMENT_GAP
 from tiniscript.together.form import Refused, data_of_change
 from tiniscript.together.page import Page
 from tiniscript.together.tree import ARM, NOTE, Tree, first_word
@@ -75,7 +75,7 @@ def step(fields: Json, data: bytes) -> Json:
     rows, loose = split_loose(text_rows)
     page.type(rows, caret, is_line_edited)
     page.flush()
-    printed_form: Printed | None = None
+    printed_form: PrintedForm | None = None
     if "blocks" in fields and blocks is not None:
         form = from_data(fields["blocks"]["form"])
         printed_form = format_blocks(form)
@@ -131,7 +131,11 @@ def _write_blocks(page: Page, shown_blocks: ShownBlocks, form: Form, ids: list[s
 
 
 def _owners(
-    rows: list[str], printed_form: Printed, form: Form, ids: list[str], shown_blocks: ShownBlocks
+    rows: list[str],
+    printed_form: PrintedForm,
+    form: Form,
+    ids: list[str],
+    shown_blocks: ShownBlocks,
 ) -> list[str]:
     """Return the instruction of each line of changed blocks; new lines have none."""
     tree = shown_blocks.page.view
@@ -167,7 +171,7 @@ def _pair_arms(arm_texts: list[str], tree: Tree, arms: list[str]) -> list[tuple[
 
 
 def _instruction_in(row: str) -> str:
-    return row.split(BEFORE_COMMENT + "//")[0].strip().rstrip(";")
+    return row.split(COMMENT_GAP + "//")[0].strip().rstrip(";")
 
 
 def _rows(text: str, edited_line: int | None) -> list[str]:
@@ -259,10 +263,16 @@ def _with_ends(text: str) -> list[str]:
     return [row + "\n" for row in rows[:-1]] + [rows[-1]] * bool(rows[-1])
 
 
-def _changes_in_row(old: str, new: str, start: int) -> list[tuple[int, int, str]]:
+def _changes_in_row(old_text: str, new_text: str, start: int) -> list[tuple[int, int, str]]:
     return [
-        (start + _utf16_length(old[:i1]), start + _utf16_length(old[:i2]), new[j1:j2])
-        for tag, i1, i2, j1, j2 in SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
+        (
+            start + _utf16_length(old_text[:i1]),
+            start + _utf16_length(old_text[:i2]),
+            new_text[j1:j2],
+        )
+        for tag, i1, i2, j1, j2 in SequenceMatcher(
+            None, old_text, new_text, autojunk=False
+        ).get_opcodes()
         if tag != "equal"
     ]
 

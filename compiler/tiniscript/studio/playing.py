@@ -17,7 +17,7 @@ from tiniscript.robots import load
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.studio.recordings import (
-    CUT,
+    CUT_EVENTS,
     HALT,
     HELD,
     MOST_MS,
@@ -154,15 +154,15 @@ class PlayedRun(Simulation):
     def is_over(self) -> bool:
         return self._is_over
 
-    def go(self, duration_ms: int) -> None:
+    def advance(self, duration_ms: int) -> None:
         """Advance time, at most to the end of the recording."""
         if self.recording.is_virtual:
-            self._go_again(duration_ms)
+            self._advance_again(duration_ms)
         else:
-            self._go_beside(duration_ms)
+            self._advance_beside(duration_ms)
 
     def step(self, limit_ms: int) -> None:
-        self.go(STEP_MS)
+        self.advance(STEP_MS)
 
     def press(self, keys: int, x: int, y: int) -> None:
         """Ignore keys, because only the recorded person presses them."""
@@ -197,7 +197,7 @@ class PlayedRun(Simulation):
 
     # -- a virtual robot's run, again -------------------------------------------------------------
 
-    def _go_again(self, duration_ms: int) -> None:
+    def _advance_again(self, duration_ms: int) -> None:
         for _ in range(duration_ms):
             if self._is_over:
                 return
@@ -208,7 +208,7 @@ class PlayedRun(Simulation):
             if is_whole:
                 return self._end()
 
-    def _let_in(self) -> None:
+    def _apply_inputs(self) -> None:
         while self._next_input < len(self._inputs) and self._is_due(self._inputs[self._next_input]):
             row = self._inputs[self._next_input]
             self._next_input += 1
@@ -271,7 +271,7 @@ class PlayedRun(Simulation):
 
     # -- a real robot's run, beside it ------------------------------------------------------------
 
-    def _go_beside(self, duration_ms: int) -> None:
+    def _advance_beside(self, duration_ms: int) -> None:
         for _ in range(duration_ms):
             if self._is_over:
                 return
@@ -434,7 +434,7 @@ class PlayedRun(Simulation):
                     "time", count, line, recorded_row, virtual_row, "", virtual_row.ms + started_ms
                 )
         count = len(recorded_rows)
-        cut_event = rows[-1].event if rows[-1].event in CUT else ""
+        cut_event = rows[-1].event if rows[-1].event in CUT_EVENTS else ""
         if self._first_unread is not None:
             return self._unread_parting(count, started_ms)
         if cut_event in ("", "STOPPED") and len(virtual_rows) > count:
@@ -456,7 +456,7 @@ def play(playable: PlayableRecording, world: World | None = None) -> PlayedRun:
     """Return the run, when it is over. Raises WorldRefused."""
     run = PlayedRun(playable, world)
     while not run.is_over:
-        run.go(STEP_MS)
+        run.advance(STEP_MS)
     return run
 
 

@@ -39,7 +39,11 @@ VIRTUAL, REAL = "virtual", "real"
 KEYS, DOWN, UP, HALT, HELD = "KEYS", "BUTTON DOWN", "BUTTON UP", "HALT", "HALT HELD"
 READ, UNREAD = "READ", "UNREAD"  # a reading, and that some of its sensor are missing from then on
 END = "END"  # the recording reaches as far as this row, the last one
-CUT = ("STOPPED", "LOST", "MISSED")  # the end of a real robot's recording, not of its program
+CUT_EVENTS = (
+    "STOPPED",
+    "LOST",
+    "MISSED",
+)  # the end of a real robot's recording, not of its program
 _EVENT = re.compile(r"[A-Z_]{1,20}(?: [A-Za-z0-9_.\-]{1,60}){0,2}")
 _KEYS = re.compile(r"KEYS (\d{1,3}) (-?\d{1,3}) (-?\d{1,3})")
 _REAL = re.compile(
@@ -127,7 +131,7 @@ class Rows:
         self.rows: list[Row] = []
         self.is_full = False
         self._last_values: dict[str, str] = {}
-        self._bytes = 0
+        self._byte_count = 0
 
     def add(self, row: Row) -> bool:
         """Take a row; return whether the file has it."""
@@ -136,8 +140,8 @@ class Rows:
             if self._last_values.get(name) == value:
                 return False
             self._last_values[name] = value
-        self._bytes += len(encode_row(row)) + 1
-        self.is_full = self.is_full or self._bytes > MOST_ROW_BYTES or row.ms > MOST_MS
+        self._byte_count += len(encode_row(row)) + 1
+        self.is_full = self.is_full or self._byte_count > MOST_ROW_BYTES or row.ms > MOST_MS
         if self.is_full:
             return False
         self.rows.append(row)
@@ -234,7 +238,7 @@ def decode(data: bytes) -> Recording:
         last_ms = last_ms if is_late else row.ms
         if row.ms > MOST_MS:
             raise BadRecording("too_long", number)
-        if rows and not recording.is_virtual and rows[-1].event in CUT and row.event != END:
+        if rows and not recording.is_virtual and rows[-1].event in CUT_EVENTS and row.event != END:
             raise BadRecording("unreadable", number)
         rows.append(row)
     if not rows or rows[-1].event != END:

@@ -73,9 +73,9 @@ class Simulation:
         is_taken = upload.outcome is not None and upload.outcome.status == OK
         assert self.held_at is not None or is_taken, "not taken"
         self._hold_before(is_stepping=False)
-        self.go(0)
+        self.advance(0)
 
-    def go(self, duration_ms: int) -> None:
+    def advance(self, duration_ms: int) -> None:
         """Advance time, unless the program pauses.
 
         After a fault a little longer, until the robot has reported its place.
@@ -105,7 +105,7 @@ class Simulation:
         for _ in range(limit_ms):
             if self.held_at is not None or not self.robot.is_running:
                 break
-            self.go(1)
+            self.advance(1)
         self._hold_before(is_stepping=False)
 
     @property
@@ -138,13 +138,13 @@ class Simulation:
             if self.held_at is not None:
                 break
             if not self._is_held_midway and self._upload.outcome is not None:
-                self._let_in()
+                self._apply_inputs()
             self._computer.wait(1)
             self._is_held_midway = self.held_at is not None
             self._score.update(self.robot)
         self._take_events()
 
-    def _let_in(self) -> None:
+    def _apply_inputs(self) -> None:
         """Pass a person's waiting inputs to the robot."""
         inputs, self._waiting_inputs = self._waiting_inputs, []
         for event in inputs:
@@ -209,9 +209,9 @@ class Simulation:
     def push(self) -> None:
         """Push the start button."""
         self._waiting_inputs.append(DOWN)
-        self.go(PUSH_MS)
+        self.advance(PUSH_MS)
         self._waiting_inputs.append(UP)
-        self.go(1)
+        self.advance(1)
 
     def press(self, keys: int, x: int, y: int) -> None:
         """Hold these keys of a remote control and its pad in this position until the next call, at

@@ -189,7 +189,7 @@ def _lesson_check(fields: Json, data: bytes) -> Json:
 
 HANDLERS: dict[str, Callable[[Json, bytes], Json]] = {
     "power_on": _power_on,
-    "go": _driving_request(lambda robot, fields: robot.go(fields["duration_ms"])),
+    "go": _driving_request(lambda robot, fields: robot.advance(fields["duration_ms"])),
     "step": _driving_request(lambda robot, fields: robot.step(fields["limit_ms"])),
     "go_on": _driving_request(lambda robot, fields: robot.go_on()),
     "breakpoints": _driving_request(
@@ -212,5 +212,5 @@ HANDLERS: dict[str, Callable[[Json, bytes], Json]] = {
     },
     "lesson_world": _lesson_world,
     "lesson_check": _lesson_check,
-    "lesson_go": lambda fields, data: _lesson_check_now.go(fields["most_ms"]),
+    "lesson_go": lambda fields, data: _lesson_check_now.advance(fields["most_ms"]),
 }

@@ -24,7 +24,7 @@ from tiniscript.studio.block_reading import LOOSE_PREFIX, read_blocks
 from tiniscript.studio.block_speech import blocks_of, codes_in, mark_code
 
 Json = dict[str, Any]
-TOGETHER = "tiniscript.studio.page_together"
+TOGETHER_MODULE = "tiniscript.studio.page_together"
 MOST_BLOCKS = 1500  # most blocks that a page can move around
 
 
@@ -144,7 +144,7 @@ def _request_handler(action: str) -> Callable[[Json, bytes], Json]:
         "group_"
     ):  # the page has loaded this module by now; its first archive lacks it
         sys.path_importer_cache.clear()
-        handlers: dict[str, Callable[[Json, bytes], Json]] = import_module(TOGETHER).HANDLERS
+        handlers: dict[str, Callable[[Json, bytes], Json]] = import_module(TOGETHER_MODULE).HANDLERS
         return handlers[action]
     if action in ("connect", "link", "import_keys"):
         from tiniscript.studio.page_line import HANDLERS

@@ -16,7 +16,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.syntax.ast import Argument, Part
 from tiniscript.syntax.cursor import INSTRUCTION_ENDS, VALUE_ENDS, Cursor
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, UNKNOWN_SIGN, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, COMPARISON, MINUS, NOT, OPEN, SIGNS, Postfix
 from tiniscript.syntax.reporter import Failed, Reporter
 
@@ -153,7 +153,7 @@ class ExpressionParser:
         tokens = cursor.tokens
         while True:
             token = cursor.peek_inner() if postfix.open_bracket_count else tokens[cursor.i]
-            if token.kind not in VALUE_ENDS and token.kind is not ODD:
+            if token.kind not in VALUE_ENDS and token.kind is not UNKNOWN_SIGN:
                 binary = BINARY.get(token.text)
                 if binary is not None:
                     if postfix.open_bracket_count:
@@ -239,7 +239,7 @@ class ExpressionParser:
         previous = (
             self.cursor.tokens[self.cursor.index_before(self.cursor.i)] if self.cursor.i else token
         )
-        hints = {} if previous.kind is ODD else {"before": previous.text}
+        hints = {} if previous.kind is UNKNOWN_SIGN else {"before": previous.text}
         self.reporter.fail(codes.MISSING_VALUE, token.span or previous.span, **hints)
 
     def ends_above(self, token: Token) -> bool:
@@ -267,7 +267,7 @@ class ExpressionParser:
 
     def reject_unknown_character(self, token: Token) -> None:
         """A token that the language does not have."""
-        if token.kind is not ODD:
+        if token.kind is not UNKNOWN_SIGN:
             return
         first_character, is_gap = token.text[0], not token.text.strip("_")  # a gap to fill
         code = (

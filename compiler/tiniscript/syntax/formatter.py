@@ -16,7 +16,7 @@ from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Scan, Token, scan
 from tiniscript.syntax.operators import SIGNS
 
 INDENT = "  "
-BEFORE_COMMENT = "  "
+COMMENT_GAP = "  "
 # `//comment` becomes `// comment`. More spaces stay, and so do rulers like `/////`.
 _TIGHT_COMMENT = re.compile(r"\A//(?=[^/\s])")
 
@@ -157,7 +157,7 @@ def _row(group: list[Piece], is_single_line: bool) -> Row:
         word = group[-1].tokens[0].text
     comment = " ".join(group[-1].comments)
     if text and comment:
-        text += BEFORE_COMMENT
+        text += COMMENT_GAP
     return Row(word, text + comment, first_piece.follows_blank)
 
 

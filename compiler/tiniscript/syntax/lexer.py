@@ -17,7 +17,7 @@ WORD = "word"
 NUMBER = "number"
 NEWLINE = "newline"
 END = "end"
-ODD = "odd"
+UNKNOWN_SIGN = "odd"
 
 DASHES = "\u2010\u2011\u2012\u2013\u2014\u2015\u2212"
 DEGREES = "°º"  # signs for DEG
@@ -89,7 +89,7 @@ def scan(text: str) -> Scan:
         elif group == "comment":
             comments.append(Token("comment", match.group(), start, end))
         else:
-            kind, token_text = _FIXED_TOKENS.get(group or "", (ODD, match.group()))
+            kind, token_text = _FIXED_TOKENS.get(group or "", (UNKNOWN_SIGN, match.group()))
             add(new_token(Token, (kind, token_text, start, end)))
     add(Token(END, "", len(text), len(text)))
     return Scan(tokens, comments, wrong_checksums)

@@ -23,7 +23,7 @@ BINARY: Final = {
 }  # fmt: skip
 COMPARISONS = frozenset(sign for _, sign in COMPARATORS)
 SIGNS = frozenset(sign for sign in BINARY if not sign.isalpha())
-SUMS = SIGNS - COMPARISONS  # + - * / %
+ARITHMETIC_SIGNS = SIGNS - COMPARISONS  # + - * / %
 SIGN_OF: Final = {name: sign for sign, (_, name) in BINARY.items()}
 # The comparison that is TRUE when another is not.
 OPPOSITES: Final = {
@@ -67,7 +67,7 @@ class Postfix:
 
     def reduce(self) -> Operator | None:
         """Apply what waits since the innermost open bracket, and return that bracket."""
-        waiting = self.pending_operators
-        while waiting and waiting[-1].precedence != OPEN:
+        operators = self.pending_operators
+        while operators and operators[-1].precedence != OPEN:
             self.apply()
-        return waiting[-1] if waiting else None
+        return operators[-1] if operators else None

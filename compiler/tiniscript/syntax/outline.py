@@ -143,8 +143,8 @@ class _Line(Parser):
             raise Failed  # a number is no question
         return argument
 
-    def own_name(self, word: Token, following: Token) -> None:
-        is_called = following.kind == "("  # the number of values is checked later
+    def own_name(self, word: Token, following_token: Token) -> None:
+        is_called = following_token.kind == "("  # the number of values is checked later
         names = (
             {name for name, _ in self._names_with_count}
             if is_called

@@ -38,7 +38,7 @@ from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.cursor import INSTRUCTION_ENDS, Cursor
 from tiniscript.syntax.expressions import ExpressionParser
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
-from tiniscript.syntax.operators import SUMS
+from tiniscript.syntax.operators import ARITHMETIC_SIGNS
 from tiniscript.syntax.reporter import Failed, Reporter
 
 # Messages about a word of the language that is not a command, by its role.
@@ -54,10 +54,10 @@ class ParsedText(NamedTuple):
 
 def parse(source: Source) -> ParsedText:
     """Return the AST of a program, with all mistakes of its syntax."""
-    scanned = scan(source.text)
-    parser = Parser(source, scanned)
+    scan_result = scan(source.text)
+    parser = Parser(source, scan_result)
     program = parser.program()
-    return ParsedText(program, scanned, parser.reporter.diagnostics)
+    return ParsedText(program, scan_result, parser.reporter.diagnostics)
 
 
 class Parser:
@@ -175,12 +175,12 @@ class Parser:
         self.reject_arguments(word)
         self.blocks.current_body.append(Break(word.span))
 
-    def own_name(self, word: Token, following: Token) -> None:
+    def own_name(self, word: Token, following_token: Token) -> None:
         """A word that may be the name of a device or a DEF of the program, if no other follows
         it."""
-        if following.kind == "(" or following.kind in INSTRUCTION_ENDS:
+        if following_token.kind == "(" or following_token.kind in INSTRUCTION_ENDS:
             return
-        if word.text in self.variables and following.kind in SUMS:
+        if word.text in self.variables and following_token.kind in ARITHMETIC_SIGNS:
             span = self.expressions.expression(is_in_brackets=False).span
             fix = f"{word.text} = {word.text}{self.cursor.source[Span(word.end, span.end)]}"
             self.reporter.fail(codes.VARIABLE_ALONE, span, name=word.text, fix=fix)

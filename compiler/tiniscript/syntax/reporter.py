@@ -16,8 +16,8 @@ class Failed(Exception):
 class Reporter:
     """`diagnostics` begins with those of the lexer."""
 
-    def __init__(self, of_lexer: Sequence[Diagnostic]) -> None:
-        self.diagnostics = [*of_lexer]
+    def __init__(self, lexer_diagnostics: Sequence[Diagnostic]) -> None:
+        self.diagnostics = [*lexer_diagnostics]
 
     def report(self, code: Code, span: Span, **values: str) -> None:
         self.diagnostics.append(Diagnostic(code, span, values))

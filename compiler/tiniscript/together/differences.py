@@ -392,9 +392,9 @@ def _longest_increasing(items: list[str], position_of: Callable[[str], int]) -> 
         predecessors.append(ends[i - 1] if i else -1)
         tails[i : i + 1] = [position]
         ends[i : i + 1] = [k]
-    staying = set()
+    staying_ids = set()
     k = ends[-1] if ends else -1
     while k >= 0:
-        staying.add(items[k])
+        staying_ids.add(items[k])
         k = predecessors[k]
-    return staying
+    return staying_ids

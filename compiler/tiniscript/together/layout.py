@@ -13,7 +13,7 @@ from typing import NamedTuple
 from tiniscript.base.source import Source
 from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.syntax.formatter import (
-    BEFORE_COMMENT,
+    COMMENT_GAP,
     Row,
     format_source,
     instruction_text,
@@ -34,7 +34,7 @@ from tiniscript.together.tree import (
 )
 
 _ENDS = frozenset(BLOCK_ENDS.values())
-OWN, OF_END = "own", "end"  # the line of an instruction, and that of the end of its block
+OWN_LINE, END_LINE = "own", "end"  # the line of an instruction, and that of the end of its block
 Key = tuple[str, str]  # the id of a node, and one of these
 
 
@@ -126,10 +126,10 @@ def _entries(tree: Tree, container: str = ROOT) -> Iterable[_Entry]:
         if id == START and not node.text:
             continue
         word = "" if node.kind in (NOTE, START) else first_word(node.text)
-        yield _Entry((id, OWN), word, node.text, node.note, node.apart)
+        yield _Entry((id, OWN_LINE), word, node.text, node.note, node.apart)
         if node.kind == BLOCK:
             yield from _entries(tree, id)
-            yield _Entry((id, OF_END), BLOCK_ENDS[word], BLOCK_ENDS[word], node.end, False)
+            yield _Entry((id, END_LINE), BLOCK_ENDS[word], BLOCK_ENDS[word], node.end, False)
 
 
 def tree_lines(tree: Tree) -> list[Line]:
@@ -152,7 +152,7 @@ def tree_lines(tree: Tree) -> list[Line]:
             text += next_entry.text
             line_keys.append(next_entry.key)
         text += ";" if word and not is_alone else ""
-        text += BEFORE_COMMENT + note if note else ""
+        text += COMMENT_GAP + note if note else ""
         rows.append(Row("" if is_alone else word, text, is_apart))
         keys.append(tuple(line_keys))
         k += 1

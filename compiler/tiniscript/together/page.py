@@ -34,8 +34,8 @@ from tiniscript.together.form import (
     tree_of,
 )
 from tiniscript.together.layout import (
-    OF_END,
-    OWN,
+    END_LINE,
+    OWN_LINE,
     Key,
     Line,
     Unparsed,
@@ -496,7 +496,9 @@ class Page:
         """Give a finished line the id of the deleted line that it replaces."""
         for hunk in hunks:
             rows = [row for row in self.lines[hunk.first_line : hunk.end_line] if row.strip()]
-            gone_ids = [id for id, role in hunk.covered_keys if role == OWN and id not in self.view]
+            gone_ids = [
+                id for id, role in hunk.covered_keys if role == OWN_LINE and id not in self.view
+            ]
             if len(rows) != 1 or not gone_ids:
                 continue
             try:
@@ -590,7 +592,7 @@ class Page:
                 continue
             text = dict(first.fields).get(TEXT, "")
             if text and first.id in self.base.former_place_by_id and kind_of(text) == INSTRUCTION:
-                own_key = (first.id, OWN)
+                own_key = (first.id, OWN_LINE)
                 self.drafts.append(Draft([text], (own_key,), own_key, True))
 
     def _rebase(self) -> None:
@@ -675,7 +677,7 @@ class Page:
                 break
             container, previous, _ = self.view.former_place_by_id[id]
             id = previous or container
-            for key in ((id, OF_END), (id, OWN)) if previous else ((id, OWN),):
+            for key in ((id, END_LINE), (id, OWN_LINE)) if previous else ((id, OWN_LINE),):
                 if key in present_keys:
                     return key
         return None

@@ -37,7 +37,7 @@ SLIP_RATIO = 0.5  # motion from a push at the side, as a share of that from a pu
 DECISION_INTERVAL_MS = 10.0  # time between two decisions of a rival
 # Range of a rival's sight, and its angle to each side.
 SIGHT_CM, SIGHT_RADIANS = 100.0, math.radians(25)
-BACK_MS, AROUND_DEGREES = (
+BACK_UP_MS, TURN_AWAY_DEGREES = (
     300.0,
     150.0,
 )  # at an edge it backs up for this time, and turns by this angle
@@ -55,7 +55,7 @@ class Mover:
         self.wanted_speeds = STANDSTILL  # percent of each wheel, as its motors are set
         self.left = self.right = 0.0  # current speeds of its wheels
         self.aside_cm_s = 0.0  # cm in a second, to its left
-        self._turn = math.radians(body.turn_s)
+        self._turn_radians_s = math.radians(body.turn_s)
         self._spine: Segment | None = None
         self._free_cm = 0.0  # no obstacle is nearer
 
@@ -77,29 +77,29 @@ class Mover:
         """Return the speed of `point` in a direction, in cm/s."""
         ahead, aside, lever = self._push_parts(point, direction)
         percent_cm_s = self.body.speed_cm_s / 100
-        turning = (self.right - self.left) / 200 * self._turn
+        turning = (self.right - self.left) / 200 * self._turn_radians_s
         return (
             (self.left + self.right) / 2 * percent_cm_s * ahead
             + self.aside_cm_s * aside
             + turning * lever
         )
 
-    def ease(self, point: Point, direction: Point) -> float:
+    def speed_gain(self, point: Point, direction: Point) -> float:
         """Return the increase of that speed for a push of one percent of the stall force."""
         ahead, aside, lever = self._push_parts(point, direction)
         full_cm_s = self.body.speed_cm_s
         straight = (ahead * ahead + SLIP_RATIO * aside * aside) * full_cm_s
-        return (straight + (self._turn * lever) ** 2 / full_cm_s) / 100
+        return (straight + (self._turn_radians_s * lever) ** 2 / full_cm_s) / 100
 
     def push(self, point: Point, direction: Point, percent: float) -> None:
         ahead, aside, lever = self._push_parts(point, direction)
         full_cm_s = self.body.speed_cm_s
-        turning = lever * self._turn / full_cm_s
+        turning = lever * self._turn_radians_s / full_cm_s
         self.left += percent * (ahead - turning)
         self.right += percent * (ahead + turning)
         self.aside_cm_s += percent / 100 * SLIP_RATIO * aside * full_cm_s
 
-    def go(self) -> None:
+    def move(self) -> None:
         old_pose = self.pose
         if not (self.left or self.right or self.aside_cm_s):
             return
@@ -168,8 +168,8 @@ class Opponent(Mover):
             self.wanted_speeds = STANDSTILL
             return
         if not self._manoeuvres and self._is_at_edge():
-            around_ms = AROUND_DEGREES / (self.body.turn_s * power / 100) * 1000
-            self._manoeuvres = [(BACK_MS, (-power, -power)), (around_ms, (-power, power))]
+            around_ms = TURN_AWAY_DEGREES / (self.body.turn_s * power / 100) * 1000
+            self._manoeuvres = [(BACK_UP_MS, (-power, -power)), (around_ms, (-power, power))]
         if self._manoeuvres:
             (left_ms, self.wanted_speeds), *later = self._manoeuvres
             left_ms -= DECISION_INTERVAL_MS
@@ -270,8 +270,8 @@ class Bout(Driving):
             mover.begin()
         self._push_all()
         for mover in self._movers:
-            mover.go()
-        self._part_all(old_poses)
+            mover.move()
+        self._separate_bodies(old_poses)
         self._record(old_poses[0])
 
     def _push_all(self) -> None:
@@ -301,21 +301,21 @@ class Bout(Driving):
                 direction = _direction(contact.obstacle_point, contact.body_point)
                 closing_cm_s = mover.speed_along(contact.body_point, direction)
                 if closing_cm_s < 0:
-                    ease = mover.ease(contact.body_point, direction)
-                    mover.push(contact.body_point, direction, -closing_cm_s / ease)
+                    speed_gain = mover.speed_gain(contact.body_point, direction)
+                    mover.push(contact.body_point, direction, -closing_cm_s / speed_gain)
 
-    def _part_all(self, old_poses: Sequence[Pose]) -> None:
+    def _separate_bodies(self, old_poses: Sequence[Pose]) -> None:
         """Move bodies apart that have come into each other, or into an obstacle.
 
         If that is impossible, they stay where they were.
         """
         for _ in range(MOST_PUSHES):
-            if self._is_parted():
+            if self._separate_once():
                 return
         for mover, pose in zip(self._movers, old_poses, strict=True):
             mover.move_to(pose)
 
-    def _is_parted(self) -> bool:
+    def _separate_once(self) -> bool:
         """Move what overlaps; return whether nothing has."""
         is_parted = True
         for first, second in combinations(self._movers, 2):
@@ -372,7 +372,9 @@ def _push_apart(
     """
     opposite = Point(-direction.x, -direction.y)
     closing_cm_s = first.speed_along(point, direction) + second.speed_along(point, opposite)
-    percent = -closing_cm_s / (first.ease(point, direction) + second.ease(point, opposite))
+    percent = -closing_cm_s / (
+        first.speed_gain(point, direction) + second.speed_gain(point, opposite)
+    )
     percent = (
         max(0.0, percent)
         if most_percent == math.inf

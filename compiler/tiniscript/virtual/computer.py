@@ -21,7 +21,7 @@ class Computer:
         self.robot = robot
         self.session = Session(nonce, profile.board.baud, profile.kit.fingerprint, keys=keys)
         self._until_ms: int | None = None  # the millisecond in which its program was paused
-        self._sent = bytearray()  # bytes that the robot sent in that millisecond
+        self._sent_bytes = bytearray()  # bytes that the robot sent in that millisecond
 
     def wait(self, milliseconds: int) -> None:
         """Advance the robot's time.
@@ -37,13 +37,13 @@ class Computer:
                 self._receive()
                 now_ms = self.robot.now_ms + 1
                 data = self.session.poll(now_ms)
-            self._sent += self.robot.step(now_ms, data)
+            self._sent_bytes += self.robot.step(now_ms, data)
             self._until_ms = now_ms if firmware.held_at is not None else None
             if self._until_ms is None:
                 self._receive()
 
     def _receive(self) -> None:
-        sent_bytes, self._sent = bytes(self._sent), bytearray()
+        sent_bytes, self._sent_bytes = bytes(self._sent_bytes), bytearray()
         self.session.receive(sent_bytes, self.robot.now_ms)
 
     def wait_for(self, request: PendingRequest[T], limit_ms: int = ANSWER_TIMEOUT_MS) -> Reply[T]:

@@ -51,7 +51,7 @@ _NOTE_KINDS = (("motors", 2), ("read", 2), ("beep", 2), ("show", 3), ("set", 2),
          ("release", 0), ("light", 1), ("on_finish", 0), ("on_fault", 0),
          ("actuators_off", 0), ("steer", 2), ("edges", 0))  # fmt: skip
 _ASKING_KINDS = (2, 13)  # kinds of questions that expect a number
-_CLOCK = 1 << 32
+_CLOCK_MODULUS_MS = 1 << 32
 _NOTE_NUMBERS = 5  # numbers of 32 bits
 
 
@@ -118,7 +118,7 @@ class Firmware:
         self._box_bytes = self.call("box_bytes")
         self._eeprom, size = self.call("memory_at"), self.call("memory_bytes")
         self.memory_bytes = size
-        self._waiting = bytearray()  # bytes after those in the inbox
+        self._waiting_bytes = bytearray()  # bytes after those in the inbox
         self._notes_index, self._note_count_index = self.call("notes") // 4, self.call("noted") // 4
         self._reading_index = self.call("reading") // 4
         self.is_watched = False  # whether its program may be paused
@@ -138,15 +138,15 @@ class Firmware:
 
         Returns earlier where the program is held.
         """
-        self._waiting += data
+        self._waiting_bytes += data
         sent_bytes = bytearray()
         while True:
-            if self._waiting and not self.call("unheard"):
-                chunk = bytes(self._waiting[: self._box_bytes])
-                del self._waiting[: self._box_bytes]
+            if self._waiting_bytes and not self.call("unheard"):
+                chunk = bytes(self._waiting_bytes[: self._box_bytes])
+                del self._waiting_bytes[: self._box_bytes]
                 self._instance.write(chunk, self._inbox)
                 self.call("put", len(chunk))
-            has_more = bool(self._waiting)
+            has_more = bool(self._waiting_bytes)
             count = self.call("run", until_us, int(has_more))
             self._handle_notes()
             if count:
@@ -175,7 +175,7 @@ class Firmware:
         """Return the offset before which the program is paused, or None."""
         if not self.is_watched:
             return None
-        offset = self.call("held_at") % _CLOCK
+        offset = self.call("held_at") % _CLOCK_MODULUS_MS
         return None if offset == NO_OFFSET else offset
 
     @property
@@ -200,7 +200,7 @@ class Firmware:
 
     @property
     def unread_bytes(self) -> int:
-        return len(self._waiting) + self.call("unheard")
+        return len(self._waiting_bytes) + self.call("unheard")
 
     def memory(self) -> bytes:
         """Return the content of the EEPROM."""
@@ -229,6 +229,6 @@ class Firmware:
         for k in range(self._notes_index, self._notes_index + count * _NOTE_NUMBERS, _NOTE_NUMBERS):
             now_ms, kind, *values = numbers[k : k + _NOTE_NUMBERS]
             handler, value_count = self._handlers[kind - 1]
-            result = handler(now_ms % _CLOCK, *values[:value_count])
+            result = handler(now_ms % _CLOCK_MODULUS_MS, *values[:value_count])
             if kind in _ASKING_KINDS:
                 numbers[self._reading_index] = result

@@ -118,7 +118,7 @@ class VirtualRobot:
         self.is_lit = False  # the light is on: the button would start a program
         self.fault = ""  # the fault that has ended the last program
         self.actuators: dict[int, int] = {}  # the current value of each
-        self._traced = TracedRobot(profile.kit, self._sensor_reading)
+        self._traced_robot = TracedRobot(profile.kit, self._sensor_reading)
         self._end_event = ""  # how the program ended, as far as known
         self._remote_reading = 0  # state of the remote control that the current reading uses
         self._power_on_ms = 0  # time of the last power-on
@@ -137,8 +137,8 @@ class VirtualRobot:
             self.now_ms = min(now_ms, self._power_on_ms + self._firmware.now_us // 1000)
         self._settle()
         if self.is_at_rest:
-            del self._traced.events[self._event_count_at_rest :]
-        del self._traced.events[:-MOST_EVENTS]
+            del self._traced_robot.events[self._event_count_at_rest :]
+        del self._traced_robot.events[:-MOST_EVENTS]
         return sent_bytes
 
     def press(self) -> None:
@@ -163,7 +163,7 @@ class VirtualRobot:
         self._halt("STOP")
         self.driving.rest()
         self.is_at_rest = True
-        self._event_count_at_rest = len(self._traced.events)
+        self._event_count_at_rest = len(self._traced_robot.events)
 
     def switch_off(self) -> None:
         """Switch it off. Its clock must not advance until it is switched on again."""
@@ -214,7 +214,11 @@ class VirtualRobot:
 
         These are a run's events, START, STOP, RELEASE of an actuator, and OFF.
         """
-        events, self._traced.events, self._event_count_at_rest = self._traced.events, [], 0
+        events, self._traced_robot.events, self._event_count_at_rest = (
+            self._traced_robot.events,
+            [],
+            0,
+        )
         return events
 
     @property
@@ -237,7 +241,7 @@ class VirtualRobot:
         """Set what the motors get, -255 to 255: the trim has been looked at."""
         powers = (left / LEVELS_PER_PERCENT, right / LEVELS_PER_PERCENT)
         self._set_motors(now_ms, *powers)
-        self._traced.motors(*(round(power) for power in powers))
+        self._traced_robot.motors(*(round(power) for power in powers))
 
     def steer(self, now_ms: int, left: int, right: int) -> None:
         """Set what the motors get while the firmware measures a move: the trace has its begin."""
@@ -252,21 +256,21 @@ class VirtualRobot:
         """Return a reading; `remote` is what the firmware has heard from a remote control."""
         self._advance_to(now_ms)
         self._remote_reading = remote
-        return self._traced.read(sensor) or 0
+        return self._traced_robot.read(sensor) or 0
 
     def beep(self, now_ms: int, hertz: int, duration_ms: int) -> None:
         self._advance_to(now_ms)
-        self._traced.beep(hertz, duration_ms)
+        self._traced_robot.beep(hertz, duration_ms)
 
     def show(self, now_ms: int, value: int, is_yes_no: int, at: int) -> None:
         self._advance_to(now_ms)
-        self._traced.show(value, bool(is_yes_no))
-        self._traced.events[-1] = self._traced.events[-1]._replace(offset=at)
+        self._traced_robot.show(value, bool(is_yes_no))
+        self._traced_robot.events[-1] = self._traced_robot.events[-1]._replace(offset=at)
 
     def set(self, now_ms: int, actuator: int, value: int) -> None:
         self._advance_to(now_ms)
-        self._traced.set(actuator, value)
-        self.actuators[actuator] = self._traced.events[-1].values[1]
+        self._traced_robot.set(actuator, value)
+        self.actuators[actuator] = self._traced_robot.events[-1].values[1]
         self.sensing.turn(actuator, self.actuators[actuator])
 
     def actuators_off(self, now_ms: int) -> None:
@@ -276,11 +280,11 @@ class VirtualRobot:
         for number, value in sorted(self.actuators.items()):
             if kit.actuators[number].is_yes_no:
                 if value:
-                    self._traced.set(number, 0)
+                    self._traced_robot.set(number, 0)
                     self.actuators[number] = 0
             elif board.actuators[number].settings.get(AT_STOP) != HOLD_CHOICE:
                 name = kit.actuators[number].name
-                self._traced.record("RELEASE", (number,), f"RELEASE {name}")
+                self._traced_robot.record("RELEASE", (number,), f"RELEASE {name}")
                 del self.actuators[number]
 
     def stop(self, now_ms: int) -> None:
@@ -315,7 +319,7 @@ class VirtualRobot:
 
     def _advance_to(self, now_ms: int) -> None:
         self.now_ms = self._power_on_ms + now_ms
-        self._traced.now_ms = self.now_ms
+        self._traced_robot.now_ms = self.now_ms
 
     def _set_motors(self, now_ms: int, left: float, right: float) -> None:
         self._advance_to(now_ms)
@@ -339,7 +343,7 @@ class VirtualRobot:
             self.wheels.go_on(self.now_ms)
             self.wheels.brake()
         self.driving.set_motors(self.now_ms, 0, 0)
-        self._traced.now_ms = self.now_ms
+        self._traced_robot.now_ms = self.now_ms
         if self.is_running:
             self._record(event_name)
             self.ended_ms = self.now_ms
@@ -362,7 +366,7 @@ class VirtualRobot:
         self._record(event_text)
 
     def _record(self, text: str) -> None:
-        self._traced.record(text.partition(" ")[0], (), text)
+        self._traced_robot.record(text.partition(" ")[0], (), text)
 
     @property
     def offset(self) -> int | None:

@@ -12,7 +12,7 @@ from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.world import World
 
 FLAG_POINTS, BUMP_POINTS, SECOND_POINTS = 100, 10, 5  # a rival as a flag; each second left
-LOOK_INTERVAL_MS = 5  # between two looks
+SCORE_INTERVAL_MS = 5  # between two looks
 
 
 class Score:
@@ -38,7 +38,7 @@ class Score:
 
     def update(self, robot: VirtualRobot) -> None:
         """See where the robot is now. After all is done, or after a fall, nothing counts."""
-        if self.is_complete or self._has_fallen or robot.now_ms % LOOK_INTERVAL_MS:
+        if self.is_complete or self._has_fallen or robot.now_ms % SCORE_INTERVAL_MS:
             return
         if robot.started_ms is None:
             return

@@ -24,27 +24,27 @@ MOST_FRAME_BYTES = 100  # bytes of a frame on the wire, and some
 class Heartbeat:
     def __init__(self) -> None:
         self._frame = b""  # the last one
-        self._unfinished = b""  # start of an unfinished packet
+        self._unfinished_packet = b""  # start of an unfinished packet
         self._received_s = 0.0
         self._heartbeat_ms = 0
 
     def on_bytes(self, data: bytes, wall_s: float) -> None:
         """Take bytes that the computer has sent."""
         self._received_s = wall_s
-        *frames, self._unfinished = (self._unfinished + data).split(b"\0")
-        self._unfinished = self._unfinished[:MOST_FRAME_BYTES]
+        *frames, self._unfinished_packet = (self._unfinished_packet + data).split(b"\0")
+        self._unfinished_packet = self._unfinished_packet[:MOST_FRAME_BYTES]
         for frame in frames:
             if frame and len(frame) < MOST_FRAME_BYTES:
                 self._frame = b"\0" + frame + b"\0"  # the frame sent for each heartbeat
 
     def forget(self) -> None:
         """Forget the last frame, because another client connects."""
-        self._frame = self._unfinished = b""
+        self._frame = self._unfinished_packet = b""
 
     def bytes_due(self, now_ms: int, wall_s: float) -> bytes:
         """Return the bytes to repeat at the robot's time `now_ms`, usually none."""
         is_silent = wall_s - self._received_s > SILENCE_S
-        if self._unfinished or is_silent or now_ms < self._heartbeat_ms + HEARTBEAT_MS:
+        if self._unfinished_packet or is_silent or now_ms < self._heartbeat_ms + HEARTBEAT_MS:
             return b""
         self._heartbeat_ms = now_ms
         return self._frame
@@ -84,7 +84,7 @@ class Simulator:
         self._heartbeat = Heartbeat()
         self._wall_s = self._traffic_s = monotonic()
         self._owed_ms = 0.0  # robot's time of less than one millisecond, carried over
-        self._visits = 0
+        self._visit_count = 0
         self._last_byte = b""  # byte of the client
         self._release_ms: int | None = None
         self._waiting_push_ms = 0  # duration of a press that has to wait
@@ -126,8 +126,8 @@ class Simulator:
         elapsed_s = min(wall_s - self._wall_s, MOST_DELAY_S)
         self._wall_s = wall_s
         data = b"" if is_full else self.transports.receive()
-        if self.transports.visit_count != self._visits:
-            self._visits = self.transports.visit_count
+        if self.transports.visit_count != self._visit_count:
+            self._visit_count = self.transports.visit_count
             self._heartbeat.forget()
             if self._last_byte not in b"\0\r\n":  # ends an unfinished line of the previous client
                 self.to_robot.send_bytes(b"\0", self.robot.now_ms)

@@ -88,7 +88,7 @@ class Transports:
     def receive(self) -> bytes:
         """Return received bytes. Also accepts and removes clients."""
         data = self._receive_from_port()
-        first_bytes = self._let_in()
+        first_bytes = self._admit_caller()
         return data if first_bytes is None else first_bytes
 
     def take_stop(self) -> bool:
@@ -152,7 +152,7 @@ class Transports:
         os.set_blocking(self._own_end, False)
         self.terminal = os.ttyname(self._other_end)
 
-    def _let_in(self) -> bytes | None:
+    def _admit_caller(self) -> bytes | None:
         """Make the next caller the client if there is none, and refuse the other callers.
 
         Return the first bytes of a new client, or None if there is no new client.

@@ -17,7 +17,7 @@ LAG_MS = 60.0  # average time in which a motor gets within 1/e of its speed
 LAG_RANGE = (0.75, 1.25)  # range of that time's factor between motors
 STEADY_PERCENT = 0.05  # smallest change of speed in percent
 SLIP_CM = 5.0  # a wheel slips as much for so far
-CLOCK = 1 << 16
+COUNT_MODULUS = 1 << 16
 ANSWER_FLAG = 1 << 31
 
 
@@ -120,8 +120,8 @@ class Wheels:
     def edges(self, now_ms: int) -> int:
         """Return both counts as the board says them: the left one in the lower 16 bits."""
         self.go_on(now_ms)
-        left, right = (wheel.counted_edges % CLOCK for wheel in self.wheels)
-        return (right * CLOCK + left + ANSWER_FLAG) % (2 * ANSWER_FLAG) - ANSWER_FLAG
+        left, right = (wheel.counted_edges % COUNT_MODULUS for wheel in self.wheels)
+        return (right * COUNT_MODULUS + left + ANSWER_FLAG) % (2 * ANSWER_FLAG) - ANSWER_FLAG
 
     def brake(self) -> None:
         """Stop the wheels at once, as when the robot is lifted or switched off."""

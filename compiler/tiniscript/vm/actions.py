@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.base.fixed_point import ONE, clamp, whole
+from tiniscript.base.fixed_point import ONE, clamp, round_to_whole
 from tiniscript.bytecode.opcodes import time8_ms
 from tiniscript.vm.handlers import HANDLERS, Handler, Step, handles
 from tiniscript.vm.state import FOREVER, PAUSE, Drive, Powers
@@ -15,7 +15,7 @@ def _duration(time_milli: int) -> int:
 
 
 def _percent(power: int, least: int) -> int:
-    return clamp(whole(power), least, 100)
+    return clamp(round_to_whole(power), least, 100)
 
 
 @handles("SHOW")
@@ -160,7 +160,7 @@ def _motors8(machine: Drive, next_pc: int, left: int, right: int) -> Step:
 def _beep(machine: Drive, next_pc: int) -> Step:
     def step() -> int:
         hertz, time_milli = machine.task.stack.pop(), machine.task.stack.pop()
-        return _sound(machine, next_pc, whole(hertz), _duration(time_milli))
+        return _sound(machine, next_pc, round_to_whole(hertz), _duration(time_milli))
 
     return step
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.base.fixed_point import ONE, whole
+from tiniscript.base.fixed_point import ONE, round_to_whole
 from tiniscript.vm.handlers import HANDLERS, Handler, Step, handles
 from tiniscript.vm.state import Drive
 from tiniscript.vm.values import COMPARISONS, Compare
@@ -48,7 +48,7 @@ def jump(machine: Drive, next_pc: int, target: int) -> Step:
 
 
 @handles("AGAIN", "AGAIN_FAR")
-def _again(machine: Drive, next_pc: int, target: int) -> Step:
+def _jump_back(machine: Drive, next_pc: int, target: int) -> Step:
     return machine.go_back(target)
 
 
@@ -69,7 +69,7 @@ def _loop8(machine: Drive, next_pc: int, times: int) -> Step:
 @handles("LOOP", "LOOP_FAR")
 def _loop(machine: Drive, next_pc: int, target: int) -> Step:
     def step() -> int:
-        times = whole(machine.task.stack.pop())
+        times = round_to_whole(machine.task.stack.pop())
         if times < 1:
             return target
         machine.task.counters.append(times)

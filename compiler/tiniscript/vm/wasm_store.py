@@ -111,10 +111,10 @@ def _bound_function(store: Store, function: Func) -> Callable[..., Any]:
         )
         if error or trap:
             # An exception raised in a Python callback comes first.
-            with enter_wasm(store) as raised:
+            with enter_wasm(store) as error_holder:
                 if error:
                     raise WasmtimeError._from_ptr(error)
-                raised._obj.contents = trap.contents
+                error_holder._obj.contents = trap.contents
         return result_numbers[0] if result_types else None
 
     return call

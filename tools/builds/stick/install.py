@@ -69,8 +69,8 @@ def main(arguments: list[str]) -> int:
     command = [str(python), "-m", "tiniscript", "run", "--machine", "cpp", "-e", "SI|F(1, 80)"]
     completed = subprocess.run(command, env=variables, capture_output=True)
     if completed.returncode:
-        why = completed.stderr.decode("utf-8", "replace").strip().splitlines() or ["?"]
-        _say("no_robot", why=why[0])
+        reason = completed.stderr.decode("utf-8", "replace").strip().splitlines() or ["?"]
+        _say("no_robot", why=reason[0])
     activate = f'. "{programs}/activate"'
     if IS_WINDOWS:
         activate = f'& "{programs}\\Activate.ps1"'

@@ -32,18 +32,18 @@ OPEN_TIMEOUT_S = 12.0
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     baud = None if options.baud is None else baud_of(options, robot, language)
-    in_reach = EMPTY_REACH
+    reachable_robots = EMPTY_REACH
     if options.ask and options.port is None:
-        in_reach = find_robots(list(known_ports.remembered_ports().name_by_port), language)
-        for note in in_reach.notes:  # transports that could not be searched
+        reachable_robots = find_robots(list(known_ports.remembered_ports().name_by_port), language)
+        for note in reachable_robots.notes:  # transports that could not be searched
             print(note, file=sys.stderr, flush=True)
-    rows = list_rows(language, options.port, in_reach)
+    rows = list_rows(language, options.port, reachable_robots)
     if options.ask:
         absent_row: Row = {"answer": None, "said": text("out_of_reach", language)}
 
         def ask(row: Row) -> Row:
             port = str(row["port"])
-            is_absent = port in in_reach.absent_ports and row["held_by"] is None
+            is_absent = port in reachable_robots.absent_ports and row["held_by"] is None
             return absent_row if is_absent else _ask(port, baud, robot, language)
 
         with ThreadPoolExecutor(MOST_CHECKS_AT_ONCE) as pool:

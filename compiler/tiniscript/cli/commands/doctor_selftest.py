@@ -97,7 +97,7 @@ def _print(
 def _report(findings: list[Finding], name: str, port: str, language: str) -> list[str]:
     """Return the lines of a report: it does not identify the owner or the computer."""
     hidden_names = [
-        (item, report.shown_port(port)) for item in (port, printable_name(port)) if port
+        (item, report.redacted_port(port)) for item in (port, printable_name(port)) if port
     ]
     if name and name not in robots.names():  # the description of a shipped robot is not personal
         hidden_names.append((name, report.HIDDEN))

@@ -37,17 +37,17 @@ def run(options: Namespace, language: str) -> int:
 
 def _compare(robot: Robot, language: str) -> None:
     """Print the shipped robot most similar to the user's own."""
-    nearest = nearest_to(robot)
-    if nearest.is_same:
-        say_aside("board_same_kit", language, kit=nearest.name)
+    nearest_robot = nearest_to(robot)
+    if nearest_robot.is_same:
+        say_aside("board_same_kit", language, kit=nearest_robot.name)
         return
     names_by_place = {
-        "shared": nearest.shared_devices,
-        "there": nearest.devices_only_there,
-        "here": nearest.devices_only_here,
+        "shared": nearest_robot.shared_devices,
+        "there": nearest_robot.devices_only_there,
+        "here": nearest_robot.devices_only_here,
     }
     values = {key: ", ".join(names) or "–" for key, names in names_by_place.items()}
-    say_aside("board_nearest_kit", language, kit=nearest.name, **values)
+    say_aside("board_nearest_kit", language, kit=nearest_robot.name, **values)
 
 
 def _next_step(robot: str, output: Path, chip: str, language: str) -> str:

@@ -220,16 +220,16 @@ def _announcement(name: str, port: int) -> Announcement:
         from tiniscript.virtual.announcement import Announcement, NameTaken
     except ImportError as error:
         install_command = install_advice.command(install_advice.RADIO)
-        why = error.name or ""
+        reason = error.name or ""
         raise CommandError(
-            2, "port_not_installed", port="--announce", why=why, how=install_command
+            2, "port_not_installed", port="--announce", why=reason, how=install_command
         ) from None
     try:
         return Announcement(name, port)
     except NameTaken:
         raise CommandError(3, "name_taken", name=printable_name(name)) from None
-    except OSError as why:
-        raise CommandError(3, "no_announcement", why=why) from None
+    except OSError as reason:
+        raise CommandError(3, "no_announcement", why=reason) from None
 
 
 def _pushes_ms(option: str, typed_times: str | None) -> list[int]:

@@ -30,7 +30,7 @@ from tiniscript.link import known_ports
 from tiniscript.link.connection import FOREIGN, PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
-from tiniscript.link.outcomes import LOOK_S, ConnectionLost, Event
+from tiniscript.link.outcomes import POLL_INTERVAL_S, ConnectionLost, Event
 from tiniscript.link.port_names import is_address, is_built_in
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.statuses import status_text
@@ -200,7 +200,7 @@ class Connection(Client):
         self.wait_notice.begin()
         return super().wait(request, poll)
 
-    def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
+    def event(self, limit_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
         timed_event = super().event(limit_s)
         if timed_event is not None:
             self.wait_notice.restart()

@@ -20,9 +20,9 @@ from tiniscript.library.known_kits import shipped_name_of_kit
 from tiniscript.link.authority import OWNED_BY_OTHER, ownership_of
 from tiniscript.link.messages import (
     RESETS,
-    SAVED,
     SAVED_NOTHING,
     SAVED_OTHER_VERSION,
+    SAVED_STATES,
     SAVED_STORED,
     SAVED_UNREADABLE,
     STATES,
@@ -71,7 +71,7 @@ class Description(NamedTuple):
             "state": row_name(STATES, status.state),
             "program": f"{status.program:08x}" if has_program else None,
             "code_bytes": status.length if has_program else None,
-            "saved": row_name(SAVED, status.saved),
+            "saved": row_name(SAVED_STATES, status.saved),
             "slot": status.slot if status.saved == SAVED_STORED else None,
             "fault": fault,
             "reset": row_name(RESETS, hello.reset),

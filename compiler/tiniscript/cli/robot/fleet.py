@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from tiniscript.cli.terminal.fleet_table import FleetTable
 
 
-LOOK_INTERVAL_S = 0.1
+POLL_INTERVAL_S = 0.1
 STRANGER_TIMEOUT_S = (
     4.0  # timeout for a port that the user has not named and that never had a robot
 )
@@ -115,7 +115,7 @@ class Fleet:
                 if table is not None:
                     table.draw()
                 else:
-                    self._result_bell.wait(LOOK_INTERVAL_S)
+                    self._result_bell.wait(POLL_INTERVAL_S)
                 self._raise_if_reader_gone()
                 self._print_results(unfinished_members, table)
             except KeyboardInterrupt:
@@ -159,7 +159,7 @@ class Fleet:
         end_s = monotonic() + limit_s
         while monotonic() < end_s and any(member.result is None for member in self.members):
             self._attend()
-            self._result_bell.wait(LOOK_INTERVAL_S)
+            self._result_bell.wait(POLL_INTERVAL_S)
 
     def interrupt_robots(self) -> None:
         """Stop every robot."""

@@ -16,7 +16,7 @@ Row = dict[str, object]  # a port as data
 
 
 def list_rows(
-    language: str, only_port: str | None = None, in_reach: ReachableRobots = EMPTY_REACH
+    language: str, only_port: str | None = None, reachable_robots: ReachableRobots = EMPTY_REACH
 ) -> list[Row]:
     """Return the ports that the system lists, those in reach, and others that had a robot."""
     remembered_ports = known_ports.remembered_ports()
@@ -24,7 +24,7 @@ def list_rows(
     description_by_port = {
         entry.port: describe_port(entry, language) for entry in ports.list_ports()
     }
-    description_by_port |= in_reach.description_by_port
+    description_by_port |= reachable_robots.description_by_port
     verb_of_port = {registration.port: registration.verb for registration in running_servers()}
     shown_ports = [only_port] if only_port is not None else list(description_by_port)
     if only_port is None:
@@ -33,11 +33,13 @@ def list_rows(
             for port in remembered_ports.name_by_port
             if port not in description_by_port
             and exists(port)
-            and port not in in_reach.other_ports
+            and port not in reachable_robots.other_ports
             and not directory.is_gone(port)
         ]
         shown_ports += [
-            port for port in virtual_by_address if port not in (*shown_ports, *in_reach.other_ports)
+            port
+            for port in virtual_by_address
+            if port not in (*shown_ports, *reachable_robots.other_ports)
         ]
         canonical_ports = {canonical_port(port) for port in shown_ports}
         shown_ports += [port for port in verb_of_port if port not in canonical_ports]

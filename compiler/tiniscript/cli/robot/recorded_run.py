@@ -78,7 +78,7 @@ def record(program_input: Input, options: Namespace, language: str) -> int:
         run.push()
     started_ms = run.robot.started_ms or 0
     while run.robot.now_ms < started_ms + max_ms and not run.is_full:
-        run.go(min(STEP_MS, started_ms + max_ms - run.robot.now_ms))
+        run.advance(min(STEP_MS, started_ms + max_ms - run.robot.now_ms))
         if not run.robot.is_running and run.robot.started_ms is not None:
             break
     rows, fault, fault_at = run.rows(), run.robot.fault, run.fault_at
@@ -108,24 +108,25 @@ def play(program_input: Input, options: Namespace, language: str) -> int:
     with convert_refusal(world.name, language):
         played_run = PlayedRun(run, world)
     while not played_run.is_over:
-        played_run.go(STEP_MS)
+        played_run.advance(STEP_MS)
     started_ms = played_run.robot.started_ms or 0
     _print(played_run.rows(), started_ms)
     played_run.close()
     sys.stdout.flush()
-    parting = played_run.divergence or Divergence("empty")
+    divergence = played_run.divergence or Divergence("empty")
     print(
-        sentence(parting, started_ms if run.recording.is_virtual else 0, language), file=sys.stderr
+        sentence(divergence, started_ms if run.recording.is_virtual else 0, language),
+        file=sys.stderr,
     )
-    return int(parting.what not in SAME_OUTCOMES)
+    return int(divergence.what not in SAME_OUTCOMES)
 
 
 def _read(program_input: Input) -> PlayableRecording:
     try:
         return prepare(recordings.decode(program_input.data))
-    except BadRecording as bad:
-        values = {"file": inputs.printable_name(program_input.name), "line": str(bad.line)}
-        raise CommandError(2, f"recording_{bad.reason}", **values) from None
+    except BadRecording as error:
+        values = {"file": inputs.printable_name(program_input.name), "line": str(error.line)}
+        raise CommandError(2, f"recording_{error.reason}", **values) from None
 
 
 def _print(rows: list[Row], started_ms: int) -> None:
@@ -133,15 +134,15 @@ def _print(rows: list[Row], started_ms: int) -> None:
         sys.stdout.write(f"{row.ms - started_ms} {row.event}\n")
 
 
-def sentence(parting: Divergence, started_ms: int, language: str) -> str:
+def sentence(divergence: Divergence, started_ms: int, language: str) -> str:
     """Return the sentence about a comparison; times count from `started_ms`."""
-    place = text("replay_line" if parting.line else "replay_end", language)
-    return text(f"replay_{parting.what}", language).format(
-        count=parting.agreed,
-        place=place.format(line=parting.line),
-        robot=_row_text(parting.robot, started_ms, language),
-        virtual=_row_text(parting.virtual, started_ms, language),
-        sensor=parting.sensor,
+    place = text("replay_line" if divergence.line else "replay_end", language)
+    return text(f"replay_{divergence.what}", language).format(
+        count=divergence.agreed,
+        place=place.format(line=divergence.line),
+        robot=_row_text(divergence.robot, started_ms, language),
+        virtual=_row_text(divergence.virtual, started_ms, language),
+        sensor=divergence.sensor,
     )
 
 

@@ -22,7 +22,7 @@ from tiniscript.link.port_names import is_at_broker
 from tiniscript.link.wifi import STATES, BrokerSettings, Tls, address
 
 READY_TIMEOUT_S = 20  # time for the robot to join the network, or to reach the broker
-LOOK_INTERVAL_S = 0.5
+POLL_INTERVAL_S = 0.5
 UNSTARTED_STATES = ("OFF", "RESTS")  # states of the robot's WiFi
 _PEM = r"-----BEGIN CERTIFICATE-----.+?-----END CERTIFICATE-----"
 
@@ -118,7 +118,7 @@ def await_state(
     """Return the robot's state once it has settled, or after READY_S."""
     end_s = time.monotonic() + READY_TIMEOUT_S
     while not is_over(wifi_reply := request_state()) and time.monotonic() < end_s:
-        time.sleep(LOOK_INTERVAL_S)
+        time.sleep(POLL_INTERVAL_S)
     return wifi_reply
 
 

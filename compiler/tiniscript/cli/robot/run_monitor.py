@@ -18,7 +18,7 @@ from tiniscript.library.endings import Follower, end_of
 from tiniscript.library.errors import RobotError
 from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
-from tiniscript.link.outcomes import LOOK_S, Event
+from tiniscript.link.outcomes import POLL_INTERVAL_S, Event
 from tiniscript.link.payloads import ReceiptReply, StatusReply
 from tiniscript.link.requests import Reply
 
@@ -38,7 +38,7 @@ class RunMonitor:
         printer: EventPrinter,
         hold: Callable[[Event], bool] | None = None,
         on_wait: Callable[[], None] | None = None,
-        wait_s: float = LOOK_S,
+        wait_s: float = POLL_INTERVAL_S,
     ) -> None:
         self.connection = connection
         self.printer = printer

@@ -26,7 +26,7 @@ from tiniscript.cli.robot.diagnosing import examination_of
 from tiniscript.doctor.examination import Expectations, RobotAnswers
 from tiniscript.doctor.findings import Finding, sure_finding
 from tiniscript.library.known_kits import robot_of_kit
-from tiniscript.link.messages import RESETS, SAVED
+from tiniscript.link.messages import RESETS, SAVED_STATES
 from tiniscript.link.names import row_name
 from tiniscript.link.trim import Trim, trim_from_reply
 from tiniscript.robots.profile import Robot, Wiring
@@ -42,7 +42,7 @@ SIDES = ("left", "right")
 READING_COUNT = 3
 SONAR = "hc_sr04"  # a driver: one that hangs is read as 0
 NOTICEABLE_PARTS = 50  # the fraction of its range by which a hand must change a reading
-STAND_LINE = "W(2)"
+WAIT_LINE = "W(2)"
 BUZZER_HEARD, BUZZER_AGAIN = 1, 3  # answers about the buzzer
 ANSWERED_FAILURES = (
     "plain",
@@ -113,7 +113,7 @@ class SelfTest(Conversation):
             sure_finding("kit_is", robot=robot_name),
             sure_finding("firmware_is", isa=f"{hello.isa_major}.{hello.isa_minor}", **sizes),
             sure_finding("supply_is", reset=row_name(RESETS, hello.reset)),
-            sure_finding(_saved_cause(row_name(SAVED, status.saved))),
+            sure_finding(_saved_cause(row_name(SAVED_STATES, status.saved))),
         ]
         if trips_ms:
             times = {"least": min(trips_ms), "ms": median(trips_ms), "most": max(trips_ms)}
@@ -125,7 +125,7 @@ class SelfTest(Conversation):
         """Check that no disc counts edges after the wheels have come to rest."""
         edges_before = self.connection.request(lambda session: session.status()).values.noise
         try:
-            self.run_line(STAND_LINE)
+            self.run_line(WAIT_LINE)
         except CommandError as error:
             if error.key not in ANSWERED_FAILURES:
                 raise

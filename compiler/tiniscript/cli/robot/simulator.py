@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from tiniscript.cli.terminal.world_drawing import WorldPicture
 
 LONGEST_ROUND_S = 1.0  # the longest round; a robot draws at least 15 pictures per second
-TOLD_EVENTS = ("SHOW", "DONE", "FAULT", "STOP")  # events that the robot also sends to its client
+SENT_EVENTS = ("SHOW", "DONE", "FAULT", "STOP")  # events that the robot also sends to its client
 MOST_EVENTS = 10_000  # most events that wait to be read; the oldest are dropped
 
 
@@ -136,7 +136,7 @@ class CommandSimulator(SimulatorThread):
             with self._draw_lock:
                 return any(event.text == event_text for event in self._told_events)
 
-        is_told = event_text.partition(" ")[0] in TOLD_EVENTS and self._round_bell.wait_until(
+        is_told = event_text.partition(" ")[0] in SENT_EVENTS and self._round_bell.wait_until(
             has_event, LONGEST_ROUND_S
         )
         with self._draw_lock:
@@ -190,7 +190,7 @@ class CommandSimulator(SimulatorThread):
     def on_turn(self) -> None:
         with self._draw_lock:
             events = self.robot.take_events()
-            self._told_events.extend(event for event in events if event.kind in TOLD_EVENTS)
+            self._told_events.extend(event for event in events if event.kind in SENT_EVENTS)
             self._undrawn_events.extend(events)
             while self._picture is not None and self._undrawn_events:
                 event = self._undrawn_events.popleft()

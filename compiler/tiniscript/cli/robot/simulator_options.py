@@ -22,7 +22,7 @@ from tiniscript.virtual.world import World, WorldRefused
 ONE = 1000  # thousandths
 MOST_NOISE = 50 * ONE  # percent
 MOST_FAULTS = 200 * ONE  # most faults in 1000 bytes
-FASTEST = 10_000 * ONE
+MOST_HURRY = 10_000 * ONE
 LONGEST_S = 1_000_000 * ONE
 MOTOR_LOW, MOTOR_HIGH = 10 * ONE, 200 * ONE  # percent
 
@@ -78,7 +78,7 @@ def hurry_of(options: Namespace, language: str) -> float:
         return 0.0
     if options.hurry is not None and decimal(options.hurry) is None:
         raise CommandError(2, "bad_hurry", found=printable_name(options.hurry) or "''")
-    return number("--hurry", options.hurry, ONE, ONE // 10, FASTEST, language)
+    return number("--hurry", options.hurry, ONE, ONE // 10, MOST_HURRY, language)
 
 
 def faults_of(options: Namespace, language: str) -> float:

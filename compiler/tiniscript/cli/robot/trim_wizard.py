@@ -26,7 +26,7 @@ INCH_WORDS = ("in", "inch", "inches", "pulg", "pulgada", "pulgadas", '"')
 DEGREE_SIGNS = ("°", "º")
 LEAST_STEP = 5  # percent
 FIRST_STEP = 16  # percent of balance; halved each time that the drift changes side
-STRAIGHT_AGAIN = 4
+ANSWER_REPEAT = 4
 # failures after a stop by another command
 STOPPED_KEYS = ("stopped_elsewhere", "stopped_midway", "plain")
 MOST_TRIES = 4
@@ -148,10 +148,10 @@ class TrimWizard(Conversation):
         self._set_trim(trim)
         while True:
             self.run_line(f"F(2, {power})")
-            answer = self.ask_choice("trim_straight", STRAIGHT_AGAIN)
+            answer = self.ask_choice("trim_straight", ANSWER_REPEAT)
             if answer == 1:
                 return trim.balance
-            if answer == STRAIGHT_AGAIN:
+            if answer == ANSWER_REPEAT:
                 continue
             # it drifts to its left, so the right wheel is too strong
             side = -1 if answer == 2 else 1

@@ -160,7 +160,7 @@ class Picture:
 
 def _bar(percent: int) -> str:
     """Return eleven columns: to the right of the line is forward, to the left backward."""
-    full, half = divmod(max(1, round(abs(percent) / 10)) if percent else 0, 2)
+    full_cells, half_cells = divmod(max(1, round(abs(percent) / 10)) if percent else 0, 2)
     if percent < 0:
-        return f"{'▐' * half + '█' * full:>5}│     "
-    return f"     │{'█' * full + '▌' * half:5}"
+        return f"{'▐' * half_cells + '█' * full_cells:>5}│     "
+    return f"     │{'█' * full_cells + '▌' * half_cells:5}"

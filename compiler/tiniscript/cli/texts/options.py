@@ -110,7 +110,7 @@ LESSON_ACTIONS = {
 
 A_FILE, A_ROBOT, A_TEXT, READINGS = "FILE", "NAME|FILE", "TEXT", "NAME=1,2,3"
 P, N, S, X = "P", "N", "S", "X"
-YES = "yes|no"
+YES_OR_NO = "yes|no"
 A_LEVEL = "|".join(LEVELS)
 
 ONE_ROBOT_VERBS = (
@@ -229,9 +229,9 @@ OPTIONS: tuple[Option, ...] = (
     Option("--max-time", "monitor class", NUMBER, S),
     Option("--show", "set_trim"),
     Option("--reset", "set_trim"),
-    Option("--exchange", "set_trim", YES_NO, YES),
-    Option("--reverse-left", "set_trim", YES_NO, YES),
-    Option("--reverse-right", "set_trim", YES_NO, YES),
+    Option("--exchange", "set_trim", YES_NO, YES_OR_NO),
+    Option("--reverse-left", "set_trim", YES_NO, YES_OR_NO),
+    Option("--reverse-right", "set_trim", YES_NO, YES_OR_NO),
     Option("--balance", "set_trim", NUMBER, N),
     Option("--least", "set_trim", NUMBER, N),
     Option("--speed-40", "set_trim", NUMBER, N),

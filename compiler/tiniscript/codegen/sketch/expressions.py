@@ -144,8 +144,8 @@ def is_float(value: int) -> bool:
     if value % ONE == 0:
         return True
     nearest_float: float = struct.unpack("f", struct.pack("f", abs(value) / ONE))[0]
-    grown: float = struct.unpack("f", struct.pack("f", nearest_float * ONE))[0]
-    return int(struct.unpack("f", struct.pack("f", grown + 0.5))[0]) == abs(value)
+    product: float = struct.unpack("f", struct.pack("f", nearest_float * ONE))[0]
+    return int(struct.unpack("f", struct.pack("f", product + 0.5))[0]) == abs(value)
 
 
 def _long(value: int) -> str:

@@ -146,7 +146,7 @@ FOREVER = {
 }
 
 # Variables that functions share: the key of a comment, and the code before it.
-SHARED: dict[str, tuple[str, str]] = {
+SHARED_VARIABLES: dict[str, tuple[str, str]] = {
     "due": ("shared_start", "unsigned long $started, $due;"),
     "random_state": ("shared_random", "unsigned long $random_state = 1;"),
     "was_up": ("", "bool $was_up = false;"),

@@ -81,7 +81,7 @@ class Names:
 
     def __init__(self, language: str) -> None:
         self._prefix = text("sketch", "prefix", language)
-        self._taken = {
+        self._taken_names = {
             translated_name(name, language) for name in IDENTIFIERS for language in languages()
         }
 
@@ -92,14 +92,14 @@ class Names:
         identifier = verb + identifier if verb else words[0] + identifier[len(words[0]) :]
         if (
             identifier in RESERVED
-            or identifier in self._taken
+            or identifier in self._taken_names
             or _COUNTER_NAME.fullmatch(identifier)
         ):
             identifier = self._prefix + identifier[0].upper() + identifier[1:]
         candidate, number = identifier, 2
-        while candidate in self._taken:
+        while candidate in self._taken_names:
             candidate, number = f"{identifier}_{number}", number + 1
-        self._taken.add(candidate)
+        self._taken_names.add(candidate)
         return candidate
 
 

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import ONE, as_text, clamp, whole
+from tiniscript.base.fixed_point import ONE, as_text, clamp, round_to_whole
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, printable
 from tiniscript.codegen.sketch.expressions import Expressions, has_random, reads_once
@@ -18,7 +18,7 @@ from tiniscript.codegen.sketch.names import counter
 from tiniscript.semantics import ir
 from tiniscript.semantics.ir import Term
 from tiniscript.semantics.optimizer import constant
-from tiniscript.semantics.ways import to_timed
+from tiniscript.semantics.ways import timed_move
 
 MOST_COLUMNS = 100  # columns of a line with its comment
 COMMENT_COLUMN = 40  # column of the comments after code
@@ -192,7 +192,7 @@ class Statements:
                 rounded_value = (
                     max(0, constant_value)
                     if limits is None
-                    else clamp(whole(constant_value), *limits) * ONE
+                    else clamp(round_to_whole(constant_value), *limits) * ONE
                 )
                 texts.append(self.expressions.code_of((Term("NUMBER", rounded_value),)))
                 continue
@@ -221,7 +221,7 @@ class Statements:
 
     def move_arguments(self, move: ir.Move) -> list[str]:
         if move.unit:
-            move = to_timed(move, self.kit)
+            move = timed_move(move, self.kit)
         parts: list[Part] = [] if move.time is None else [(move.time, None)]
         if move.power is not None:
             parts.append((move.power, (0, 100)))
@@ -326,7 +326,7 @@ class Statements:
                 times = f"{self.use('whole')}({self.expressions.code_of(loop.times)})"
                 self.add_line(f"for (long {name} = {times}; {name} > 0; {name}--) {{", comment)
             else:
-                count = whole(constant_value)
+                count = round_to_whole(constant_value)
                 kind = "int" if abs(count) <= _LARGEST_INT else "long"
                 self.add_line(f"for ({kind} {name} = 0; {name} < {count}; {name}++) {{", comment)
         self.add_block(loop.body, is_loop=True)

@@ -403,7 +403,7 @@ class _Sketch:
                 f"{kind} {self.sketch_names.sensors[k]} = {'false' if kind == 'bool' else '0'};"
             )
         pieces = ["\n".join([f"// {self.text_of_key('values')}", *lines])] if lines else []
-        for key, (note, code) in helpers.SHARED.items():
+        for key, (note, code) in helpers.SHARED_VARIABLES.items():
             if key in self.needed_helpers:
                 pieces.append((f"// {self.text_of_key(note)}\n" if note else "") + code)
         if self.plan.servo_pins:

@@ -47,14 +47,23 @@ class _Def(NamedTuple):
 class _Block:
     """A block that is open; sets of sensors have a bit for each."""
 
-    __slots__ = ("has_else", "name", "read_after", "read_before", "readings_taken", "word")
+    __slots__ = (
+        "has_else",
+        "known_mask_before",
+        "name",
+        "read_mask_after",
+        "read_mask_before",
+        "word",
+    )
 
-    def __init__(self, word: str, read_before: int, readings_taken: int, name: str = "") -> None:
+    def __init__(
+        self, word: str, read_mask_before: int, known_mask_before: int, name: str = ""
+    ) -> None:
         self.word = word
         self.name = name  # name of the DEF
-        self.read_before = read_before
-        self.readings_taken = readings_taken
-        self.read_after = -1
+        self.read_mask_before = read_mask_before
+        self.known_mask_before = known_mask_before
+        self.read_mask_after = -1
         self.has_else = False
 
 
@@ -276,7 +285,7 @@ class Reader:
             self.emit(_JUMP_BYTES)
             if word == "IF":
                 self.open(word)
-            self.blocks[-1].readings_taken = self.known_mask
+            self.blocks[-1].known_mask_before = self.known_mask
         else:
             self.emit(1)
 
@@ -292,19 +301,21 @@ class Reader:
     def next_arm(self) -> None:
         block = self.blocks[-1]
         self.emit(_JUMP_BYTES)
-        block.read_after &= self.read_mask
-        self.read_mask, self.known_mask = block.read_before, block.readings_taken
+        block.read_mask_after &= self.read_mask
+        self.read_mask, self.known_mask = block.read_mask_before, block.known_mask_before
 
     def close(self, word: str) -> None:
         block = self.blocks.pop()
         if word == "IF":
-            self.read_mask &= block.read_after & (-1 if block.has_else else block.read_before)
+            self.read_mask &= block.read_mask_after & (
+                -1 if block.has_else else block.read_mask_before
+            )
         else:
             self.emit(1 if word in ("DEF", *TASKS) else _JUMP_BYTES)
             if word == "DEF":
                 self.defs[block.name] = _Def(self.read_mask, tuple(self.own_variables.values()))
                 self.own_variables = {}
-            self.read_mask = block.read_before
+            self.read_mask = block.read_mask_before
         self.used_bytes -= self.block_bytes
 
     # -- values -------------------------------------------------------------------------------

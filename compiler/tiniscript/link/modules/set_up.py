@@ -147,7 +147,7 @@ def _check_speed(wire: Wire, module: Module, outcome: Outcome) -> Outcome:
     wire.set_baud(baud)
     if is_there(wire, dialect):
         return Outcome(step, DONE, step.value)
-    module_there = find_module(wire, wakes=False)
+    module_there = find_module(wire, wakes_module=False)
     if module_there is None:
         return Outcome(step, LOST, step.value)
     status = DONE if module_there.baud == baud else ELSEWHERE

@@ -54,15 +54,15 @@ def find_module(
     wire: Wire,
     bauds: Sequence[int] = BAUDS,
     on_baud: Callable[[int], None] = lambda baud: None,
-    wakes: bool = True,
+    wakes_module: bool = True,
 ) -> Module | None:
     """Return the module on a wire, or None if there is no answer. `on_baud` is called for each
     speed.
 
-    `wakes`: if none answers, send a text of 100 bytes, which wakes a sleeping HM-10.
+    `wakes_module`: if none answers, send a text of 100 bytes, which wakes a sleeping HM-10.
     """
     wire.receive(SLOW_ANSWER_MS, SLOW_ANSWER_MS)  # discards the answers to earlier bytes
-    for is_awake in (False, True) if wakes else (False,):
+    for is_awake in (False, True) if wakes_module else (False,):
         for baud in bauds:
             on_baud(baud)
             wire.set_baud(baud)

@@ -182,7 +182,7 @@ class Server:
         is_busy = self._owner or self._orphaned_requests or has_requests
         for key, mask in self._selector.select(PAUSE_S if is_busy else REST_S):
             if key.fileobj is self._listening_socket:
-                self._let_in()
+                self._accept_client()
             elif key.fileobj is self._wake_receiver:
                 with suppress(OSError):
                     self._wake_receiver.recv(4096)
@@ -195,7 +195,7 @@ class Server:
         self._pass_on_events()
         self._check_timeouts()
 
-    def _let_in(self) -> None:
+    def _accept_client(self) -> None:
         try:
             peer, _ = self._listening_socket.accept()
         except (BlockingIOError, ConnectionError):  # the client has left already

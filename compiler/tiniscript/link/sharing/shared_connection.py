@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 from tiniscript.base.version import __version__
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
-from tiniscript.link.outcomes import LOOK_S, ConnectionLost, Event
+from tiniscript.link.outcomes import POLL_INTERVAL_S, ConnectionLost, Event
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import OK, DeviceInfo, Reply, device_info_of
 from tiniscript.link.sharing import protocol, registry
@@ -84,12 +84,12 @@ class SharedConnection(LinkConnection):
         while request.outcome is None:
             if self._end is not None:
                 raise self._end
-            self._listen(LOOK_S)
+            self._listen(POLL_INTERVAL_S)
             if look is not None:
                 look()
         return request.outcome
 
-    def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
+    def event(self, limit_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
         if not self._events:
             if self._end is not None:
                 raise self._end

@@ -163,7 +163,9 @@ class BluetoothPort(PushedTransport):
             ):
                 continue
             self._write_characteristic, self._is_paced = write_characteristic, uart_service.is_paced
-            await client.start_notify(notify_characteristic, lambda _, data: self.bring(data))
+            await client.start_notify(
+                notify_characteristic, lambda _, data: self.add_received(data)
+            )
             return
         raise PortError(errors.NO_ROBOT)
 

@@ -59,7 +59,7 @@ class _Scan:
 
     def __init__(self) -> None:
         self.seen_devices: dict[str, SeenDevice] = {}
-        self.change = asyncio.Event()
+        self.change_event = asyncio.Event()
         self._search_count = 0
         self._scanner: BleakScanner | None = None
         self._lock = asyncio.Lock()
@@ -103,8 +103,8 @@ class _Scan:
     def _keep_device(self, seen_device: SeenDevice) -> None:
         if seen_device.address in self.seen_devices or len(self.seen_devices) < MOST_DEVICES:
             self.seen_devices[seen_device.address] = seen_device
-            self.change.set()
-            self.change = asyncio.Event()
+            self.change_event.set()
+            self.change_event = asyncio.Event()
 
 
 async def _connected_devices() -> list[BLEDevice]:
@@ -131,7 +131,7 @@ async def find_device(name: str) -> BLEDevice:
     matching_devices: dict[str, SeenDevice] = {}
     async with _scan() as scan:
         while loop.time() < end_s:
-            change = scan.change
+            change = scan.change_event
             is_first = not matching_devices
             matching_devices = {
                 address: device

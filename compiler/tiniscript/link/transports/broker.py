@@ -369,7 +369,7 @@ class BrokerPort(PushedTransport):
                 self.end(errors.TAKEN)
             return
         self._patient_until_s = 0.0
-        self.bring(data)
+        self.add_received(data)
 
 
 def _error_text(error: Exception) -> str:

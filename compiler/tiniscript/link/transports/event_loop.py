@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 from tiniscript.base.bell import Bell
 
-LOOK_S = 0.1  # between two looks: on Windows, Ctrl-C does not interrupt a wait
+POLL_INTERVAL_S = 0.1  # between two looks: on Windows, Ctrl-C does not interrupt a wait
 CANCEL_S = 1.0  # timeout of cancelled tasks
 END_S = 5.0  # timeout of the tasks that end with the process
 
@@ -47,7 +47,7 @@ class EventLoop:
         self._loop.call_soon_threadsafe(begin)
         end_s = monotonic() + limit_s
         try:
-            while not is_over.wait(max(0.0, min(LOOK_S, end_s - monotonic()))):
+            while not is_over.wait(max(0.0, min(POLL_INTERVAL_S, end_s - monotonic()))):
                 if monotonic() >= end_s:
                     raise TimeoutError
         except BaseException:

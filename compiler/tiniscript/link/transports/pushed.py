@@ -48,7 +48,7 @@ class PushedTransport:
             self._is_cancelled = True
             self._bell.ring()
 
-    def bring(self, data: bytes | bytearray) -> None:
+    def add_received(self, data: bytes | bytearray) -> None:
         """Add received bytes."""
         with self._lock:
             self._buffer += data[: MOST_BUFFERED_BYTES - len(self._buffer)]

@@ -88,10 +88,10 @@ class Analog(SensorDriver):
 def _divided_voltage(device: Device, full_volts: int, pin_volts: int) -> Shape:
     """Two resistors: the lower one has the voltage of a pin when both together have `full_volts`
     thousandths."""
-    upper = f"{10 * (full_volts - pin_volts) / pin_volts:g} kΩ"
+    upper_resistor = f"{10 * (full_volts - pin_volts) / pin_volts:g} kΩ"
     is_battery = lexicon_concept(re.split("[_0-9]", device.name)[0]) == "BATTERY"
     name = MOTOR_BATTERY if is_battery else "what_is_measured"
-    source = Terminal(name, "pin", ground_resistor=PULL_DOWN, far_resistor=upper)
+    source = Terminal(name, "pin", ground_resistor=PULL_DOWN, far_resistor=upper_resistor)
     return Shape("voltage", "", (source,), note_keys=("mind_voltage",))
 
 

@@ -24,9 +24,9 @@ class DigitalActuator(ActuatorDriver):
 
     def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         pin, is_switched_by_low = part.pins.pin(wiring.pins["pin"]), wiring.settings["yes_is_low"]
-        off = "true" if is_switched_by_low else "false"
-        part.begin_lines.append(f"begin_output({pin}, {off});")
-        part.off_lines.append(f"write({pin}, {off});  // {device.name}")
+        off_level = "true" if is_switched_by_low else "false"
+        part.begin_lines.append(f"begin_output({pin}, {off_level});")
+        part.off_lines.append(f"write({pin}, {off_level});  // {device.name}")
         condition = "value == 0" if is_switched_by_low else "value != 0"
         return [f"      write({pin}, {condition});", "      return;"]
 
@@ -34,11 +34,11 @@ class DigitalActuator(ActuatorDriver):
         self, plan: DriverPlan, device: Device, wiring: Wiring, function: str, comment: str
     ) -> str:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", comment)
-        on, off = ("LOW", "HIGH") if wiring.settings["yes_is_low"] else ("HIGH", "LOW")
-        plan.off_lines.append(f"digitalWrite({pin}, {off});")
-        if off == "HIGH":  # set before the pin becomes an output, so that the part stays off
-            plan.begin_lines.insert(-1, f"digitalWrite({pin}, {off});")
-        return f"void {function}(bool isOn) {{\n  digitalWrite({pin}, isOn ? {on} : {off});\n}}"
+        on_level, off_level = ("LOW", "HIGH") if wiring.settings["yes_is_low"] else ("HIGH", "LOW")
+        plan.off_lines.append(f"digitalWrite({pin}, {off_level});")
+        if off_level == "HIGH":  # set before the pin becomes an output, so that the part stays off
+            plan.begin_lines.insert(-1, f"digitalWrite({pin}, {off_level});")
+        return f"void {function}(bool isOn) {{\n  digitalWrite({pin}, isOn ? {on_level} : {off_level});\n}}"
 
     def shape(
         self, wiring: Wiring, device: Device | None, sensed_kind: str, pin_volts: int

@@ -61,13 +61,13 @@ class HcSr04(SensorDriver):
             first_lines = ["static unsigned long $own_ping = -60;"]
             own_condition = " && millis() - $own_ping < 58"
             last_lines = ["$own_ping = $last_ping;"]
-        farthest = min(FARTHEST_DISTANCE, device.high)
+        farthest_distance = min(FARTHEST_DISTANCE, device.high)
         return [
             *first_lines,
             f"if (millis() - $last_ping < 30{own_condition}) return {name};",
             f"long $value = $ping_ms({trigger}, {echo}) * 4390UL >> 8;",
             *last_lines,
-            f"{name} = {plan.value(f'constrain($value, {max(0, device.low)}, {farthest})')};",
+            f"{name} = {plan.value(f'constrain($value, {max(0, device.low)}, {farthest_distance})')};",
         ]
 
 

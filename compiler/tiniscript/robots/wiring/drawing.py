@@ -217,10 +217,10 @@ def _numbers(route: Route) -> list[str]:
     (start, start_y), (end, end_y) = route.points[0], route.points[-1]
     corner_x = route.points[-2][0]
     outward = 1 if route.points[1][0] > start else -1
-    onward = 1 if end > corner_x else -1
+    direction = 1 if end > corner_x else -1
     return [
         _number(route.wire, start + 17 * outward, start_y),
-        _number(route.wire, end + 10 * onward, end_y),
+        _number(route.wire, end + 10 * direction, end_y),
     ]
 
 

@@ -27,8 +27,8 @@ RAILS = (BOARD_5V, BOARD_3V3, GROUND, MOTOR_BATTERY, SERVO_SUPPLY)
 def shape_of(used_by: str, wiring: Wiring, device: Device | None = None,
              place: Place | None = None, pin_volts: int = FIVE_VOLTS) -> Shape:  # fmt: skip
     """Return the form of a wiring's part. Raises LookupError for an unknown driver."""
-    sees = place.sees if place else ""
-    shape = driver_of(used_by, wiring).shape(wiring, device, sees, pin_volts)
+    sensed_kind = place.sees if place else ""
+    shape = driver_of(used_by, wiring).shape(wiring, device, sensed_kind, pin_volts)
     return shape if pin_volts == FIVE_VOLTS else _adapt_to_3v3(shape)
 
 

@@ -313,11 +313,11 @@ class _Conditions:
             if comparison is None or comparison.op not in _SIDE_BY_COMPARATOR:
                 continue
             key = (comparison.device.name, _SIDE_BY_COMPARATOR[comparison.op])
-            wider = widest_comparisons.get(key)
-            if wider is None or not _is_within(comparison, wider):
+            wider_comparison = widest_comparisons.get(key)
+            if wider_comparison is None or not _is_within(comparison, wider_comparison):
                 widest_comparisons[key] = comparison
             elif k:
-                self._context.report(codes.LATE_ARM, arm.span, wide=str(wider),
+                self._context.report(codes.LATE_ARM, arm.span, wide=str(wider_comparison),
                                      narrow=str(comparison))  # fmt: skip
 
     def _report_known(self, comparison: Comparison, span: Span) -> bool:
@@ -437,8 +437,10 @@ def _sensors(condition: ir.Expression) -> set[int]:
     return {term.value for term in condition if term.op == "SENSOR"}
 
 
-def _is_within(narrower: Comparison, wider: Comparison) -> bool:
+def _is_within(narrower_comparison: Comparison, wider_comparison: Comparison) -> bool:
     """Return whether one comparison implies the other; their signs have the same direction."""
-    if narrower.number == wider.number:
-        return narrower.op == wider.op or wider.op in ("LE", "GE")
-    return (narrower.number < wider.number) == (_SIDE_BY_COMPARATOR[wider.op] == "below")
+    if narrower_comparison.number == wider_comparison.number:
+        return narrower_comparison.op == wider_comparison.op or wider_comparison.op in ("LE", "GE")
+    return (narrower_comparison.number < wider_comparison.number) == (
+        _SIDE_BY_COMPARATOR[wider_comparison.op] == "below"
+    )

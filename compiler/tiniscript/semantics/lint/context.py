@@ -101,15 +101,15 @@ class Variables:
 
     def assigned_in(self, body: ir.Body) -> set[int]:
         """Return the variables that a body, or a DEF that it calls, gives a value."""
-        assigned = set()
+        assigned_variables = set()
         for statement in ir.walk(body):
             if isinstance(statement, ir.Assign):
-                assigned.add(statement.variable)
+                assigned_variables.add(statement.variable)
             elif isinstance(statement, ir.Call) and statement.procedure < len(
                 self._assigned_by_def
             ):
-                assigned |= self._assigned_by_def[statement.procedure]
-        return assigned
+                assigned_variables |= self._assigned_by_def[statement.procedure]
+        return assigned_variables
 
     def sensors_of(self, variables: list[int]) -> dict[str, str]:
         """Return the sensor that each of these variables holds; nothing if one holds another."""
@@ -131,8 +131,8 @@ class Variables:
                 isinstance(statement, (ir.Move, ir.Motors)) for statement in ir.walk(loop.body)
             )
             self._assigned_in_loop[loop_start] = self.assigned_in(loop.body) if drives else None
-        assigned = self._assigned_in_loop[loop_start]
-        is_held = assigned is not None and not assigned & set(variables)
+        assigned_variables = self._assigned_in_loop[loop_start]
+        is_held = assigned_variables is not None and not assigned_variables & set(variables)
         return self.sensors_of(variables) if is_held else {}
 
     def terms_used_in(self, loop: ir.Loop | ir.While) -> set[ir.Term]:

@@ -86,8 +86,8 @@ def report_narrowed(
         limit, inner_limit = numbers
         if outer != inner and (inner_limit < limit if outer == "MAX" else inner_limit > limit):
             nesting = f"{outer}({as_text(limit)}, {inner}({as_text(inner_limit)}, …))"
-            narrow = f"{outer}({as_text(inner_limit)}, {inner}({as_text(limit)}, …))"
-            values = {"found": nesting, "number": as_text(limit), "narrow": narrow}
+            narrowed_text = f"{outer}({as_text(inner_limit)}, {inner}({as_text(limit)}, …))"
+            values = {"found": nesting, "number": as_text(limit), "narrow": narrowed_text}
             context.report(codes.KNOWN_ANSWER, statement.span, **values)
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.base.fixed_point import ONE, Fault, as_text, whole
+from tiniscript.base.fixed_point import ONE, Fault, as_text, round_to_whole
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Span
 from tiniscript.base.words import POWER, UNIT_OF, Argument
@@ -88,7 +88,7 @@ def check_times(loop: ir.Loop, body_context: BodyContext, context: LintContext) 
         context.report(codes.NEVER_REPEATS, header_span, times=as_text(times))
     elif times is not None and times % 1000:
         context.report(
-            codes.ROUNDED_TIMES, header_span, times=as_text(times), right=str(whole(times))
+            codes.ROUNDED_TIMES, header_span, times=as_text(times), right=str(round_to_whole(times))
         )
 
 

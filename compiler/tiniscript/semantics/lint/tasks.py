@@ -45,10 +45,10 @@ def report_kept_motors(context: LintContext) -> None:
                     context.report(codes.NO_MOTORS, waiting_move.span, line=line)
             return
         higher_bodies.append(task.body)
-    _take_turns([task.body for task in tasks], context)
+    _report_taken_turns([task.body for task in tasks], context)
 
 
-def _take_turns(tasks: list[ir.Body], context: LintContext) -> None:
+def _report_taken_turns(tasks: list[ir.Body], context: LintContext) -> None:
     """`TASK;F(4, 60);END_TASK;TASK;R(4, 60);END_TASK`: they take turns, and make no curve."""
     first_moves = [body[0] for body in (*tasks, context.program.body) if body and _is_move(body[0])]
     if len(first_moves) < 2 or not tasks[0] or first_moves[0] is not tasks[0][0]:
@@ -111,13 +111,13 @@ class _MotorUse:
         return is_wanted_now
 
     def _wants_motors_in_loop(self, body: ir.Body, is_wanted: bool) -> bool | None:
-        after_one_turn = self._wants_motors_after(body, is_wanted)
-        if after_one_turn is None or self._wants_motors_after(body, after_one_turn) is None:
+        is_wanted_after = self._wants_motors_after(body, is_wanted)
+        if is_wanted_after is None or self._wants_motors_after(body, is_wanted_after) is None:
             return None
-        takes_time = after_one_turn or any(
+        takes_time = is_wanted_after or any(
             map(_takes_time, body)
         )  # otherwise a turn of the loop waits for 1 ms
-        return is_wanted and after_one_turn if takes_time else None
+        return is_wanted and is_wanted_after if takes_time else None
 
 
 def report_brief_tasks(context: LintContext) -> None:

@@ -245,7 +245,7 @@ export class Blocks {
         const block = workspace.getBlockById(event.blockId ?? '');
         if (block) this.#tryAlone(this.#listener, block, false);
       }
-      if (event.type === Blockly.Events.SELECTED || event.type === Blockly.Events.CLICK || event.type === Blockly.Events.BLOCK_DRAG) keepSmallStacksSeen(workspace);
+      if (event.type === Blockly.Events.SELECTED || event.type === Blockly.Events.CLICK || event.type === Blockly.Events.BLOCK_DRAG) keepSmallStacksVisible(workspace);
       if (event instanceof Blockly.Events.BubbleOpen && !event.isOpen) this.#closedMessage = this.#messageAt(event.blockId);
       if (event.isUiEvent || event.type === Blockly.Events.FINISHED_LOADING) return;
       updateCalls(workspace, event);
@@ -632,7 +632,7 @@ function flatten(blocks) {
 }
 
 /** Blockly brings what is touched to the front: smaller piles that it would hide stay before it. @param {Blockly.WorkspaceSvg} workspace */
-function keepSmallStacksSeen(workspace) {
+function keepSmallStacksVisible(workspace) {
   const focusedNode = Blockly.getFocusManager().getFocusedNode();
   const stack = focusedNode instanceof Blockly.BlockSvg && focusedNode.workspace === workspace && !workspace.isDragging() ? focusedNode.getRootBlock() : null;
   if (!stack) return;

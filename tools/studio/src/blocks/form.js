@@ -501,7 +501,7 @@ export function makeRoom(workspace, isResized = false) {
  */
 function* hangSteps(blocks, connection, makeBlock, ids) {
   let firstBlock = null;
-  let above = connection;
+  let connectionAbove = connection;
   for (const formBlock of blocks) {
     const block = makeBlock(formBlock.kind);
     firstBlock ??= block;
@@ -521,8 +521,8 @@ function* hangSteps(blocks, connection, makeBlock, ids) {
       yield* hangSteps(body, isHat(block) ? block.nextConnection : input?.connection ?? null, makeBlock, ids);
     }
     remember(block, formBlock);
-    if (block.previousConnection) above?.connect(block.previousConnection);
-    above = block.nextConnection;
+    if (block.previousConnection) connectionAbove?.connect(block.previousConnection);
+    connectionAbove = block.nextConnection;
     yield;
   }
   return firstBlock;

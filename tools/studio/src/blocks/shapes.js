@@ -262,12 +262,12 @@ const IF = {
   },
 
   /** @this {any} */
-  more() {
+  addOne() {
     this.change(this.hasElse ? Math.min(this.arms + 1, MOST_ARMS) : this.arms, true);
   },
 
   /** @this {any} */
-  less() {
+  removeOne() {
     if (this.arms > 1) this.change(this.arms - 1, this.hasElse);
     else this.change(1, false);
   },
@@ -286,7 +286,7 @@ const IF = {
   init() {
     this.setArms(1, false);
     const buttonInput = this.appendDummyInput('MORE');
-    for (const [name, onClick] of [['more', () => this.more()], ['less', () => this.less()]]) {
+    for (const [name, onClick] of [['more', () => this.addOne()], ['less', () => this.removeOne()]]) {
       const picture = new Blockly.FieldImage(`./${name}.svg`, BUTTON_UNITS, BUTTON_UNITS, tipOf(String(name)), /** @type {any} */ (onClick));
       picture.setTooltip(tipOf(String(name)));
       buttonInput.appendField(picture);

@@ -32,10 +32,10 @@ export class Previewer extends Blockly.InsertionMarkerPreviewer {
     Blockly.Events.disable();
     try {
       for (const block of this.#workspace.getTopBlocks(false).flatMap((top) => top.getDescendants(false))) {
-        const taken = block.isInsertionMarker() && block.getParent() ? bodyConnectionOf(block)?.targetBlock() : null;
-        if (!taken?.previousConnection || block.getNextBlock()) continue;
-        taken.previousConnection.disconnect();
-        block.nextConnection?.connect(taken.previousConnection);
+        const wrappedBlock = block.isInsertionMarker() && block.getParent() ? bodyConnectionOf(block)?.targetBlock() : null;
+        if (!wrappedBlock?.previousConnection || block.getNextBlock()) continue;
+        wrappedBlock.previousConnection.disconnect();
+        block.nextConnection?.connect(wrappedBlock.previousConnection);
       }
     } finally {
       Blockly.Events.enable();

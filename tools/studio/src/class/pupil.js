@@ -24,7 +24,7 @@ import { forgetAll, storeText, loadText } from '../page/kept.js';
 const TOKEN_KEY = 'tiniscript.pupil';
 const LAST_TOKEN_KEY = 'tiniscript.pupil_before'; // the token of the last page here: work belongs to it
 const POLL_MS = 1000;
-const SOON_MS = 300; // while the next turn may be one's own
+const QUICK_POLL_MS = 300; // while the next turn may be one's own
 
 /** @typedef {{key: string, text: string, robot: string, lessons: string[]}} GivenWork */
 /** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: GivenWork, over?: string, groups?: import('./group.js').GroupRow[], driver?: string, run?: number, stops?: number}} PupilState */
@@ -184,7 +184,7 @@ export class Pupil {
         stay.runNumber = answer.run;
         giveRun(answer.run, this.#page.newestRun).catch(() => {}); // the teacher asks again
       }
-      if (answer.place > 0 && answer.place <= answer.robots) wait_ms = SOON_MS;
+      if (answer.place > 0 && answer.place <= answer.robots) wait_ms = QUICK_POLL_MS;
       if (stay.wantsRobot !== null || stay.isHandWanted !== null) wait_ms = 0;
     } catch (error) {
       if (stay !== this.#stayState) return;

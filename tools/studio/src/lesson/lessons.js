@@ -51,7 +51,7 @@ const PART_MS = 40; // of the worker's time for a part of a check
 const LEAST_ROBOT_MS = 20; // of the robot's time in a part, and the most
 const MOST_ROBOT_MS = 2000;
 
-const MORE_PX = 4; // pixels below that nobody misses
+const SCROLL_TOLERANCE_PX = 4; // pixels below that nobody misses
 
 export class Lessons {
   #page;
@@ -125,10 +125,10 @@ export class Lessons {
       this.#keepProgram();
     });
     const lessonPage = element('lesson_page', HTMLElement);
-    const markMore = () => lessonPage.classList.toggle('more', lessonPage.scrollTop + lessonPage.clientHeight < lessonPage.scrollHeight - MORE_PX);
+    const markMore = () => lessonPage.classList.toggle('more', lessonPage.scrollTop + lessonPage.clientHeight < lessonPage.scrollHeight - SCROLL_TOLERANCE_PX);
     lessonPage.addEventListener('scroll', markMore, { passive: true });
     const resizeObserver = new ResizeObserver(markMore);
-    for (const observed of [lessonPage, element('lesson_step', HTMLElement)]) resizeObserver.observe(observed);
+    for (const observedElement of [lessonPage, element('lesson_step', HTMLElement)]) resizeObserver.observe(observedElement);
     this.#setReady(false);
   }
 

@@ -49,17 +49,17 @@ export function restoreVersion(version) {
 /**
  * Keeps as many as there is room for; where not even the newest has any, all stay that were there.
  * @param {Version[]} versions the newest first
- * @param {Version} [wanted] one of them
+ * @param {Version} [wantedVersion] one of them
  * @returns {boolean} whether that one is kept
  */
-function storeAll(versions, wanted = versions[0]) {
+function storeAll(versions, wantedVersion = versions[0]) {
   const newVersions = versions.slice(0, MOST_VERSIONS);
   while (newVersions.length > 1 && newVersions.reduce((sum, version) => sum + version.text.length, 0) > MOST_CHARACTERS) newVersions.pop();
   while (!storeText(STORAGE_KEY, JSON.stringify(newVersions))) {
     newVersions.pop();
     if (!newVersions.length) return false;
   }
-  return newVersions.some((version) => version === wanted);
+  return newVersions.some((version) => version === wantedVersion);
 }
 
 /**

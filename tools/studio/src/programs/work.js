@@ -46,7 +46,7 @@ function loadEarlierWorlds(storeName) {
  * @returns {boolean}
  */
 export function storeWork(work) {
-  return work.text.length <= MOST_CHARACTERS && storeInBoth(STORAGE_KEY, JSON.stringify(work));
+  return work.text.length <= MOST_CHARACTERS && storeInBothStorages(STORAGE_KEY, JSON.stringify(work));
 }
 
 /**
@@ -63,8 +63,8 @@ export function storeWorldTexts(newestText, earlierTexts) {
   let charactersLeft = MOST_CHARACTERS;
   const fittingWorlds = [...earlierTexts, ...otherWorlds].filter((worldText) => (charactersLeft -= worldText.length) >= 0);
   const ownEarlierTexts = fittingWorlds.filter((worldText) => earlierTexts.includes(worldText));
-  const areEarlierStored = storeInBoth(EARLIER_WORLDS_KEY, JSON.stringify(ownEarlierTexts), JSON.stringify(fittingWorlds));
-  const isStored = newestText ? storeInBoth(WORLD_KEY, newestText) && areEarlierStored : areEarlierStored;
+  const areEarlierStored = storeInBothStorages(EARLIER_WORLDS_KEY, JSON.stringify(ownEarlierTexts), JSON.stringify(fittingWorlds));
+  const isStored = newestText ? storeInBothStorages(WORLD_KEY, newestText) && areEarlierStored : areEarlierStored;
   if (isStored) ownWorlds = new Set([newestText, ...earlierTexts]);
   return isStored;
 }
@@ -75,7 +75,7 @@ function loadLastingWorlds() {
 }
 
 /** @param {string} key @param {string} content @param {string} [lastingContent] for the next tab @returns {boolean} whether that is kept, too */
-function storeInBoth(key, content, lastingContent = content) {
+function storeInBothStorages(key, content, lastingContent = content) {
   storeText(key, content, 'sessionStorage');
   return storeText(key, lastingContent);
 }

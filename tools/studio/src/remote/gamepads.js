@@ -1,6 +1,6 @@
 // What gamepads hold. A browser tells of no button that is pressed: who wants to know looks at each picture.
 
-import { heldOfStick, NOTHING_HELD } from './held.js';
+import { controlsOfStick, NOTHING_HELD } from './held.js';
 
 /** @import { HeldControls } from './held.js' */
 
@@ -12,7 +12,7 @@ const BUTTON_INDEXES = [12, 13, 14, 15, 0, 1];
 function controlsOf({ axes, buttons }) {
   const [right = 0, down = 0] = axes;
   const keys = BUTTON_INDEXES.reduce((keys, buttonIndex, keyIndex) => keys | (buttons[buttonIndex]?.pressed ? 1 << keyIndex : 0), 0);
-  return { ...(Math.hypot(right, down) > DEAD_ZONE ? heldOfStick(right, -down) : NOTHING_HELD), keys };
+  return { ...(Math.hypot(right, down) > DEAD_ZONE ? controlsOfStick(right, -down) : NOTHING_HELD), keys };
 }
 
 /** What each one that is there holds now, by its number. @returns {Map<number, HeldControls>} */

@@ -12,7 +12,7 @@ export function areControlsSame(first, second) {
 }
 
 /** Where a stick is that was moved so far of what it can be. @param {number} right @param {number} up @returns {HeldControls} */
-export function heldOfStick(right, up) {
+export function controlsOfStick(right, up) {
   const length = Math.max(1, Math.hypot(right, up));
   return { keys: 0, x: Math.round((MOST_PERCENT * right) / length) || 0, y: Math.round((MOST_PERCENT * up) / length) || 0 };
 }

@@ -10,7 +10,7 @@ import { pageState } from '../page/page_state.js';
 import { labelOf, text } from '../page/texts.js';
 import { LINK, REMOTE } from '../page/words.js';
 import { readGamepads } from './gamepads.js';
-import { HeldByHolder, areControlsSame, heldOfStick, NOTHING_HELD } from './held.js';
+import { HeldByHolder, areControlsSame, controlsOfStick, NOTHING_HELD } from './held.js';
 
 /** @import { HeldControls } from './held.js' */
 /**
@@ -26,7 +26,7 @@ const KEYBOARD_KEYS = [...Object.keys(ARROW_DIRECTIONS), 'a', 'b']; // in the or
 const THUMB_SHARE = 0.75; // of its own size, to where the stick ends
 const PRESSING_KEYS = [' ', 'Enter']; // what presses a button that has the focus
 /** Where arrows and letters are somebody else's. */
-const TAKEN_SELECTOR = 'input, textarea, select, dialog, [contenteditable=true], #blocks, #arena, [tabindex="0"]';
+const KEY_OWNER_SELECTOR = 'input, textarea, select, dialog, [contenteditable=true], #blocks, #arena, [tabindex="0"]';
 
 export class Pad {
   #heldByHolder = new HeldByHolder();
@@ -152,7 +152,7 @@ export class Pad {
   #controlsAt({ clientX, clientY }) {
     const { left, top, width, height } = this.#stickElement.getBoundingClientRect();
     const reach_px = width / 3;
-    return heldOfStick((clientX - left - width / 2) / reach_px, (top + height / 2 - clientY) / reach_px);
+    return controlsOfStick((clientX - left - width / 2) / reach_px, (top + height / 2 - clientY) / reach_px);
   }
 
   /** @param {KeyboardEvent} event */
@@ -162,7 +162,7 @@ export class Pad {
     if (!(target instanceof Element)) return;
     const buttonIndex = PRESSING_KEYS.includes(event.key) ? this.#keyButtons.findIndex((button) => button === target) : -1;
     const keyIndex = buttonIndex < 0 ? KEYBOARD_KEYS.indexOf(event.key.length > 1 ? event.key : event.key.toLowerCase()) : buttonIndex;
-    if (keyIndex < 0 || target.closest(TAKEN_SELECTOR)) return;
+    if (keyIndex < 0 || target.closest(KEY_OWNER_SELECTOR)) return;
     event.preventDefault(); // an arrow scrolls
     if (event.repeat) return;
     this.#pressedKeys.set(event.code, keyIndex);
@@ -182,7 +182,7 @@ export class Pad {
       if (doArrowsMoveStick && direction) [right, up] = [right + (direction[0] ?? 0), up + (direction[1] ?? 0)];
       else keys |= 1 << keyIndex;
     }
-    this.#hold('keyboard', { ...heldOfStick(right, up), keys });
+    this.#hold('keyboard', { ...controlsOfStick(right, up), keys });
   }
 
   /** Looks what gamepads hold, as long as there is one and a robot is driven. */

@@ -22,7 +22,7 @@ import { StopOffsets } from '../writing/parts.js';
  */
 
 const END_EVENTS = ['DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST'];
-const TAKEN_AWAY = '?'; // no list of places
+const NO_PLACES = '?'; // no list of places
 
 export class Debugging {
   #page;
@@ -104,7 +104,7 @@ export class Debugging {
 
   /** A line is sent: it takes the robot's places away. */
   onLine() {
-    if (this.#sentPlaces) this.#sentPlaces = TAKEN_AWAY;
+    if (this.#sentPlaces) this.#sentPlaces = NO_PLACES;
   }
 
   /** @param {RobotEvent} event */
@@ -156,7 +156,7 @@ export class Debugging {
     if (places.join() === this.#sentPlaces) return true;
     this.#sentPlaces = places.join();
     if (await this.#page.ask({ do: 'break', places }) === null) return false;
-    return this.#sentPlaces !== TAKEN_AWAY || this.#sendPlaces();
+    return this.#sentPlaces !== NO_PLACES || this.#sendPlaces();
   }
 
   // -- a halt -------------------------------------------------------------------------------------

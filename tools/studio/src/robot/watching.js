@@ -32,7 +32,7 @@ const LEAST_INTERVAL_MS = 200; // between two readings: nobody reads more often
 const PAUSE_MS = 1000; // after a program, before it begins again
 const EMPTY_LINE = 'W(0)'; // a line that ends at once, in the place of the other one
 /** What the program before reads no more after. */
-const ENDS = ['STARTED', 'DONE', 'STOPPED', 'FAULT', 'RESTARTED', 'LOST'];
+const READ_END_EVENTS = ['STARTED', 'DONE', 'STOPPED', 'FAULT', 'RESTARTED', 'LOST'];
 /** What does not end by itself what runs, and needs the robot for itself. */
 const INTERRUPTING_REQUESTS = ['identify', 'name', 'trim', 'claim'];
 
@@ -112,12 +112,12 @@ export class SensorWatch {
 
   /** @param {RobotEvent} event @param {boolean} isTyped it reports a line that somebody has typed @returns {boolean} whether nobody else is to hear of it */
   onEvent({ event, program: checksum = '', value = '', at: offset = -1, cause, rows = [] }, isTyped) {
-    if (event === 'READING') this.#takeRead(rows);
-    else if (ENDS.includes(event)) this.#read.clear();
+    if (event === 'READING') this.#applyReadRows(rows);
+    else if (READ_END_EVENTS.includes(event)) this.#read.clear();
     const isOwn = this.#lines.has(checksum);
     if (event === 'STARTED') this.#isOwnLine = isOwn;
     if (event === 'SHOW') {
-      if (isOwn) this.#takeReading(checksum, offset, value);
+      if (isOwn) this.#applyReading(checksum, offset, value);
       return isOwn || (!checksum && this.#isOwnLine);
     }
     if (event === 'STARTED' || event === 'PLACE') {
@@ -236,7 +236,7 @@ export class SensorWatch {
   // -- what it tells ------------------------------------------------------------------------------
 
   /** @param {string} checksum @param {number} offset @param {string} value */
-  #takeReading(checksum, offset, value) {
+  #applyReading(checksum, offset, value) {
     const line = this.#lines.get(checksum);
     const show = line && showAt(line, offset);
     if (!show) return;
@@ -245,7 +245,7 @@ export class SensorWatch {
   }
 
   /** @param {[number, string][]} rows what a program has read, for who has watched the sensors before */
-  #takeRead(rows) {
+  #applyReadRows(rows) {
     if (!this.#readings.size) return;
     for (const [, what] of rows) {
       const [kind, name = '', value = ''] = what.split(' ');

@@ -6,7 +6,7 @@ import { COLOURS } from '../page/own_robot.js';
 import { pageState } from '../page/page_state.js';
 import { drawDot, drawPath } from '../page/shapes.js';
 import { robotOf, ROBOTS, WORLDS } from '../page/words.js';
-import { drawWorld, lightTile, raiseWorld } from '../world/floor.js';
+import { drawLitTile, drawSolids, drawWorld } from '../world/floor.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
 /** @import { World, Point } from '../world/parts.js' */
@@ -188,10 +188,10 @@ export class Arena {
     pen.drawImage(this.#floorCanvas, -MARGIN_CM * this.#scale, -(world.height_cm + MARGIN_CM) * this.#scale);
     pen.setTransform(this.#floorToCanvas);
     pen.lineCap = pen.lineJoin = 'round';
-    lightTile(pen, world, x, y);
+    drawLitTile(pen, world, x, y);
     if (this.#isFromBehind) {
       pen.setTransform(1, 0, 0, 1, 0, 0);
-      raiseWorld(pen, world, this.#floorToCanvas, this.#scale);
+      drawSolids(pen, world, this.#floorToCanvas, this.#scale);
       pen.setTransform(this.#floorToCanvas);
     }
     world.rivals.forEach((rival, index) => drawRival(pen, rival, state?.rivals[index] ?? [rival.x_cm, rival.y_cm, rival.heading]));

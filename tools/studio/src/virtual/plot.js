@@ -15,7 +15,7 @@ export class Plot {
   /** @type {{at_ms: number, values: Map<string, number>}[]} */
   #samples = [];
   #colors = LIGHT_COLORS;
-  #keepEvery = 1; // of so many samples one is kept
+  #keptInterval = 1; // of so many samples one is kept
   #skipCount = 0; // samples until the next one that is kept
 
   /** @param {HTMLCanvasElement} canvas in an element that scrolls */
@@ -25,7 +25,7 @@ export class Plot {
 
   begin() {
     this.#samples = [];
-    this.#keepEvery = 1;
+    this.#keptInterval = 1;
     this.#skipCount = 0;
   }
 
@@ -41,11 +41,11 @@ export class Plot {
       this.#skipCount -= 1;
       return;
     }
-    this.#skipCount = this.#keepEvery - 1;
+    this.#skipCount = this.#keptInterval - 1;
     this.#samples.push(sample);
     if (this.#samples.length <= MOST_SAMPLES) return;
     this.#samples = this.#samples.filter((_, index) => index % 2 === 0);
-    this.#keepEvery *= 2;
+    this.#keptInterval *= 2;
   }
 
   /** @returns {string[]} names, in the order in which they came */

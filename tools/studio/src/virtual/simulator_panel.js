@@ -504,8 +504,8 @@ export class SimulatorPanel {
     this.#wasStopped = false;
     this.#bumpCount = 0;
     this.#canEarnStars = !judgedRun && !replay && !partProgram;
-    const before = this.#simulator.state;
-    const pose = partProgram && before && !before.touches ? before.pose : null; // a part goes on where the robot has room
+    const stateBefore = this.#simulator.state;
+    const pose = partProgram && stateBefore && !stateBefore.touches ? stateBefore.pose : null; // a part goes on where the robot has room
     this.#arena.begin(this.#worldChoice.shownWorld, pageState.robotName.value, this.#worldChoice.goals, pose);
     this.#plot.begin();
     this.#shownValues.clear();

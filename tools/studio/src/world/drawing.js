@@ -8,7 +8,7 @@ import { pageState } from '../page/page_state.js';
 import { currentLanguage, textKey, text } from '../page/texts.js';
 import {
   FLOOR, turnHandleOf, isSamePart, KINDS, withMovedPart, NUMBERS, clampToFloor, partAt, partsOf, pointAt, pointsOf, START, withTurnedHandle, withTurnedPart,
-  valueOf, withDrawn, withoutPart, withPoint,
+  valueOf, withDrawnPart, withoutPart, withPoint,
 } from './parts.js';
 import { partName, showNumbers } from './numbers.js';
 
@@ -231,7 +231,7 @@ export class WorldDrawing {
   #addPart(kind, track) {
     this.#setDrawnKind('');
     const world = this.#page.world();
-    const worldWith = withDrawn(world, kind, track);
+    const worldWith = withDrawnPart(world, kind, track);
     if (!worldWith) return this.#setNotice(text('world_full'));
     this.#chosenPart = { kind, index: world[kind].length };
     this.#pointIndex = -1;

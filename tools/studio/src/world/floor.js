@@ -56,14 +56,14 @@ export function drawWorld(pen, world, goals, takenFlags, isEdited) {
  * @param {DOMMatrix} place from the floor, in centimetres, to the picture
  * @param {number} scale pixels of a centimetre
  */
-export function raiseWorld(pen, world, place, scale) {
+export function drawSolids(pen, world, place, scale) {
   const { width_cm: x, height_cm: y } = world;
   const rows = [...world.walls.map(({ points }) => points), ...world.has_border ? [[[0, 0], [x, 0], [x, y], [0, y], [0, 0]]] : []];
   const walls = rows.flatMap((points) => points.slice(1).map((to, k) => ({ corners: plank(points[k] ?? to, to), high_cm: WALL_HIGH_CM, top: '#8a6544', side: '#6b4a2f' })));
   const boxes = world.boxes.map((box) => ({ corners: cornersOf(box), high_cm: BOX_HIGH_CM, top: '#c79a6b', side: '#9c7346' }));
-  const things = [...walls, ...boxes].map((each) => ({ ...each, base: each.corners.map(([at_x = 0, at_y = 0]) => place.transformPoint({ x: at_x, y: at_y })) }));
+  const solids = [...walls, ...boxes].map((each) => ({ ...each, base: each.corners.map(([at_x = 0, at_y = 0]) => place.transformPoint({ x: at_x, y: at_y })) }));
   const lowest = (/** @type {{y: number}[]} */ base) => Math.max(...base.map((each) => each.y));
-  for (const { base, high_cm, top, side } of things.sort((a, b) => lowest(a.base) - lowest(b.base))) {
+  for (const { base, high_cm, top, side } of solids.sort((a, b) => lowest(a.base) - lowest(b.base))) {
     const high = high_cm * scale, edges = base.map((from, k) => /** @type {const} */ ([from, base[(k + 1) % base.length] ?? from]));
     for (const [from, to] of edges.sort(([a, b], [c, d]) => a.y + b.y - c.y - d.y)) {
       drawPath(pen, [[from.x, from.y], [to.x, to.y], [to.x, to.y - high], [from.x, from.y - high]], '#5a3d26', 1, side);
@@ -74,8 +74,8 @@ export function raiseWorld(pen, world, place, scale) {
 
 /** The corners of a wall as thick as it is drawn. @param {number[]} from @param {number[]} to */
 function plank([from_x = 0, from_y = 0], [to_x = 0, to_y = 0]) {
-  const long = Math.hypot(to_x - from_x, to_y - from_y) || 1;
-  const x = (from_y - to_y) / long * WALL_CM / 2, y = (to_x - from_x) / long * WALL_CM / 2;
+  const length_cm = Math.hypot(to_x - from_x, to_y - from_y) || 1;
+  const x = (from_y - to_y) / length_cm * WALL_CM / 2, y = (to_x - from_x) / length_cm * WALL_CM / 2;
   return [[from_x + x, from_y + y], [to_x + x, to_y + y], [to_x - x, to_y - y], [from_x - x, from_y - y]];
 }
 
@@ -135,7 +135,7 @@ function fillTile(pen, { width_cm, height_cm }, x, y, colors) {
 }
 
 /** Lights the tile under a robot, where the floor has such tiles. @param {Pen} pen @param {World} world @param {number} x @param {number} y */
-export function lightTile(pen, world, x, y) {
+export function drawLitTile(pen, world, x, y) {
   const isOnFloor = x > 0 && y > 0 && x < world.width_cm && y < world.height_cm;
   if (isOnFloor && THEMES[world.name] === 'tiles') fillTile(pen, world, x, y, LIT_TILE_COLORS);
 }

@@ -201,7 +201,7 @@ function shiftToFloor({ start, width_cm, height_cm }) {
  * @param {Point[]} track
  * @returns {World | null} null where there is no room for one more
  */
-export function withDrawn(world, kind, track) {
+export function withDrawnPart(world, kind, track) {
   if (world[kind].length >= (kind === 'rivals' ? WORLD_LIMITS.rivals : WORLD_LIMITS.parts)) return null;
   const halfLength = Math.min(20, roundCm(world.width_cm / 4));
   const points = track.map(([x, y]) => /** @type {Point} */ ([roundCm(x), roundCm(y)]));

@@ -19,12 +19,12 @@ export function messageWithFix({ message = '', fix = '' }) {
 }
 
 /** A finding in words, as this person sees the program. @param {Finding} finding @returns {{message: string, fix: string}} */
-function sayAsSeen(finding) {
+function findingAsSeen(finding) {
   return pageState.view.value === 'blocks' ? sayOnBlocks(finding) : finding;
 }
 
 /** A finding on the page: code is shown as it looks in the program. @param {Finding} finding @returns {Node | string} */
-function makeSaid(finding) {
+function makeSentence(finding) {
   const { spoken, ...sentences } = finding.on_blocks;
   return pageState.view.value === 'blocks'
     ? makeTextElement('span', messageWithFix(sentences), { labelOfCode: (code) => labelOfCode(code, spoken) }) : messageWithFix(finding);
@@ -40,9 +40,9 @@ export function showMessages(list, findings, goTo) {
   const rows = findings.slice(0, MOST_MESSAGES).map((finding) => {
     const lineButton = makeButton('', () => goTo(finding), text('line', { line: finding.line }));
     lineButton.className = 'place';
-    lineButton.ariaLabel = text('say_fault', { line: finding.line, what: messageWithFix(sayAsSeen(finding)) });
+    lineButton.ariaLabel = text('say_fault', { line: finding.line, what: messageWithFix(findingAsSeen(finding)) });
     firstMessage ||= lineButton.ariaLabel;
-    const row = makeElement('li', '', lineButton, ' ', makeSaid(finding));
+    const row = makeElement('li', '', lineButton, ' ', makeSentence(finding));
     row.className = finding.severity;
     return row;
   });
@@ -61,7 +61,7 @@ export function showMessages(list, findings, goTo) {
 export function showRepair(list, findingIndex, finding, repair) {
   const repairButton = makeButton('repair', () => repair(finding));
   repairButton.className = 'repair';
-  repairButton.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: sayAsSeen(finding).fix }));
+  repairButton.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: findingAsSeen(finding).fix }));
   if (findingIndex < MOST_MESSAGES) list.children[findingIndex]?.append(' ', repairButton);
 }
 
