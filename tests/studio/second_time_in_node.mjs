@@ -784,6 +784,69 @@ const PARTS = {
       return { ends: [told.some((each) => each.error) ? 'failed' : 'good'], seen: [told.map(({ id, error }) => [id, error ?? 'ok']), number - first] };
     };
   },
+  // What is fetched: each piece is told, that nothing comes is told once, and that not all will come to whom it concerns. It
+  // ends 20 s after the last piece, or sooner, and then nothing is told of it any more.
+  async fetching() {
+    const page = freshPage();
+    const { watchedFetch } = await page.load('page/progress.js');
+    const NOTICE_MS = 3000, TIMEOUT_MS = 20_000;
+    return async (chance) => {
+      const began_ms = now(), told = [];
+      const tells = (what) => told.push([Math.round(now() - began_ms), what]);
+      const cancelling = new AbortController();
+      const gap = () => 7 * (chance.of([1, 1, 70, 70, 410, 440, 1000, 2700, 3000]) + chance.below(12)); // neither limit at the same time
+      const how = chance.of(['whole', 'whole', 'broken', 'broken', 'refused', 'lost']);
+      const answer_ms = gap(), gaps = Array.from({ length: chance.below(5) }, gap), end_ms = gap();
+      const cancel_ms = chance() < 0.4 ? 7 * chance.below(chance.of([400, 6000])) + 3 : Infinity;
+      if (cancel_ms < Infinity) later(cancel_ms).then(() => cancelling.abort(new Broken('cancelled')));
+      const fetcher = (_, { signal }) => new Promise((resolve, reject) => {
+        signal.addEventListener('abort', () => reject(signal.reason));
+        later(answer_ms).then(async () => {
+          if (how === 'lost') reject(new Broken());
+          if (how === 'refused') resolve(new Response('why', { status: 503 }));
+          let pieces;
+          resolve(new Response(new ReadableStream({ start(controller) { pieces = controller; } })));
+          let isOver = false;
+          signal.addEventListener('abort', () => { isOver = true; pieces.error(signal.reason); });
+          for (const ms of gaps) {
+            await later(ms);
+            if (!isOver) pieces.enqueue(new TextEncoder().encode('x'));
+          }
+          await later(end_ms);
+          if (!isOver) how === 'broken' ? pieces.error(new Broken()) : pieces.close();
+        });
+      });
+      const options = { cancelSignal: cancelling.signal, onWait: () => tells('waits'), onProgress: () => tells('comes'), onFail: () => tells('fails') };
+      let found = '';
+      watchedFetch('x', options, fetcher).then((response) => response.text()).then((all) => { found = all; }, () => { found = 'nothing'; });
+      await passes(300_000);
+      // What has to be told.
+      const wanted = [];
+      let last_ms = 0, at_ms = answer_ms, end = how, hasWaited = false;
+      const steps = ['lost', 'refused'].includes(how) ? [] : [...gaps.map((ms) => ['comes', ms]), [how, end_ms]];
+      const reaches = (next_ms) => { // whether it gets so far
+        const limit_ms = Math.min(cancel_ms, last_ms + TIMEOUT_MS);
+        if (!hasWaited && last_ms + NOTICE_MS < Math.min(next_ms, limit_ms)) {
+          wanted.push([last_ms + NOTICE_MS, 'waits']);
+          hasWaited = true;
+        }
+        if (next_ms < limit_ms) return true;
+        end = limit_ms === cancel_ms ? 'cancelled' : 'silent';
+        at_ms = limit_ms;
+        return false;
+      };
+      if (reaches(at_ms)) for (const [what, ms] of steps) {
+        if (!reaches(at_ms + ms)) break;
+        at_ms += ms;
+        if (what === 'comes') wanted.push([last_ms = at_ms, 'comes']);
+      }
+      if (!['whole', 'refused'].includes(end)) wanted.push([at_ms, 'fails']);
+      if (JSON.stringify(told) !== JSON.stringify(wanted)) throw new Error(`${JSON.stringify([how, answer_ms, gaps, end_ms, cancel_ms])} tells ${JSON.stringify(told)} in place of ${JSON.stringify(wanted)}`);
+      if (found !== ({ whole: 'x'.repeat(gaps.length), refused: 'why' }[end] ?? 'nothing')) throw new Error(`${end} has given ${found}`);
+      return { ends: [end], seen: [] };
+    };
+  },
+
   // Messages while somebody types.
   async checking() {
     const page = freshPage();
@@ -1063,44 +1126,115 @@ const PARTS = {
 
   // Python in its worker, which may be tried again until it is there.
   async python() {
-    let fails = '';
     const page = freshPage();
-    const notes = [];
+    const workers = [];
     globalThis.Worker = class extends EventTarget {
+      hasSpoken = false;
+      isEnded = false;
+      asked = [];
       constructor() {
         super();
-        const how = fails;
-        const says = (data, ms) => setTimeout(() => this.isEnded || this.dispatchEvent(Object.assign(new Event('message'), { data })), ms);
-        if (how === 'silent') return;
-        says({ begun: true }, 5);
-        if (how === 'error') setTimeout(() => this.dispatchEvent(Object.assign(new Event('error'), { message: 'broken' })), 10);
-        else says({ id: 0, error: how && 'not fetched' }, 20);
+        this.began_ms = now();
+        workers.push(this);
+      }
+      says(data) {
+        this.hasSpoken = true;
+        this.dispatchEvent(Object.assign(new Event('message'), { data }));
       }
       terminate() { this.isEnded = true; }
-      postMessage({ id, request }) {
-        setTimeout(() => this.isEnded || this.dispatchEvent(Object.assign(new Event('message'), { data: { id, answer: request } })), 30);
-      }
+      postMessage({ id, request }) { this.asked.push({ id, number: JSON.parse(request).number }); }
     };
     const { Python } = await page.load('python.js');
-    let python = null;
+    const NOTICE_MS = 3000, TIMEOUT_MS = 20_000;
     return async (chance, isGood) => {
-      notes.length = 0;
-      fails = isGood ? '' : chance.of(['error', 'not fetched', 'silent']);
-      const end = fails;
-      if (python) python.tryAgain('en');
-      else {
-        python = new Python('en');
-        python.listen({ onWait: () => notes.push('waits'), onBegin() {}, onFail: () => notes.push('fails') });
+      workers.length = 0;
+      const told = [], wanted = [];
+      const listens = () => ({ onWait: () => told.push('waits'), onFail: () => told.push('fails'), onBegin: () => told.push('begins') });
+      const ends = new Set();
+      let isReady = false, isLate = false, isThere = true, isAnswering = false, asks = 0;
+      const open = new Set(), ended = [], wantedEnds = [];
+      const python = new Python('en');
+      python.listen(listens());
+      python.ready.then(() => { isAnswering = true; });
+      const newest = () => workers.at(-1);
+      const rejects = () => {
+        for (const number of open) wantedEnds.push([number, 'rejected']);
+        open.clear();
+        newest().asked = [];
+      };
+      const fails = (end) => {
+        ends.add(end);
+        rejects();
+        if (isReady) return;
+        [isThere, isLate] = [false, false];
+        wanted.push('fails');
+      };
+      const acts = {
+        asks() {
+          const number = (asks += 1);
+          if (isThere) open.add(number);
+          else wantedEnds.push([number, 'rejected']);
+          python.ask({ number }).then((answer) => ended.push([number, answer]), () => ended.push([number, 'rejected']));
+        },
+        answers() {
+          const [request] = newest().asked.splice(0, 1);
+          if (!isThere || !request) return;
+          open.delete(request.number);
+          const isError = chance() < 0.3;
+          wantedEnds.push([request.number, isError ? 'rejected' : request.number]);
+          newest().says(isError ? { id: request.id, error: 'no' } : { id: request.id, answer: JSON.stringify(request.number) });
+        },
+        begins: () => isThere && newest().says({ begun: true }),
+        waits() {
+          if (!isThere) return;
+          wanted.push('waits');
+          isLate = !isReady; // what a lesson needs may be late when it is there
+          newest().says({ waits: true });
+        },
+        readies() {
+          if (!isThere) return;
+          [isReady, isLate] = [true, false];
+          newest().says({ id: 0 });
+        },
+        'not fetched'() {
+          if (!isThere || isReady) return;
+          fails('not fetched');
+          newest().says({ id: 0, error: 'not fetched' });
+        },
+        error() {
+          if (!isThere) return;
+          fails('error');
+          newest().dispatchEvent(Object.assign(new Event('error'), { message: 'broken' }));
+        },
+        tries() {
+          if (!isThere) wanted.push('begins');
+          isThere = true;
+          python.tryAgain('en');
+        },
+        listens() {
+          if (!isThere) wanted.push('fails');
+          else if (isLate) wanted.push('waits');
+          python.listen(listens());
+        },
+      };
+      const goesOn = async (ms) => { // nobody waits for a worker that says nothing
+        for (const [limit_ms, does] of [[NOTICE_MS, () => { isLate = true; wanted.push('waits'); }], [TIMEOUT_MS, () => fails('silent')]]) {
+          const worker = newest(), left_ms = worker.began_ms + limit_ms - now();
+          if (isThere && !worker.hasSpoken && left_ms > 0 && left_ms <= ms) does();
+        }
+        await passes(ms);
+      };
+      for (let k = 6 + chance.below(20); k > 0; k -= 1) {
+        const act = chance.of(['asks', 'asks', 'answers', 'waits', 'tries', 'tries', 'listens', chance.of(isGood ? ['begins', 'readies'] : Object.keys(acts))]);
+        acts[act]();
+        await goesOn(chance.of([0, 10, 2000, 19_000, 25_000]));
+        const is = (found, right, what) => { if (JSON.stringify(found) !== JSON.stringify(right)) throw new Error(`after ${act} ${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(right)}`); };
+        is(told, wanted, 'it is told');
+        is(ended, wantedEnds, 'asks end');
+        is([python.isLate, isAnswering], [isLate, isReady], 'late and ready');
+        is(workers.map(({ isEnded }) => isEnded), workers.map((worker) => !isThere || worker !== newest()), 'those that have ended');
       }
-      let open = 0;
-      for (let k = 0; k < 4; k += 1) {
-        open += 1;
-        python.ask({ k }).then((found) => isGood && notes.push(found), () => isGood && notes.push('rejected')).finally(() => { open -= 1; });
-        await passes(chance.below(100));
-      }
-      await passes(120_000);
-      if (open) throw new Error(`${open} never end: ${notes}`);
-      return { ends: [end], seen: [...notes] };
+      return { ends: [...ends], seen: [] };
     };
   },
 

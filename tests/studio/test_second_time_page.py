@@ -30,6 +30,7 @@ ENDS = {
     "returning": {"yes", "no", "lost", "reload", "joins", "leaves", "mate", "full"},
     "pictures": {"made", "none"},
     "worker": {"good", "failed"},
+    "fetching": {"whole", "broken", "refused", "lost", "cancelled", "silent"},
     "checking": {"changed", "checked"},
     "again": {"parted", "whole"},
     "lessons": {"check", "end", "edit"},
