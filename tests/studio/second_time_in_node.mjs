@@ -605,13 +605,17 @@ const PARTS = {
     };
   },
 
-  // What is heard of runs.
+  // What is heard of runs: each tone after the one before, unless that is late; nothing after a silence and nothing that is
+  // muted. The computer's sound is open as long as something sounds, and a while longer.
   async sounds() {
     const heard = [];
-    let context = null;
+    let hasDevice = true, context = null;
     const level = { setValueAtTime() {}, linearRampToValueAtTime() {}, exponentialRampToValueAtTime() {} };
     class Context {
-      constructor() { context = this; }
+      constructor() {
+        if (!hasDevice) throw new Broken();
+        context = this;
+      }
       state = 'running';
       destination = {};
       get currentTime() { return now() / 1000; }
@@ -623,44 +627,97 @@ const PARTS = {
         const note = { tone };
         tone.start = (at_s) => { note.begins_ms = Math.round(1000 * at_s); };
         tone.stop = (at_s = now() / 1000) => {
+          if (note.hasEnded) return;
           note.ends_ms = Math.round(1000 * at_s);
-          setTimeout(() => now() === note.ends_ms && tone.dispatchEvent(new Event('ended')), note.ends_ms - now());
+          const ended_ms = note.ends_ms;
+          setTimeout(() => {
+            if (note.hasEnded || note.ends_ms !== ended_ms) return;
+            note.hasEnded = true;
+            tone.dispatchEvent(new Event('ended'));
+          }, ended_ms - now());
         };
         heard.push(note);
         return tone;
       }
     }
     const page = freshPage();
-    playsNavigator({ userActivation: { hasBeenActive: true } });
+    const activation = { hasBeenActive: true };
+    playsNavigator({ userActivation: activation });
     Object.assign(window, { AudioContext: Context });
     globalThis.AudioContext = Context;
     const { Sounds } = await page.load('virtual/sounds.js');
-    const sounds = new Sounds();
-    return async (chance, isGood) => {
-      const began_ms = now();
-      for (const each of heard.splice(0)) isGood && each.ends_ms > began_ms && heard.push(each);
-      sounds.begin();
-      const before = heard.filter((each) => each.ends_ms > began_ms);
+    const LATE_MS = 500, OPEN_MS = 3000, LEAST_MS = 10, CRASH_MS = 180;
+    return async (chance) => {
+      const sounds = new Sounds();
       heard.length = 0;
-      const states = [before.length];
-      for (let k = 1 + chance.below(6); k > 0; k -= 1) {
-        if (chance() < 0.2) sounds.crash();
-        else sounds.beep(440 + chance.below(100), chance.of([0.05, 0.3, 2, 20]));
-        await passes(chance.below(400));
-        states.push(context?.state);
+      [context, hasDevice] = [null, true];
+      const wanted = []; // when each begins and ends, and how high it is
+      let isMuted = false, last_ms = 0, open_ms = -1; // until when it is open without a tone
+      const opens = () => {
+        if (isMuted || !activation.hasBeenActive || (!context && !hasDevice)) return false;
+        open_ms = 0;
+        return true;
+      };
+      const beeps = (hertz, duration_ms) => {
+        const begins_ms = Math.max(now(), last_ms);
+        if (!opens() || begins_ms - now() > LATE_MS) return;
+        last_ms = begins_ms + duration_ms;
+        wanted.push([begins_ms, begins_ms + Math.max(LEAST_MS, duration_ms), Math.max(20, Math.min(16_000, hertz))]);
+      };
+      const silences = () => {
+        for (const each of wanted) each[1] = Math.min(each[1], now());
+        last_ms = 0;
+      };
+      const acts = {
+        begins() {
+          silences();
+          if (opens()) open_ms = now() + OPEN_MS;
+          sounds.begin();
+        },
+        beeps() {
+          const hertz = chance.of([5, 440, 550, 20_000]), duration_ms = chance.of([1, 50, 300, 2000, 20_000]);
+          beeps(hertz, duration_ms);
+          sounds.beep(hertz, duration_ms / 1000);
+        },
+        crash() {
+          if (opens()) wanted.push([now(), now() + CRASH_MS, 0]);
+          sounds.crash();
+        },
+        cheers() {
+          silences();
+          for (const hertz of [523, 659, 784, 1047]) beeps(hertz, 120);
+          sounds.cheer();
+        },
+        silence() {
+          silences();
+          sounds.silence();
+        },
+        mute() {
+          isMuted = chance() < 0.6;
+          if (isMuted) silences();
+          sounds.mute(isMuted);
+        },
+        touches: () => { activation.hasBeenActive = chance() < 0.8; },
+        device: () => { hasDevice = chance() < 0.7; },
+        waits: () => {},
+      };
+      const ends = new Set();
+      for (let k = 4 + chance.below(16); k > 0; k -= 1) {
+        const act = chance.of(['beeps', 'beeps', ...Object.keys(acts)]);
+        ends.add(act);
+        acts[act]();
+        const check = () => {
+          const found = heard.map((each) => [each.begins_ms, each.ends_ms, each.tone.frequency.value ?? 0]);
+          if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`after it ${act} ${JSON.stringify(found)} is heard in place of ${JSON.stringify(wanted)}`);
+          const until_ms = Math.max(open_ms, ...wanted.map(([, end_ms]) => end_ms + OPEN_MS));
+          if (context && context.state !== (until_ms > now() ? 'running' : 'suspended')) throw new Error(`after it ${act} the sound is ${context.state} until ${until_ms} at ${now()}`);
+        };
+        check();
+        await passes(chance.of([0, 20, 250, 2990, 3010, 9000]) + chance.below(9));
+        check();
       }
-      const end = chance.of(['silence', 'mute', 'stop']); // stop: in the middle of a tone
-      if (end === 'silence') sounds.silence();
-      if (end === 'mute') {
-        sounds.mute(true);
-        sounds.beep(440, 1);
-        sounds.mute(false);
-      }
-      if (isGood) {
-        await passes(3500);
-        states.push(context?.state);
-      }
-      return { ends: [end], seen: [heard.map((each) => [each.begins_ms - began_ms, each.ends_ms - began_ms, each.tone.frequency.value ?? 0]), states] };
+      activation.hasBeenActive = true;
+      return { ends: [...ends], seen: [] };
     };
   },
 

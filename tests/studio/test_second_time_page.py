@@ -23,7 +23,7 @@ ENDS = {
     "bluetooth": {"open", "failed", "link_silent"},
     "simulator": {"stop", "leave", "wait", "failure", "ended"},
     "panel": {"stop", "wait", "running", "paused", "ended", "off", "refused", "breaks", "fault"},
-    "sounds": {"silence", "mute", "stop"},
+    "sounds": {"begins", "beeps", "crash", "cheers", "silence", "mute"},
     "stopping": {"confirm", "over"},
     "flashing": {"good", "port", "firmware", "flash", "meet", "cancel"},
     "pupil": {"removed"},
