@@ -806,41 +806,91 @@ const PARTS = {
     };
   },
 
-  // The worker: what it fetches later, over a connection that fails.
+  // The worker, which gets what it needs when it is asked for it, over a connection that may fail: each ask has one answer, an
+  // error only where something of it was lost meanwhile. Python is asked in the language that it has learnt, and after what
+  // it needs is there; nothing that is there is fetched again.
   async worker() {
-    let fails = () => false;
-    const posted = [];
-    const page = freshPage({
-      loadPyodide: async () => ({
-        FS: { mkdirTree() {} }, unpackArchive() {},
-        runPython: () => (request) => JSON.stringify({ done: JSON.parse(request) }),
-      }),
-    });
-    globalThis.postMessage = (each) => posted.push(each);
-    globalThis.name = 'en';
-    playsFetch(async (what) => {
-      await later(20);
-      if (fails()) throw new Broken();
-      return fails() ? { ok: false, status: 503 } : { ok: true, body: null, headers: new Headers(), status: 200, arrayBuffer: async () => new ArrayBuffer(1) };
-    });
-    await page.load('worker.js');
-    await passes(200);
-    let number = 0;
-    return async (chance, isGood) => {
-      posted.splice(0);
-      fails = () => !isGood && chance() < 0.4;
-      const first = number;
-      for (let k = 1 + chance.below(4); k > 0; k -= 1) {
-        const language = chance.of(['es', 'pt', 'en']);
-        const request = chance.of([{ do: 'lesson_list', language }, { do: 'learn', language }]);
-        dispatchEvent(Object.assign(new Event('message'), { data: { id: (number += 1), request: JSON.stringify(request) } }));
-        await passes(chance.of([5, 100]));
+    const SOURCE = 'en', NEEDS = { lesson_list: 'lessons.zip', group_join: 'together.zip' };
+    let pages = 0;
+    return async (chance) => {
+      const number = (pages += 1);
+      const there = new Set(), learnt = new Set(); // what Python has
+      const under = new Map(), lost = []; // what is fetched, how often; what was lost, and when
+      const posted = new Map(), reached = new Map(), asked = new Map();
+      let wrong = '', ready = '';
+      const fails = (what) => { wrong ||= what; };
+      const first = chance() < 0.8 ? '' : chance.of(['tiniscript.zip', 'messages.en.json', 'messages.es.json', 'pyodide']);
+      let loses = (name) => name === first;
+      const page = freshPage({
+        loadPyodide: async () => {
+          if (first === 'pyodide') throw new Broken();
+          return {
+            FS: { mkdirTree() {} },
+            unpackArchive(data) {
+              if (data.name.startsWith('not ')) fails(`${data.name} is unpacked`);
+              there.add(data.name);
+            },
+            runPython: () => (text) => {
+              const { do: what, language, id } = JSON.parse(text);
+              if (what === 'learn') return learnt.add(language);
+              const before = asked.get(id);
+              if (NEEDS[what] && !there.has(NEEDS[what])) fails(`${what} comes before ${NEEDS[what]}`);
+              const isLearnt = learnt.has(before.language);
+              if (what.startsWith('lesson') && !isLearnt && before.isUnder && !lost.some(({ name, at }) => name === before.messages && at >= before.at)) fails(`${what} does not wait for its language`);
+              if (language !== (isLearnt ? before.language : SOURCE)) fails(`${what} is asked in ${language}, and not in ${before.language}`);
+              reached.set(id, true);
+              return JSON.stringify({ id });
+            },
+          };
+        },
+      });
+      globalThis.postMessage = ({ id, answer, error, waits, begun }) => {
+        if (waits || begun) return;
+        if (id === 0) {
+          if (!lost.length || ready === '') ready = error ? 'failed' : 'ready';
+          return;
+        }
+        if (posted.has(id)) fails('it is answered twice');
+        posted.set(id, error ? 'error' : 'answer');
+        const { what, language, at, messages } = asked.get(id);
+        const needs = what === 'learn' ? messages : NEEDS[what];
+        if (error && !lost.some((each) => each.name === needs && each.at >= at) && ready !== 'failed') fails(`${what} fails: ${error}`);
+        if (!error && what !== 'learn' && (!reached.has(id) || JSON.parse(answer).id !== id)) fails(`${what} is answered, and was not done`);
+        if (!error && what === 'learn' && !learnt.has(language)) fails(`${language} is learnt, and is not there`);
+      };
+      globalThis.name = chance.of(['', 'en', 'es']);
+      playsFetch(async (address) => {
+        const name = String(address).replace('./', '');
+        if (name.endsWith('.zip') && (there.has(name) || under.get(name))) fails(`${name} is fetched again`);
+        if (learnt.has(name.split('.')[1])) fails(`${name} is fetched again`);
+        under.set(name, (under.get(name) ?? 0) + 1);
+        const isLost = loses(name);
+        await later(ready ? 5 + chance.below(chance.of([20, 400])) : name.endsWith('.zip') ? 10 : 20);
+        under.set(name, under.get(name) - 1);
+        if (isLost) lost.push({ name, at: now() });
+        if (isLost && chance() < 0.5) throw new Broken();
+        return { ok: !isLost, status: isLost ? 503 : 200, body: null, arrayBuffer: async () => Object.assign(new ArrayBuffer(1), { name: isLost ? `not ${name}` : name }) };
+      });
+      await page.load('worker.js');
+      await passes(30);
+      const isBroken = first !== '' && first !== 'messages.es.json';
+      if (ready !== (isBroken ? 'failed' : 'ready')) throw new Error(`without ${first} it is ${ready}`);
+      loses = () => chance() < 0.3;
+      let count = 0;
+      for (let k = 2 + chance.below(8); k > 0; k -= 1) {
+        const what = chance.of(['check', 'learn', 'learn', 'lesson_list', ...Object.keys(NEEDS)]), language = chance.of(['es', 'pt', 'en']);
+        const id = (count += 1), messages = `messages.${language}.json`;
+        asked.set(id, { what, language, messages, at: now(), isUnder: under.get(messages) > 0 });
+        dispatchEvent(Object.assign(new Event('message'), { data: { id, request: JSON.stringify({ do: what, language, id }) } }));
+        await passes(chance.of([0, 5, 50, 200]));
       }
       await passes(500);
-      const told = posted.filter((each) => each.id).map((each) => ({ ...each, id: each.id - first })).sort((a, b) => a.id - b.id);
-      return { ends: [told.some((each) => each.error) ? 'failed' : 'good'], seen: [told.map(({ id, error }) => [id, error ?? 'ok']), number - first] };
+      if (wrong) throw new Error(`page ${number}: ${wrong}`);
+      if (posted.size !== count) throw new Error(`${count} are asked, and ${posted.size} answered`);
+      return { ends: [isBroken ? 'none' : [...posted.values()].includes('error') ? 'failed' : 'good'], seen: [] };
     };
   },
+
   // What is fetched: each piece is told, that nothing comes is told once, and that not all will come to whom it concerns. It
   // ends 20 s after the last piece, or sooner, and then nothing is told of it any more.
   async fetching() {

@@ -29,7 +29,7 @@ ENDS = {
     "pupil": {"removed"},
     "returning": {"yes", "no", "lost", "reload", "joins", "leaves", "mate", "full"},
     "pictures": {"made", "none"},
-    "worker": {"good", "failed"},
+    "worker": {"good", "failed", "none"},
     "fetching": {"whole", "broken", "refused", "lost", "cancelled", "silent"},
     "checking": {"changed", "checked"},
     "again": {"parted", "whole"},
