@@ -4343,11 +4343,30 @@ const PARTS = {
         const isAgain = code !== '' && store.getItem('tiniscript.loaded') === code;
         location.hash = code ? `#code=${code}` : chance.of(['', '#code=12', '#other']);
         const { hash } = location, before = store.getItem('tiniscript.token') ?? '';
-        let isForeign = chance() < 0.4, reloads = 0;
+        let reloads = 0;
         location.reload = () => { reloads += 1; };
-        const registration = () => ({ active: {}, unregister: async () => { isForeign = false; } });
-        playsNavigator({ serviceWorker: { getRegistrations: async () => (isForeign ? [registration()] : []) } });
-        globalThis.caches = { keys: async () => [], delete: async () => true };
+        const scriptURL = 'http://127.0.0.1/service_worker.js';
+        /** What a browser has registered here: the page's own, or one of somebody else. */
+        let registrations = Array.from({ length: chance.below(3) }, () => {
+          const kind = chance.of(['own', 'own', 'first', 'address', 'kept', 'newer', 'lost', 'waits']);
+          const isOwn = kind === 'own' || kind === 'first', worker = { scriptURL: kind === 'address' ? 'http://127.0.0.1/other.js' : scriptURL };
+          const each = {
+            isOwn,
+            ...kind === 'first' ? { active: null, installing: worker } : { active: worker, waiting: kind === 'waits' ? { scriptURL } : null },
+            updateViaCache: kind === 'kept' ? 'all' : 'imports',
+            async update() {
+              await later(3);
+              if (kind === 'lost') throw new Broken();
+              if (kind === 'newer') each.installing = { scriptURL };
+            },
+            unregister: async () => { registrations = registrations.filter((other) => other !== each); },
+          };
+          return each;
+        });
+        const ownCount = registrations.filter(({ isOwn }) => isOwn).length, isForeign = registrations.length > ownCount;
+        playsNavigator({ serviceWorker: { getRegistrations: async () => registrations } });
+        const cached = new Set(['theirs', 'ours']);
+        globalThis.caches = { keys: async () => [...cached], delete: async (name) => cached.delete(name) };
         ends = chance.of(['given', 'given', 'used', 'lost']);
         let asked = 0;
         const tokens = [];
@@ -4369,6 +4388,7 @@ const PARTS = {
         }
         const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
         again = reloads && chance() < 0.8 ? code : '';
+        is([registrations.filter(({ isOwn }) => isOwn).length, registrations.length, cached.size], [ownCount, wasForeign || !isForeign ? ownCount : registrations.length, wasForeign ? 0 : 2], 'what is registered, and kept');
         if (wasForeign && !isFull && !isAgain) is([reloads, asked, location.hash], [1, 0, hash], 'beside a worker of somebody else');
         else {
           const token = wasForeign ? before : !code ? before : ends === 'given' ? `token ${code}` : '';
