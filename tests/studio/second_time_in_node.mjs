@@ -3365,17 +3365,25 @@ const PARTS = {
     /** What a browser keeps for an address, by the name of each store. @type {Map<string, Map<string, string>>} */
     let kept = new Map();
     let served = 0;
+    let claimed = 0; // by which build the open pages are answered
     let loses = () => false;
-    const fetches = async (name) => {
+    let before = new Map(); // what the browser itself has fetched, which it may give again
+    const nameOf = (request) => request.name ?? request;
+    const fetches = async (request) => {
+      const name = nameOf(request);
       await later(5);
       if (loses()) throw new Broken();
-      return `${name} of ${served}`;
+      if (request.cache !== 'reload' && before.has(name)) return before.get(name);
+      before.set(name, `${name} of ${served}`);
+      return before.get(name);
     };
-    const nameOf = (request) => request.name ?? request;
     const storeOf = (all) => ({
-      match: async (request) => all.get(nameOf(request)),
+      match: async (request, { ignoreSearch = false } = {}) => {
+        const pathOf = (name) => (ignoreSearch ? name.split('?')[0] : name);
+        return [...all].find(([name]) => pathOf(name) === pathOf(nameOf(request)))?.[1];
+      },
       async addAll(requests) {
-        const found = await Promise.all(requests.map(async (each) => [nameOf(each), await fetches(nameOf(each))]));
+        const found = await Promise.all(requests.map(async (each) => [nameOf(each), await fetches(each)]));
         for (const [name, content] of found) all.set(name, content);
       },
     });
@@ -3388,12 +3396,12 @@ const PARTS = {
       delete: async (name) => kept.delete(name),
       keys: async () => [...kept.keys()],
     };
-    class Request { constructor(name) { this.name = name; } }
+    class Request { constructor(name, { cache }) { Object.assign(this, { name, cache }); } }
     /** The worker of a build. @returns {(kind: string, more?: object) => Promise<any>} */
     const worker = (version) => {
       const heard = new Map();
-      const self = { addEventListener: (kind, does) => heard.set(kind, does), clients: { claim: async () => {} } };
-      new Function('self', 'caches', 'fetch', 'Request', 'VERSION', 'FILES', 'LANGUAGES', source)(self, caches, (request) => fetches(nameOf(request)), Request, `v${version}`, FILES, LANGUAGES);
+      const self = { addEventListener: (kind, does) => heard.set(kind, does), clients: { claim: async () => { claimed = version; } } };
+      new Function('self', 'caches', 'fetch', 'Request', 'VERSION', 'FILES', 'LANGUAGES', source)(self, caches, fetches, Request, `v${version}`, FILES, LANGUAGES);
       return async (kind, more = {}) => {
         let done = null;
         const takes = (promise) => { done = promise; };
@@ -3403,6 +3411,7 @@ const PARTS = {
     };
     return async (chance, isGood) => {
       kept = new Map([['of others', new Map([['./', 'theirs']])]]);
+      before = new Map();
       const ends = new Set();
       let open = null; // the build that the page is of
       let version = 0;
@@ -3416,7 +3425,7 @@ const PARTS = {
       for (let k = 3 + chance.below(8); k > 0; k -= 1) {
         loses = () => !isGood && chance() < 0.15;
         const act = chance.of(open ? ['builds', 'speaks', 'speaks', 'stranger'] : ['builds']);
-        if (act === 'stranger') kept.set(`tiniscript-studio-v${served + 1}`, new Map([...FILES, 'es.json', './?'].map((name) => [name, 'a stranger has put it there'])));
+        if (act === 'stranger') kept.set(`tiniscript-studio-v${served + 1}`, new Map(['./?', ...FILES, 'es.json'].map((name) => [name, 'a stranger has put it there'])));
         if (act === 'speaks') {
           const language = chance.of(Object.keys(LANGUAGES));
           if (await ended(open('message', { data: language }))) seen.add(language);
@@ -3428,11 +3437,17 @@ const PARTS = {
           if (isThere) {
             [open, version] = [next, served];
             await ended(open('activate'));
+            if (claimed !== version) throw new Error(`the open pages are those of ${claimed}`);
             if (`${[...kept.keys()].sort()}` !== `of others,tiniscript-studio-v${version}`) throw new Error(`it keeps ${[...kept.keys()]} of ${version}`);
           }
           ends.add(isThere ? 'installed' : 'lost');
         }
         if (!open) continue;
+        loses = () => false;
+        let other = '';
+        open('fetch', { request: { name: 'other', method: 'GET', cache: 'reload' } }).then((found) => { other = found; });
+        await passes(20);
+        if (other !== `other of ${served}`) throw new Error(`with a network it gives ${other}`);
         loses = () => true;
         if (await open('fetch', { request: { name: './robots', method: 'POST' } })) throw new Error('it answers for the server');
         for (const name of ['./?', ...FILES, ...[...seen].flatMap((language) => LANGUAGES[language])]) {
@@ -3440,7 +3455,7 @@ const PARTS = {
           open('fetch', { request: { name, method: 'GET' } }).then((found) => { answer = found; }, () => {});
           await passes(20);
           if (answer.startsWith('a stranger')) throw new Error(`${name} is what a stranger has left`);
-          if (name !== './?' && !(FILES.includes(name) ? [`${name} of ${version}`] : Array.from({ length: served }, (_, n) => `${name} of ${n + 1}`)).includes(answer)) throw new Error(`without a network ${name} of ${version} is ${answer}`);
+          if (!(name === './?' ? [`./ of ${version}`] : FILES.includes(name) ? [`${name} of ${version}`] : Array.from({ length: served }, (_, n) => `${name} of ${n + 1}`)).includes(answer)) throw new Error(`without a network ${name} of ${version} is ${answer}`);
         }
       }
       return { ends: [...ends], seen: [] };
