@@ -1006,26 +1006,64 @@ const PARTS = {
     };
   },
 
-  // A run that is kept, and played again.
+  // A run of a robot, a real one or one of a file, that is kept, and played again: what is marked of it, what its file has and
+  // where it parts are as a model has them of what has come since it began.
   async again() {
     const page = freshPage();
     const { Run } = await page.load('virtual/runs.js');
-    const run = new Run({ of: 'real', text: 'F(1)', robot: 'tinibot', program: '1' }, PROGRAM, null);
-    run.file = 'a run';
-    return async (chance) => {
-      run.restart();
-      let now_ms = chance.below(100);
-      let bumps = 0;
-      let parting = null;
-      for (let k = chance.below(60); k > 0; k -= 1) {
+    const MOST_MARKS = 10_000;
+    // Line by line: F, a WHEN with a B, another with an L.
+    const text = 'F(1)\nWHEN(KEY_A)\nB(1)\nEND_WHEN\nWHEN(KEY_B)\nL(1)\nEND_WHEN';
+    const places = [[0, 1, 1, 1, 5], [2, 2, 1, 4, 9], [4, 3, 1, 3, 5], [6, 5, 1, 7, 9], [8, 6, 1, 6, 5]];
+    const inWhen = { 4: 'first', 8: 'other' }; // by the offset of what it does
+    let run = null;
+    return async (chance, isGood) => {
+      const [of, file] = isGood ? ['virtual', 'a run'] : chance.of([['virtual', 'a run'], ['virtual', 'a run'], ['virtual', ''], ['real', ''], ['real', 'a run']]);
+      if (isGood && run?.origin.of === of && run.file) run.restart(); // it is played again
+      else run = new Run({ of, text, robot: 'tinibot', program: '1' }, { ...PROGRAM, places }, null);
+      run.file = file;
+      run.fileRows = file ? [[5, 'READ DISTANCE 1'], [500, 'READ DISTANCE 2']] : [];
+      const isKept = run.origin.of === 'virtual' && !run.file; // what comes is what its file has
+      const marks = [], rows = [];
+      let now_ms = chance.below(100), bumps = 0, parting = null, begun = [], end_ms = run.end_ms;
+      const marked = (at_ms, kind) => {
+        marks.push({ at_ms, kind });
+        if (marks.length > MOST_MARKS) marks.splice(0, MOST_MARKS / 2);
+      };
+      const add = (count) => {
         now_ms += 1 + chance.below(90);
-        bumps += Number(chance() < 0.1);
-        if (chance() < 0.02) parting ??= { at_ms: now_ms };
-        const events = chance() < 0.4 ? [[now_ms, chance.of(['SHOW 1', 'MOTORS 1 2', 'READ DISTANCE 5', 'FAULT 1', 'BEEP 97 100']), 0]] : [];
-        run.add({ now_ms, bumps, parting, events, at: 0, places: [0], is_running: true });
-      }
-      const { marks, moments, seconds, size } = run;
-      return { ends: [parting ? 'parted' : 'whole'], seen: structuredClone([marks, run.parting, moments.length, moments.events, moments.parts, moments.at(moments.length - 1).shown, moments.last_ms, seconds, size]) };
+        const events = Array.from({ length: count }, () => [now_ms, chance.of(['SHOW 1', 'MOTORS 1 2', 'READ DISTANCE 5', 'FAULT 1', 'BEEP 97 100']), 0]);
+        for (const [at_ms, event] of events) if (!event.startsWith('READ')) marked(at_ms, ['SHOW', 'FAULT', 'BEEP'].find((word) => event.startsWith(word)) ?? '');
+        if (chance() < 0.1) {
+          bumps += 1;
+          marked(now_ms, 'BUMP');
+        }
+        const at = [0, ...chance() < 0.7 ? [chance.of([2, 4, 4, 6, 8, 8])] : []], begins = at.map((each) => inWhen[each]).filter(Boolean);
+        if (begins.some((each) => !begun.includes(each))) marked(now_ms, 'WHEN');
+        begun = begins;
+        const more = chance() < 0.3 ? [[now_ms, chance.of(['KEYS 0 0 0', 'KEYS 1 0 0', 'KEYS 0 50 -5', `READ DISTANCE ${chance.below(9)}`])]] : [];
+        if (isKept) {
+          for (const [at_ms, row] of more) if (row.startsWith('KEYS') && row !== 'KEYS 0 0 0') marked(at_ms, 'KEYS');
+          rows.push(...more);
+        }
+        const parts = chance() < 0.05 ? { at_ms: chance() < 0.5 ? now_ms : null } : null;
+        if (parts && !parting) {
+          parting = parts;
+          if (parts.at_ms !== null) marked(parts.at_ms, 'PART');
+        }
+        const is_full = chance() < 0.1;
+        if (!is_full && run.origin.of === 'virtual') end_ms = now_ms;
+        run.add({ now_ms, bumps, parting: parts, events, at: 0, places: at, is_running: true, is_full, rows: more });
+      };
+      for (let k = chance.below(60); k > 0; k -= 1) add(chance.below(3));
+      if (!isGood && chance() < 0.05) for (let k = 0; k < 5; k += 1) add(5000);
+      const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found).slice(0, 400)} in place of ${JSON.stringify(wanted).slice(0, 400)}`); };
+      is(run.marks, marks, 'marks');
+      is([run.rows, run.end_ms, run.parting], [rows, end_ms, parting], 'what its file has, its end, and where it parts');
+      const known = rows.length ? rows : run.fileRows;
+      for (const at_ms of [0, 50, 600, now_ms / 2]) is(run.readAt('DISTANCE', at_ms) ?? null, known.filter(([when, row]) => when <= at_ms && row.startsWith('READ')).at(-1)?.[1].split(' ').at(-1) ?? null, `read at ${at_ms}`);
+      const { moments, seconds } = run;
+      return { ends: [parting ? 'parted' : 'whole'], seen: isGood && structuredClone([moments.length, moments.events, moments.parts, moments.at(moments.length - 1).shown, moments.last_ms, seconds]) };
     };
   },
 
