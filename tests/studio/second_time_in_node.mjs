@@ -2623,27 +2623,101 @@ const PARTS = {
     };
   },
 
-  // The worlds that were drawn, as they are kept.
+  // The worlds that were drawn or opened, in a tab that is loaded again: the newest and those before it are there as they were
+  // when they were last kept, but those that no file can say, and those that nobody can read.
   async worlds() {
-    const page = freshPage();
-    await learns(page);
-    const { OwnWorlds } = await page.load('world/own.js');
-    const { loadWorldTexts } = await page.load('programs/work.js');
-    let late = () => 5;
-    const own = new OwnWorlds({ ask: async ({ form }) => { await later(late()); return { text: `text of ${form.name}` }; } });
-    return async (chance, isGood) => {
-      late = () => (isGood ? 50 : 5 + chance.below(600));
-      const count = 1 + chance.below(5);
-      for (let k = 0; k < count; k += 1) {
-        own.setNewest({ name: `${isGood ? 'good' : 'bad'} ${k}` }, isGood);
-        own.storeTexts('tinibot');
-        if (!isGood) await passes(chance.below(300));
+    const MOST_EARLIER = 5;
+    return async (chance) => {
+      const page = freshPage();
+      await learns(page);
+      const { OwnWorlds } = await page.load('world/own.js');
+      const { loadWorldTexts } = await page.load('programs/work.js');
+      const unreadable = new Set();
+      let made = 0, late = () => 5, asks = 0, isReady = true, wrong = '';
+      const textOf = ({ id = 0 }) => (id % 7 ? `text of ${id}\n# no name` : '');
+      const python = () => ({
+        ready: later(isReady ? 0 : 200).then(() => { isReady = true; }),
+        async ask({ do: what, form, name }, data) {
+          if (!isReady) wrong = 'it is asked before it is there';
+          asks += 1;
+          await later(late());
+          if (what === 'write_world') return textOf(form) ? { text: textOf(form) } : { refused: ['no'] };
+          const text = new TextDecoder().decode(data), id = Number(/^text of (\d+)\n# no name$/.exec(text)?.[1]);
+          return id && !unreadable.has(id) ? { world: { name, id } } : {};
+        },
+      });
+      let own = new OwnWorlds(python());
+      let worlds = [null]; // the newest first
+      let kept = [null];
+      let newest = 0; // of the times that they were kept
+      const has = () => [own.newestWorld, ...own.earlierWorlds].map((world) => world && [world.id, world.name]);
+      const rowOf = (list) => list.map((world) => world && [world.id, world.name]);
+      const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
+      const hasRoomFor = (hasRoom) => { window.localStorage.room = window.sessionStorage.room = hasRoom ? Infinity : 0; };
+      const sets = (world, isOther) => {
+        const [before, ...earlier] = worlds;
+        worlds = [world, ...isOther && before ? [before] : [], ...earlier].slice(0, 1 + MOST_EARLIER);
+      };
+      const acts = {
+        draws() {
+          const world = { id: (made += 1), name: chance.of(['', 'n', '# n']) }, isOther = chance() < 0.6;
+          sets(world, isOther);
+          own.setNewest(world, isOther);
+        },
+        earlier() {
+          const index = chance.below(MOST_EARLIER), [, ...earlier] = worlds, world = earlier[index];
+          own.restoreEarlier(index);
+          if (!world) return;
+          worlds = [worlds[0], ...earlier.filter((each) => each !== world)];
+          sets(world, true);
+        },
+        keeps() {
+          const number = (newest += 1), now_ = worlds, hasRoom = chance() < 0.8;
+          hasRoomFor(hasRoom);
+          own.storeTexts('tinibot').then((isKept) => {
+            if (number !== newest) return is(isKept, true, 'what a newer one says');
+            is(isKept, window.localStorage.room > 0, 'whether it is kept');
+            if (isKept) kept = [textOf(now_[0] ?? {}) ? now_[0] : kept[0], ...now_.slice(1)]; // one that nobody can write takes no other's place
+          }).catch((why) => { wrong = String(why); });
+        },
+        async reloads() {
+          await passes(3000);
+          hasRoomFor(true);
+          for (const world of kept) if (world && chance() < 0.15) unreadable.add(world.id);
+          isReady = chance() < 0.5;
+          own = new OwnWorlds(python());
+          const isThere = ([world]) => Boolean(world && textOf(world) && !unreadable.has(world.id));
+          const [before, ...earlier] = kept, hadText = before && textOf(before);
+          let isWhole = null;
+          own.restore().then((found) => { isWhole = found; });
+          await passes(3000);
+          is(isWhole, !hadText || isThere([before]), 'whether it is whole');
+          worlds = [isThere([before]) ? before : null, ...earlier.filter((world) => isThere([world]))];
+        },
+        async rests() { // then nobody has to write them once more
+          acts.keeps();
+          await passes(3000);
+          asks = 0;
+          acts.keeps();
+          await passes(3000);
+          is(asks, 0, 'how often they are written');
+        },
+        waits: () => {},
+      };
+      const ends = new Set();
+      for (let k = 5 + chance.below(20); k > 0; k -= 1) {
+        const act = chance.of(['draws', 'draws', 'keeps', ...Object.keys(acts)]);
+        late = () => 5 + chance.below(chance.of([5, 600]));
+        ends.add(act);
+        await acts[act]();
+        await passes(chance.of([0, 100, 2000]));
+        is(has(), rowOf(worlds), `after it ${act}`);
+        if (wrong) throw new Error(wrong);
       }
-      if (!isGood) return { ends: [count > 1 ? 'several' : 'one'], seen: [] };
-      own.earlierWorlds = [];
-      own.storeTexts('tinibot');
-      await passes(2000);
-      return { ends: ['good'], seen: loadWorldTexts().newest };
+      await passes(3000);
+      const [newestText, ...texts] = kept.map((world) => (world && textOf(world) ? `${world.name && `# ${world.name}\n`}${textOf(world)}` : ''));
+      is(loadWorldTexts(), { newest: newestText, before: texts.filter(Boolean) }, 'what is kept');
+      return { ends: [...ends], seen: [] };
     };
   },
 

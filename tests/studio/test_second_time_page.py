@@ -44,7 +44,7 @@ ENDS = {
     "news": {"asks", "tells", "moves"},
     "orders": {"run", "start", "step", "line", "send", "points", "halts", "stop"},
     "stops": {"silent", "confirmed"},
-    "worlds": {"one", "several"},
+    "worlds": {"draws", "earlier", "keeps", "reloads", "rests"},
     "drawing": {"adds", "undoes", "redoes", "enters", "opens"},
     "programs": {"kept", "full"},
     "arena": {"long", "short"},
