@@ -3090,71 +3090,102 @@ const PARTS = {
     await learns(page);
     const { Recorder } = await page.load('robot/recorder.js');
     const { Runs } = await page.load('virtual/runs.js');
+    const { pageState } = await page.load('page/page_state.js');
+    const { text: textOf } = await page.load('page/texts.js');
+    const MOST_EVENTS = 10_000, MOST_MS = 600_000, MOST_PROGRAMS = 20;
     const runs = new Runs();
+    let trims = 0;
     page.byId('record_play').hidden = true; // as in index.html
-    const recorder = new Recorder({ runs, play() {} });
-    recorder.addProgram({ program: 'aa', places: [], shows: [], variables: [] });
-    let own = []; // what the newest run of ours has told, and when
-    let isOpen = false;
-    let hasUnread = false; // what a sensor of the newest run has read, and nobody knows
-    let began = null; // by the clock that stands in a halt; null before the first row of a run by the button
-    let halted = null;
-    const tells = (event) => {
-      began ??= now();
-      if (isOpen) own.push([Math.round(now() - began), event]);
+    const recorder = new Recorder({ runs: { addRun: (run) => runs.addRun(run), trim: () => { trims += 1; runs.trim(); } }, play() {} });
+    let sent = []; // the programs that robots have from here, the newest last
+    const sends = (name, isSensing) => {
+      const text = `// ${name}${isSensing ? ' DISTANCE' : ''}`;
+      pageState.robotName.set('tinibot');
+      pageState.programText.set(text);
+      sent = [...sent.filter((each) => each.name !== name), { name, text }].slice(-MOST_PROGRAMS);
+      recorder.addProgram({ program: name, places: [], shows: [], variables: [] });
     };
+    let own = []; // what the newest run of ours has told, and when
+    let ran = null; // its program
+    let isOpen = false;
+    let unread = false; // what a sensor of the newest run has read, and nobody knows
+    let lacks = false; // the robot tells of no readings
+    let began = null; // by the clock that stands in a halt; null before the first row of a run by the button
+    let halted = null, byButton = false, end_ms = null, over = 0;
     const goesOn = () => {
-      if (halted !== null) began += now() - halted;
+      if (halted !== null && began !== null) began += now() - halted;
       halted = null;
     };
+    const elapsed = () => (began === null ? 0 : Math.round(now() - began));
     const ends = (event) => {
       goesOn();
-      tells(event);
+      if (!isOpen) return;
+      end_ms = Math.min(elapsed(), MOST_MS);
+      own.push([end_ms, event]);
       isOpen = false;
+      over += 1;
     };
-    const begins = (at) => {
-      own = [];
-      isOpen = true;
-      hasUnread = false;
-      began = at;
-      halted = null;
+    const begins = (name, at) => {
+      ends('STOPPED');
+      [own, unread, halted] = [[], false, null];
+      ran = sent.find((each) => each.name === name) ?? null;
+      isOpen = ran !== null;
+      [began, byButton, end_ms] = [at, at === null, null];
+    };
+    const isFull = (at_ms) => own.length >= MOST_EVENTS || at_ms > MOST_MS;
+    const told = (rows) => {
+      if (isOpen) for (const row of rows) {
+        began ??= now() - row[0];
+        if (isFull(row[0])) { ends('STOPPED'); break; }
+        own.push(row);
+        unread ||= row[1].startsWith('UNREAD');
+      }
+      recorder.onEvent({ event: 'READING', rows });
     };
     const acts = {
-      ours() {
-        begins(now());
-        recorder.onEvent({ event: 'STARTED', program: 'aa', is_program: true });
+      sends: (chance) => sends(`p${chance.below(30)}`, chance() < 0.5),
+      meets(chance) {
+        lacks = chance() < 0.5;
+        recorder.meet({ has_readings: !lacks });
       },
-      waits() {
-        begins(null);
-        recorder.awaitButton('aa');
+      ours(chance) {
+        const { name } = chance.of(sent), ms = chance() < 0.2 ? chance.below(50) : undefined;
+        if (ms !== undefined) lacks = true;
+        begins(name, now());
+        recorder.onEvent({ event: 'STARTED', program: name, is_program: true, ms });
+      },
+      waits(chance) {
+        const { name } = chance.of(sent);
+        begins(name, null);
+        recorder.awaitButton(name);
       },
       theirs() {
         ends('STOPPED');
         recorder.onEvent({ event: 'STARTED', program: 'bb', is_program: false });
       },
-      unknown() { // of which this page has nothing
-        ends('STOPPED');
-        [own, hasUnread] = [[], false];
-        recorder.onEvent({ event: 'STARTED', program: 'cc', is_program: true });
+      unknown(chance) { // of which this page has nothing, or nothing any more
+        const name = chance.of(['cc', `p${chance.below(30)}`]);
+        begins(name, now());
+        recorder.onEvent({ event: 'STARTED', program: name, is_program: true });
       },
       shows(chance) {
         if (halted !== null) return; // it stands
-        const value = String(chance.below(1000));
-        if (isOpen) tells(`SHOW ${value}`);
-        recorder.onEvent({ event: 'SHOW', value });
+        const value = String(chance.below(1000)), ms = chance() < 0.2 ? Math.max(0, elapsed() + 20 - chance.below(60)) : undefined;
+        if (isOpen) {
+          began = Math.min(began ?? Infinity, now() - (ms ?? 0));
+          if (isFull(elapsed())) ends('STOPPED');
+          else own.push([ms ?? elapsed(), `SHOW ${value}`]);
+        }
+        recorder.onEvent({ event: 'SHOW', value, ms });
       },
       reads(chance) { // in the robot's own time
-        const at_ms = now() - (began ?? now() - 5), row = [Math.round(at_ms), chance.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])];
         if (halted !== null) return;
-        if (isOpen) {
-          began ??= now() - row[0];
-          own.push(row);
-          hasUnread ||= row[1].startsWith('UNREAD');
-        }
-        recorder.onEvent({ event: 'READING', rows: [row] });
+        const at_ms = now() - (began ?? now() - 5);
+        told([[Math.round(at_ms), chance.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]]);
       },
       ends(chance) {
         const event = chance.of(['DONE', 'STOPPED', 'MISSED', 'LOST', 'RESTARTED']);
+        if (isOpen) began ??= now();
         ends(event === 'RESTARTED' ? 'LOST' : event);
         recorder.onEvent({ event });
       },
@@ -3171,21 +3202,38 @@ const PARTS = {
         goesOn();
         recorder.goOn();
       },
+      lasts: (chance) => passes(chance.of([1000, 700_000])),
     };
-    return async (chance, isGood) => {
-      let end = '';
-      if (isGood) acts.ours();
-      for (let k = 1 + chance.below(12); k > 0; k -= 1) {
+    return async (chance) => {
+      const acted = new Set();
+      let end = '', isTold = true;
+      sends('aa', false);
+      if (chance() < 0.3) for (let k = 29; k >= 0; k -= 1) sends(`p${k}`, false);
+      const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`after it ${end} ${what}: ${JSON.stringify(found)?.slice(-300)} in place of ${JSON.stringify(wanted)?.slice(-300)}`); };
+      for (let k = 1 + chance.below(16); k > 0; k -= 1) {
         end = chance.of(['shows', 'shows', 'shows', ...Object.keys(acts)]);
-        acts[end](chance);
+        if (k === 2 && chance() < 0.08) {
+          end = 'floods';
+          acts.ours(chance);
+          told(Array.from({ length: MOST_EVENTS + chance.of([0, 9]) }, () => [elapsed(), 'READ DISTANCE 5']));
+        } else await acts[end](chance);
+        acted.add(end);
         await passes(chance.below(300));
-        if (page.byId('record_play').hidden !== !own.length) throw new Error(`what can be played is ${own}`);
-        if (!own.length) continue;
-        const told = runs.newestFirst[0].rows;
-        if (`${told}` !== `${own}`) throw new Error(`${told} in place of ${own}`);
-        if (page.byId('record_lacks').hidden === hasUnread) throw new Error(`that not all was read is ${hasUnread ? 'not ' : ''}said`);
+        is(page.byId('record_play').hidden, !own.length, 'nothing can be played');
+        is(trims, over, 'those that have ended');
+        if (!ran) continue;
+        const run = runs.newestFirst[0];
+        is(run.rows, own, 'its rows');
+        is([run.origin.text, run.origin.is_by_button, run.end_ms], [ran.text, byButton, end_ms], 'of which program, and until when');
+        is(run.clock(), Math.min(MOST_MS, elapsed()), 'its clock');
+        const older = runs.newestFirst[1];
+        if (older) is(older.clock(), Math.min(MOST_MS, older.rows.at(-1)?.[0] ?? 0), 'the clock of the one before');
+        const notice = unread ? textOf('record_untold', { sensors: 'DISTANCE' }) : lacks && ran.text.includes('DISTANCE') ? textOf('record_no_readings') : '';
+        const place = page.byId('record_lacks');
+        if (['meets', 'ours', 'waits'].includes(end)) isTold = end !== 'meets'; // what a robot that is met tells is of the next run
+        if (isTold) is([place.hidden, place.textContent], [!notice, notice], 'what was not read');
       }
-      return { ends: [end], seen: isGood && [...own] };
+      return { ends: [...acted], seen: [] };
     };
   },
 
