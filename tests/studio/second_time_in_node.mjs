@@ -4007,6 +4007,14 @@ const PARTS = {
     const { formOf } = await page.load('blocks/form.js');
     const container = page.byId('blocks');
     Object.assign(container, { clientWidth: 600, clientHeight: 400 });
+    let hearers = 0; // of what is done in the pane, and in the whole page
+    for (const each of [container, document, window, globalThis]) {
+      const { addEventListener: adds, removeEventListener: removes = () => {} } = each;
+      Object.assign(each, {
+        addEventListener(...given) { hearers += 1; return adds.apply(each, given); },
+        removeEventListener(...given) { hearers -= 1; return removes.apply(each, given); },
+      });
+    }
     let changes = 0;
     let tried = null;
     const toggled = [];
@@ -4017,6 +4025,7 @@ const PARTS = {
       playTone() {},
     });
     const workspace = () => seen.workspaces.at(-1);
+    const firstHearers = hearers;
     await passes(100);
     const all = () => workspace().getAllBlocks(true).filter((block) => !block.isShadow());
     return async (chance, isGood) => {
@@ -4081,6 +4090,64 @@ const PARTS = {
           blocks.updateLanguage();
           isAlone = '';
           for (const name of Object.keys(says)) says[name]();
+        },
+        searches() { // what is typed is looked for until somebody is at the blocks, at a group, or has given up
+          const input = container.querySelectorAll('.search')[0].children[1];
+          const list = workspace().getFlyout();
+          const focusAt = (className) => {
+            const target = Object.assign(document.createElement('g'), { className });
+            const event = new Event('focusin');
+            Object.defineProperty(event, 'target', { value: target });
+            workspace().getInjectionDiv().dispatchEvent(event);
+          };
+          const key = (name) => {
+            const event = Object.assign(new Event('keydown', { cancelable: true }), { key: name });
+            let isShortcut = true;
+            event.stopPropagation = () => { isShortcut = false; };
+            input.dispatchEvent(event);
+            if (isShortcut) throw new Error('what is typed is a shortcut');
+          };
+          list.hide();
+          seen.focused = null;
+          let typed = '', shown = '';
+          for (let k = 4 + chance.below(20); k > 0; k -= 1) {
+            const did = chance.of(['types', 'types', 'comes back', 'blocks', 'group', 'list', 'Escape', 'Enter', 'x']);
+            const goes = () => { [typed, shown] = ['', '']; };
+            if (did === 'types') {
+              input.value = typed = chance.of(['', ' ', 'wait', 'qqqq']);
+              seen.group = 'a group';
+              input.dispatchEvent(new Event('input'));
+              shown = typed.trim();
+              if (seen.group) throw new Error('a group stays chosen');
+            } else if (did === 'comes back') {
+              input.dispatchEvent(new Event('focus'));
+              if (typed) shown = typed.trim();
+            } else if (did === 'list') focusAt('blocklyFlyout');
+            else if (did === 'blocks') {
+              focusAt('blocklyBlock');
+              if (typed) goes();
+            } else if (did === 'group') {
+              focusAt('blocklyToolbox');
+              typed = '';
+              if (shown && !list.shown) throw new Error('the blocks of a group are hidden');
+              list.hide(); // Blockly shows those of the group
+              shown = '';
+            } else if (did === 'Escape') {
+              key(did);
+              goes();
+              if (seen.focused !== workspace()) throw new Error('the focus is not at the blocks');
+              seen.focused = null;
+            } else {
+              key(did);
+              if (Boolean(seen.focused) !== (did === 'Enter' && shown !== '')) throw new Error(`with ${shown} the focus is ${seen.focused ? '' : 'not '}at what was found`);
+              seen.focused = null;
+            }
+            if (input.value !== typed) throw new Error(`after it ${did} ${input.value} is looked for in place of ${typed}`);
+            const found = list.shown?.map(({ kind }) => kind);
+            if (!shown !== !found || (shown && (found.includes('label') !== (shown === 'qqqq') || !found.length))) throw new Error(`after it ${did} ${found} is found of ${shown}`);
+          }
+          input.value = '';
+          list.hide();
         },
         resizes: () => blocks.resize(),
         begins: () => blocks.beginProgram(),
@@ -4262,6 +4329,7 @@ const PARTS = {
         const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`after ${act} ${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
         is(essence(formOf(workspace()).form), essence(form), 'the blocks');
         is(blocks.lines.length, list.length, 'their lines');
+        is(hearers, firstHearers, 'who hears of what is done there');
         const wanted = new Map();
         const looks = (id, look) => id && wanted.set(id, [...new Set([...wanted.get(id) ?? [], look])]);
         for (const place of has.running) looks(idAt(place), 'running');

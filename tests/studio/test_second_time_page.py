@@ -73,7 +73,7 @@ ENDS = {
     "stage": {"runs", "leaves", "peeks", "rests", "home", "lets", "ends"},
     "phone": {"sheet", "wrong", "warned", "right", "run", "view", "turns"},
     "entering": {"given", "used", "lost"},
-    "blocks": {"shows", "edits", "tries", "runs", "grows", "puts", "closes", "speaks"},
+    "blocks": {"searches", "shows", "edits", "tries", "runs", "grows", "puts", "closes", "speaks"},
     "presses": {"run", "step", "stop", "edits"},
     "watching": {"told", "silent"},
 }
