@@ -3084,6 +3084,149 @@ const PARTS = {
     };
   },
 
+  // Where a real robot halts, over a link that is late and loses answers: what starts is what was pressed last, and has its
+  // places; who goes on is halted; at rest the robot knows the breakpoints, and nothing of a halt before is seen.
+  async places() {
+    const page = freshPage();
+    await learns(page);
+    const { Debugging } = await page.load('robot/debugging.js');
+    const { pageState } = await page.load('page/page_state.js');
+    const { LINK } = await page.load('page/words.js');
+    const { dataset } = document.documentElement;
+    const text = 'F(1)\nF(2)\nF(3)\nF(4)\nF(5)\nF(6)\nF(7)\nF(8)\nF(9)';
+    const places = text.split('\n').map((_, k) => [10 * k, k + 1, 1, k + 1, 5]), halts = places.map(([offset]) => offset + 1);
+    const programs = ['a', 'b'].map((program) => ({ program, places, halts, variables: [{ name: 'X', is_yes_no: false }] }));
+    const points = places.map(() => ({}));
+    pageState.programText.set(text);
+    let answersLate = () => 5, loses = () => false, wrong = '';
+    let info = null; // of the robot that is connected
+    let newest = null; // what was pressed last: a stop, or a start, and what the robot has to know before
+    let wanted = []; // where it is to halt
+    let known = '', told = null; // where it halts, and what has said so
+    let isHalted = false, clock = 0; // whether its time stands
+    let isPaused = false; // before its first instruction
+    const fails = (what) => { wrong ||= what; };
+    const all = () => `${(isPaused ? [0, ...wanted] : wanted).slice(0, LINK.most_breakpoints)}`;
+    const debugging = new Debugging({
+      async ask(request) {
+        const { do: what } = request;
+        if (what === 'start') {
+          if (newest?.kind !== 'start') fails(`it is started after ${newest?.kind}`);
+          else if (newest.hasPlaces && known !== all() && !(newest.isPaused && known.startsWith('0'))) fails(`it starts with ${known} in place of ${all()}`);
+        }
+        const isLost = loses();
+        if (what === 'break') [known, told] = [`${request.places}`, request]; // requests arrive in their order
+        if (what === 'resume') {
+          if (!isHalted) fails('what is not halted goes on');
+          isHalted = false;
+        }
+        const by = info;
+        await later(answersLate());
+        if (isLost && told === request && by === info) known = 'nobody knows';
+        if (isLost || by !== info) return null; // also of a robot that is gone
+        return what === 'variables' ? { variables: [7] } : what === 'tasks' ? { tasks: [['RUNNING', 0], ['WAITING', 20]] } : { ok: true };
+      },
+      uploadPaused: () => acts.uploads(null, true), say() {}, canGetHalting: async () => false, getHalting() {},
+      place: { hold: () => {}, goOn: () => {} },
+      recorder: { halt: () => { clock = 1; }, goOn: () => { clock = 0; } },
+    });
+    let program = null, isRunning = false, isStepping = false;
+    const tells = (event) => debugging.onEvent(event);
+    const over = (starts) => {
+      [isRunning, isHalted, isStepping] = [starts, false, false];
+      if (!starts) isPaused = false;
+      clock = 0;
+    };
+    const acts = {
+      meets(chance) {
+        info = chance() < 0.9 ? { has_breakpoints: chance() < 0.8, is_running: chance() < 0.2 } : null;
+        [program, known, newest] = [null, '', null];
+        over(info?.is_running ?? false);
+        debugging.meet(info);
+      },
+      uploads(chance, paused = chance() < 0.3) {
+        if (!info || isRunning) return;
+        program = programs[clock % 2];
+        [known, isPaused] = ['', paused];
+        newest = { kind: 'upload' };
+        const mine = newest, by = info, starts = !chance || chance() < 0.8;
+        const does = debugging.onUpload(program, paused);
+        if (Boolean(does) !== Boolean(info.has_breakpoints && (paused || wanted.length))) fails('its places are not sent');
+        if (!does) isPaused = false;
+        later(answersLate()).then(() => {
+          if (by !== info) return;
+          if (newest === mine && starts) newest = { kind: 'start', hasPlaces: true, isPaused: paused }; // which halts at once, and gets what is new then
+          does?.(starts);
+        });
+      },
+      startAgain() {
+        if (!info || isRunning) return;
+        isPaused = false;
+        newest = { kind: 'start', hasPlaces: Boolean(program && info.has_breakpoints) };
+        debugging.startAgain();
+      },
+      stop() {
+        newest = { kind: 'stop' };
+        debugging.stop();
+      },
+      line() {
+        if (known) known = 'none'; // what it halts at is gone
+        debugging.onLine();
+      },
+      breaks(chance) {
+        const lines = places.filter(() => chance() < 0.3).map(([, line]) => line);
+        wanted = lines.map((line) => halts[line - 1]);
+        pageState.breakpoints.set(lines.map((line) => ({ line, column: 1, point: points[line - 1] })));
+      },
+      begins() {
+        if (!info || isRunning) return;
+        over(true);
+        tells({ event: 'STARTED', is_program: true });
+      },
+      ends(chance) {
+        over(false);
+        tells({ event: chance.of(['DONE', 'FAULT', 'STOPPED', 'LOST']) });
+      },
+      halts(chance) {
+        if (!isRunning || isHalted || !program || !info?.has_breakpoints) return;
+        const offset = chance.of([halts[2], halts[4], 3]), isWithin = offset === 3;
+        isHalted = true;
+        const goesOn = isWithin && (isStepping || isPaused);
+        if (!goesOn) isPaused = false;
+        tells({ event: 'HALTED', is_program: true, at: offset, task: 0 });
+        if (isHalted === goesOn) fails(`at ${offset} it ${isHalted ? 'stands' : 'goes on'}`);
+        if (!clock) fails('the clock of the recording goes on in a halt');
+      },
+      goesOn(chance) {
+        const isStep = chance() < 0.5, before = isHalted;
+        if (!isStep || before) {
+          if (before) [isStepping, clock] = [isStep, 1];
+          page.byId(isStep ? 'link_step' : 'link_go_on').click();
+          if (before && (isHalted || clock)) fails('it does not go on');
+        }
+      },
+      waits: () => {},
+    };
+    return async (chance, isGood) => {
+      wrong = '';
+      acts.meets(chance);
+      const acted = new Set();
+      for (let k = 10 + chance.below(40); k > 0; k -= 1) {
+        answersLate = () => 1 + chance.below(chance.of([5, 300]));
+        loses = () => !isGood && chance() < 0.3;
+        const act = chance.of([...!info || !program ? ['meets', 'uploads'] : isRunning ? ['halts', 'goesOn', 'halts', 'ends'] : ['uploads', 'breaks', 'startAgain', 'stop'], ...Object.keys(acts)]);
+        acts[act](chance);
+        acted.add(act);
+        await passes(chance.of([0, 20, 500]));
+        if (wrong) throw new Error(`after ${[...acted]}: ${wrong}`);
+        const isShown = dataset['halt'];
+        if ((isShown === 'halted' || isShown === 'read') !== isHalted) throw new Error(`after it ${act} ${isShown} is seen`);
+        if (!isHalted && isShown !== (isRunning ? 'running' : 'none')) throw new Error(`after it ${act} ${isShown} is seen of what runs: ${isRunning}`);
+      }
+      return { ends: [...acted], seen: [] };
+    };
+  },
+
   // The recording of a run, before and after runs of others: each row at its time, which stands while the program is halted.
   async recording() {
     const page = freshPage();

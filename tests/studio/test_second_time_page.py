@@ -50,6 +50,7 @@ ENDS = {
     "arena": {"long", "short"},
     "curves": {"long", "short"},
     "steps": {"came", "failed"},
+    "places": {"meets", "uploads", "startAgain", "stop", "line", "breaks", "halts", "goesOn"},
     "recording": {"theirs", "shows", "ends", "waits", "gone", "halts", "reads"},
     "giving": {"chosen", "gone", "alike", "nobody"},
     "sure": {"sure", "once"},
