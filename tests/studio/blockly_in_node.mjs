@@ -69,10 +69,10 @@ export function blocklyInNode() {
       seen.workspaces.push(this);
     }
     updateToolbox(list) { this.list = list; }
-    getToolbox() { return { getWidth: () => 90, clearSelection() {}, getSelectedItem: () => null, setSelectedItem() {} }; }
+    getToolbox() { return { getWidth: () => 90, clearSelection() { seen.group = null; }, getSelectedItem: () => null, setSelectedItem() {} }; }
     getFlyout() { return this.flyout ??= { shown: null, show(items) { this.shown = items; }, hide() { this.shown = null; }, isVisible() { return this.shown !== null; }, getWorkspace: () => ({ getCanvas: () => undefined }) }; }
     getCanvas() { return this.canvas; }
-    getInjectionDiv() { return this.container; }
+    getInjectionDiv() { return this.injectionDiv ??= document.createElement('div'); }
     isDragging() { return this.isInHand; }
     setScale(scale) { this.scale = Math.min(1.6, Math.max(0.4, scale)); }
     scroll(x, y) { [this.scrollX, this.scrollY] = [x, y]; }

@@ -1,5 +1,6 @@
 // node runs_kept_in_node.mjs SOURCES: keeps runs as the page does. Reads a JSON list of lists of [rows, characters of
-// each row, characters of a file]; prints, after each run of a list, the numbers of those that are kept, and their size.
+// each row, characters of a file]; prints, for each run of a list, the numbers of those that are kept as it begins and when it
+// has ended, their size, and its own.
 
 import { text } from 'node:stream/consumers';
 import { pathToFileURL } from 'node:url';
@@ -11,10 +12,11 @@ for (const story of JSON.parse(await text(process.stdin))) {
   const kept = story.map(([count, length, file]) => {
     const run = new Run({ of: 'real', text: '', robot: 'tinibot', program: '' }, { places: [], shows: [], variables: [] }, null);
     runs.addRun(run);
+    const atStart = runs.newestFirst.map(({ number }) => number);
     for (let k = 0; k < count; k += 1) run.addRow([k, 'x'.repeat(length)]);
     run.file = 'x'.repeat(file);
     runs.trim(); // at its end
-    return [runs.newestFirst.map(({ number }) => number), runs.size, run.size];
+    return [atStart, runs.newestFirst.map(({ number }) => number), runs.size, run.size];
   });
   console.log(JSON.stringify(kept));
 }

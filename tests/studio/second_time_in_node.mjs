@@ -605,13 +605,17 @@ const PARTS = {
     };
   },
 
-  // What is heard of runs.
+  // What is heard of runs: each tone after the one before, unless that is late; nothing after a silence and nothing that is
+  // muted. The computer's sound is open as long as something sounds, and a while longer.
   async sounds() {
     const heard = [];
-    let context = null;
+    let hasDevice = true, context = null;
     const level = { setValueAtTime() {}, linearRampToValueAtTime() {}, exponentialRampToValueAtTime() {} };
     class Context {
-      constructor() { context = this; }
+      constructor() {
+        if (!hasDevice) throw new Broken();
+        context = this;
+      }
       state = 'running';
       destination = {};
       get currentTime() { return now() / 1000; }
@@ -623,44 +627,97 @@ const PARTS = {
         const note = { tone };
         tone.start = (at_s) => { note.begins_ms = Math.round(1000 * at_s); };
         tone.stop = (at_s = now() / 1000) => {
+          if (note.hasEnded) return;
           note.ends_ms = Math.round(1000 * at_s);
-          setTimeout(() => now() === note.ends_ms && tone.dispatchEvent(new Event('ended')), note.ends_ms - now());
+          const ended_ms = note.ends_ms;
+          setTimeout(() => {
+            if (note.hasEnded || note.ends_ms !== ended_ms) return;
+            note.hasEnded = true;
+            tone.dispatchEvent(new Event('ended'));
+          }, ended_ms - now());
         };
         heard.push(note);
         return tone;
       }
     }
     const page = freshPage();
-    playsNavigator({ userActivation: { hasBeenActive: true } });
+    const activation = { hasBeenActive: true };
+    playsNavigator({ userActivation: activation });
     Object.assign(window, { AudioContext: Context });
     globalThis.AudioContext = Context;
     const { Sounds } = await page.load('virtual/sounds.js');
-    const sounds = new Sounds();
-    return async (chance, isGood) => {
-      const began_ms = now();
-      for (const each of heard.splice(0)) isGood && each.ends_ms > began_ms && heard.push(each);
-      sounds.begin();
-      const before = heard.filter((each) => each.ends_ms > began_ms);
+    const LATE_MS = 500, OPEN_MS = 3000, LEAST_MS = 10, CRASH_MS = 180;
+    return async (chance) => {
+      const sounds = new Sounds();
       heard.length = 0;
-      const states = [before.length];
-      for (let k = 1 + chance.below(6); k > 0; k -= 1) {
-        if (chance() < 0.2) sounds.crash();
-        else sounds.beep(440 + chance.below(100), chance.of([0.05, 0.3, 2, 20]));
-        await passes(chance.below(400));
-        states.push(context?.state);
+      [context, hasDevice] = [null, true];
+      const wanted = []; // when each begins and ends, and how high it is
+      let isMuted = false, last_ms = 0, open_ms = -1; // until when it is open without a tone
+      const opens = () => {
+        if (isMuted || !activation.hasBeenActive || (!context && !hasDevice)) return false;
+        open_ms = 0;
+        return true;
+      };
+      const beeps = (hertz, duration_ms) => {
+        const begins_ms = Math.max(now(), last_ms);
+        if (!opens() || begins_ms - now() > LATE_MS) return;
+        last_ms = begins_ms + duration_ms;
+        wanted.push([begins_ms, begins_ms + Math.max(LEAST_MS, duration_ms), Math.max(20, Math.min(16_000, hertz))]);
+      };
+      const silences = () => {
+        for (const each of wanted) each[1] = Math.min(each[1], now());
+        last_ms = 0;
+      };
+      const acts = {
+        begins() {
+          silences();
+          if (opens()) open_ms = now() + OPEN_MS;
+          sounds.begin();
+        },
+        beeps() {
+          const hertz = chance.of([5, 440, 550, 20_000]), duration_ms = chance.of([1, 50, 300, 2000, 20_000]);
+          beeps(hertz, duration_ms);
+          sounds.beep(hertz, duration_ms / 1000);
+        },
+        crash() {
+          if (opens()) wanted.push([now(), now() + CRASH_MS, 0]);
+          sounds.crash();
+        },
+        cheers() {
+          silences();
+          for (const hertz of [523, 659, 784, 1047]) beeps(hertz, 120);
+          sounds.cheer();
+        },
+        silence() {
+          silences();
+          sounds.silence();
+        },
+        mute() {
+          isMuted = chance() < 0.6;
+          if (isMuted) silences();
+          sounds.mute(isMuted);
+        },
+        touches: () => { activation.hasBeenActive = chance() < 0.8; },
+        device: () => { hasDevice = chance() < 0.7; },
+        waits: () => {},
+      };
+      const ends = new Set();
+      for (let k = 4 + chance.below(16); k > 0; k -= 1) {
+        const act = chance.of(['beeps', 'beeps', ...Object.keys(acts)]);
+        ends.add(act);
+        acts[act]();
+        const check = () => {
+          const found = heard.map((each) => [each.begins_ms, each.ends_ms, each.tone.frequency.value ?? 0]);
+          if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`after it ${act} ${JSON.stringify(found)} is heard in place of ${JSON.stringify(wanted)}`);
+          const until_ms = Math.max(open_ms, ...wanted.map(([, end_ms]) => end_ms + OPEN_MS));
+          if (context && context.state !== (until_ms > now() ? 'running' : 'suspended')) throw new Error(`after it ${act} the sound is ${context.state} until ${until_ms} at ${now()}`);
+        };
+        check();
+        await passes(chance.of([0, 20, 250, 2990, 3010, 9000]) + chance.below(9));
+        check();
       }
-      const end = chance.of(['silence', 'mute', 'stop']); // stop: in the middle of a tone
-      if (end === 'silence') sounds.silence();
-      if (end === 'mute') {
-        sounds.mute(true);
-        sounds.beep(440, 1);
-        sounds.mute(false);
-      }
-      if (isGood) {
-        await passes(3500);
-        states.push(context?.state);
-      }
-      return { ends: [end], seen: [heard.map((each) => [each.begins_ms - began_ms, each.ends_ms - began_ms, each.tone.frequency.value ?? 0]), states] };
+      activation.hasBeenActive = true;
+      return { ends: [...ends], seen: [] };
     };
   },
 
@@ -749,41 +806,154 @@ const PARTS = {
     };
   },
 
-  // The worker: what it fetches later, over a connection that fails.
+  // The worker, which gets what it needs when it is asked for it, over a connection that may fail: each ask has one answer, an
+  // error only where something of it was lost meanwhile. Python is asked in the language that it has learnt, and after what
+  // it needs is there; nothing that is there is fetched again.
   async worker() {
-    let fails = () => false;
-    const posted = [];
-    const page = freshPage({
-      loadPyodide: async () => ({
-        FS: { mkdirTree() {} }, unpackArchive() {},
-        runPython: () => (request) => JSON.stringify({ done: JSON.parse(request) }),
-      }),
-    });
-    globalThis.postMessage = (each) => posted.push(each);
-    globalThis.name = 'en';
-    playsFetch(async (what) => {
-      await later(20);
-      if (fails()) throw new Broken();
-      return fails() ? { ok: false, status: 503 } : { ok: true, body: null, headers: new Headers(), status: 200, arrayBuffer: async () => new ArrayBuffer(1) };
-    });
-    await page.load('worker.js');
-    await passes(200);
-    let number = 0;
-    return async (chance, isGood) => {
-      posted.splice(0);
-      fails = () => !isGood && chance() < 0.4;
-      const first = number;
-      for (let k = 1 + chance.below(4); k > 0; k -= 1) {
-        const language = chance.of(['es', 'pt', 'en']);
-        const request = chance.of([{ do: 'lesson_list', language }, { do: 'learn', language }]);
-        dispatchEvent(Object.assign(new Event('message'), { data: { id: (number += 1), request: JSON.stringify(request) } }));
-        await passes(chance.of([5, 100]));
+    const SOURCE = 'en', NEEDS = { lesson_list: 'lessons.zip', group_join: 'together.zip' };
+    let pages = 0;
+    return async (chance) => {
+      const number = (pages += 1);
+      const there = new Set(), learnt = new Set(); // what Python has
+      const under = new Map(), lost = []; // what is fetched, how often; what was lost, and when
+      const posted = new Map(), reached = new Map(), asked = new Map();
+      let wrong = '', ready = '';
+      const fails = (what) => { wrong ||= what; };
+      const first = chance() < 0.8 ? '' : chance.of(['tiniscript.zip', 'messages.en.json', 'messages.es.json', 'pyodide']);
+      let loses = (name) => name === first;
+      const page = freshPage({
+        loadPyodide: async () => {
+          if (first === 'pyodide') throw new Broken();
+          return {
+            FS: { mkdirTree() {} },
+            unpackArchive(data) {
+              if (data.name.startsWith('not ')) fails(`${data.name} is unpacked`);
+              there.add(data.name);
+            },
+            runPython: () => (text) => {
+              const { do: what, language, id } = JSON.parse(text);
+              if (what === 'learn') return learnt.add(language);
+              const before = asked.get(id);
+              if (NEEDS[what] && !there.has(NEEDS[what])) fails(`${what} comes before ${NEEDS[what]}`);
+              const isLearnt = learnt.has(before.language);
+              if (what.startsWith('lesson') && !isLearnt && before.isUnder && !lost.some(({ name, at }) => name === before.messages && at >= before.at)) fails(`${what} does not wait for its language`);
+              if (language !== (isLearnt ? before.language : SOURCE)) fails(`${what} is asked in ${language}, and not in ${before.language}`);
+              reached.set(id, true);
+              return JSON.stringify({ id });
+            },
+          };
+        },
+      });
+      globalThis.postMessage = ({ id, answer, error, waits, begun }) => {
+        if (waits || begun) return;
+        if (id === 0) {
+          if (!lost.length || ready === '') ready = error ? 'failed' : 'ready';
+          return;
+        }
+        if (posted.has(id)) fails('it is answered twice');
+        posted.set(id, error ? 'error' : 'answer');
+        const { what, language, at, messages } = asked.get(id);
+        const needs = what === 'learn' ? messages : NEEDS[what];
+        if (error && !lost.some((each) => each.name === needs && each.at >= at) && ready !== 'failed') fails(`${what} fails: ${error}`);
+        if (!error && what !== 'learn' && (!reached.has(id) || JSON.parse(answer).id !== id)) fails(`${what} is answered, and was not done`);
+        if (!error && what === 'learn' && !learnt.has(language)) fails(`${language} is learnt, and is not there`);
+      };
+      globalThis.name = chance.of(['', 'en', 'es']);
+      playsFetch(async (address) => {
+        const name = String(address).replace('./', '');
+        if (name.endsWith('.zip') && (there.has(name) || under.get(name))) fails(`${name} is fetched again`);
+        if (learnt.has(name.split('.')[1])) fails(`${name} is fetched again`);
+        under.set(name, (under.get(name) ?? 0) + 1);
+        const isLost = loses(name);
+        await later(ready ? 5 + chance.below(chance.of([20, 400])) : name.endsWith('.zip') ? 10 : 20);
+        under.set(name, under.get(name) - 1);
+        if (isLost) lost.push({ name, at: now() });
+        if (isLost && chance() < 0.5) throw new Broken();
+        return { ok: !isLost, status: isLost ? 503 : 200, body: null, arrayBuffer: async () => Object.assign(new ArrayBuffer(1), { name: isLost ? `not ${name}` : name }) };
+      });
+      await page.load('worker.js');
+      await passes(30);
+      const isBroken = first !== '' && first !== 'messages.es.json';
+      if (ready !== (isBroken ? 'failed' : 'ready')) throw new Error(`without ${first} it is ${ready}`);
+      loses = () => chance() < 0.3;
+      let count = 0;
+      for (let k = 2 + chance.below(8); k > 0; k -= 1) {
+        const what = chance.of(['check', 'learn', 'learn', 'lesson_list', ...Object.keys(NEEDS)]), language = chance.of(['es', 'pt', 'en']);
+        const id = (count += 1), messages = `messages.${language}.json`;
+        asked.set(id, { what, language, messages, at: now(), isUnder: under.get(messages) > 0 });
+        dispatchEvent(Object.assign(new Event('message'), { data: { id, request: JSON.stringify({ do: what, language, id }) } }));
+        await passes(chance.of([0, 5, 50, 200]));
       }
       await passes(500);
-      const told = posted.filter((each) => each.id).map((each) => ({ ...each, id: each.id - first })).sort((a, b) => a.id - b.id);
-      return { ends: [told.some((each) => each.error) ? 'failed' : 'good'], seen: [told.map(({ id, error }) => [id, error ?? 'ok']), number - first] };
+      if (wrong) throw new Error(`page ${number}: ${wrong}`);
+      if (posted.size !== count) throw new Error(`${count} are asked, and ${posted.size} answered`);
+      return { ends: [isBroken ? 'none' : [...posted.values()].includes('error') ? 'failed' : 'good'], seen: [] };
     };
   },
+
+  // What is fetched: each piece is told, that nothing comes is told once, and that not all will come to whom it concerns. It
+  // ends 20 s after the last piece, or sooner, and then nothing is told of it any more.
+  async fetching() {
+    const page = freshPage();
+    const { watchedFetch } = await page.load('page/progress.js');
+    const NOTICE_MS = 3000, TIMEOUT_MS = 20_000;
+    return async (chance) => {
+      const began_ms = now(), told = [];
+      const tells = (what) => told.push([Math.round(now() - began_ms), what]);
+      const cancelling = new AbortController();
+      const gap = () => 7 * (chance.of([1, 1, 70, 70, 410, 440, 1000, 2700, 3000]) + chance.below(12)); // neither limit at the same time
+      const how = chance.of(['whole', 'whole', 'broken', 'broken', 'refused', 'lost']);
+      const answer_ms = gap(), gaps = Array.from({ length: chance.below(5) }, gap), end_ms = gap();
+      const cancel_ms = chance() < 0.4 ? 7 * chance.below(chance.of([400, 6000])) + 3 : Infinity;
+      if (cancel_ms < Infinity) later(cancel_ms).then(() => cancelling.abort(new Broken('cancelled')));
+      const fetcher = (_, { signal }) => new Promise((resolve, reject) => {
+        signal.addEventListener('abort', () => reject(signal.reason));
+        later(answer_ms).then(async () => {
+          if (how === 'lost') reject(new Broken());
+          if (how === 'refused') resolve(new Response('why', { status: 503 }));
+          let pieces;
+          resolve(new Response(new ReadableStream({ start(controller) { pieces = controller; } })));
+          let isOver = false;
+          signal.addEventListener('abort', () => { isOver = true; pieces.error(signal.reason); });
+          for (const ms of gaps) {
+            await later(ms);
+            if (!isOver) pieces.enqueue(new TextEncoder().encode('x'));
+          }
+          await later(end_ms);
+          if (!isOver) how === 'broken' ? pieces.error(new Broken()) : pieces.close();
+        });
+      });
+      const options = { cancelSignal: cancelling.signal, onWait: () => tells('waits'), onProgress: () => tells('comes'), onFail: () => tells('fails') };
+      let found = '';
+      watchedFetch('x', options, fetcher).then((response) => response.text()).then((all) => { found = all; }, () => { found = 'nothing'; });
+      await passes(300_000);
+      // What has to be told.
+      const wanted = [];
+      let last_ms = 0, at_ms = answer_ms, end = how, hasWaited = false;
+      const steps = ['lost', 'refused'].includes(how) ? [] : [...gaps.map((ms) => ['comes', ms]), [how, end_ms]];
+      const reaches = (next_ms) => { // whether it gets so far
+        const limit_ms = Math.min(cancel_ms, last_ms + TIMEOUT_MS);
+        if (!hasWaited && last_ms + NOTICE_MS < Math.min(next_ms, limit_ms)) {
+          wanted.push([last_ms + NOTICE_MS, 'waits']);
+          hasWaited = true;
+        }
+        if (next_ms < limit_ms) return true;
+        end = limit_ms === cancel_ms ? 'cancelled' : 'silent';
+        at_ms = limit_ms;
+        return false;
+      };
+      if (reaches(at_ms)) for (const [what, ms] of steps) {
+        if (!reaches(at_ms + ms)) break;
+        at_ms += ms;
+        if (what === 'comes') wanted.push([last_ms = at_ms, 'comes']);
+      }
+      if (!['whole', 'refused'].includes(end)) wanted.push([at_ms, 'fails']);
+      if (JSON.stringify(told) !== JSON.stringify(wanted)) throw new Error(`${JSON.stringify([how, answer_ms, gaps, end_ms, cancel_ms])} tells ${JSON.stringify(told)} in place of ${JSON.stringify(wanted)}`);
+      if (found !== ({ whole: 'x'.repeat(gaps.length), refused: 'why' }[end] ?? 'nothing')) throw new Error(`${end} has given ${found}`);
+      return { ends: [end], seen: [] };
+    };
+  },
+
   // Messages while somebody types.
   async checking() {
     const page = freshPage();
@@ -836,26 +1006,64 @@ const PARTS = {
     };
   },
 
-  // A run that is kept, and played again.
+  // A run of a robot, a real one or one of a file, that is kept, and played again: what is marked of it, what its file has and
+  // where it parts are as a model has them of what has come since it began.
   async again() {
     const page = freshPage();
     const { Run } = await page.load('virtual/runs.js');
-    const run = new Run({ of: 'real', text: 'F(1)', robot: 'tinibot', program: '1' }, PROGRAM, null);
-    run.file = 'a run';
-    return async (chance) => {
-      run.restart();
-      let now_ms = chance.below(100);
-      let bumps = 0;
-      let parting = null;
-      for (let k = chance.below(60); k > 0; k -= 1) {
+    const MOST_MARKS = 10_000;
+    // Line by line: F, a WHEN with a B, another with an L.
+    const text = 'F(1)\nWHEN(KEY_A)\nB(1)\nEND_WHEN\nWHEN(KEY_B)\nL(1)\nEND_WHEN';
+    const places = [[0, 1, 1, 1, 5], [2, 2, 1, 4, 9], [4, 3, 1, 3, 5], [6, 5, 1, 7, 9], [8, 6, 1, 6, 5]];
+    const inWhen = { 4: 'first', 8: 'other' }; // by the offset of what it does
+    let run = null;
+    return async (chance, isGood) => {
+      const [of, file] = isGood ? ['virtual', 'a run'] : chance.of([['virtual', 'a run'], ['virtual', 'a run'], ['virtual', ''], ['real', ''], ['real', 'a run']]);
+      if (isGood && run?.origin.of === of && run.file) run.restart(); // it is played again
+      else run = new Run({ of, text, robot: 'tinibot', program: '1' }, { ...PROGRAM, places }, null);
+      run.file = file;
+      run.fileRows = file ? [[5, 'READ DISTANCE 1'], [500, 'READ DISTANCE 2']] : [];
+      const isKept = run.origin.of === 'virtual' && !run.file; // what comes is what its file has
+      const marks = [], rows = [];
+      let now_ms = chance.below(100), bumps = 0, parting = null, begun = [], end_ms = run.end_ms;
+      const marked = (at_ms, kind) => {
+        marks.push({ at_ms, kind });
+        if (marks.length > MOST_MARKS) marks.splice(0, MOST_MARKS / 2);
+      };
+      const add = (count) => {
         now_ms += 1 + chance.below(90);
-        bumps += Number(chance() < 0.1);
-        if (chance() < 0.02) parting ??= { at_ms: now_ms };
-        const events = chance() < 0.4 ? [[now_ms, chance.of(['SHOW 1', 'MOTORS 1 2', 'READ DISTANCE 5', 'FAULT 1', 'BEEP 97 100']), 0]] : [];
-        run.add({ now_ms, bumps, parting, events, at: 0, places: [0], is_running: true });
-      }
-      const { marks, moments, seconds, size } = run;
-      return { ends: [parting ? 'parted' : 'whole'], seen: structuredClone([marks, run.parting, moments.length, moments.events, moments.parts, moments.at(moments.length - 1).shown, moments.last_ms, seconds, size]) };
+        const events = Array.from({ length: count }, () => [now_ms, chance.of(['SHOW 1', 'MOTORS 1 2', 'READ DISTANCE 5', 'FAULT 1', 'BEEP 97 100']), 0]);
+        for (const [at_ms, event] of events) if (!event.startsWith('READ')) marked(at_ms, ['SHOW', 'FAULT', 'BEEP'].find((word) => event.startsWith(word)) ?? '');
+        if (chance() < 0.1) {
+          bumps += 1;
+          marked(now_ms, 'BUMP');
+        }
+        const at = [0, ...chance() < 0.7 ? [chance.of([2, 4, 4, 6, 8, 8])] : []], begins = at.map((each) => inWhen[each]).filter(Boolean);
+        if (begins.some((each) => !begun.includes(each))) marked(now_ms, 'WHEN');
+        begun = begins;
+        const more = chance() < 0.3 ? [[now_ms, chance.of(['KEYS 0 0 0', 'KEYS 1 0 0', 'KEYS 0 50 -5', `READ DISTANCE ${chance.below(9)}`])]] : [];
+        if (isKept) {
+          for (const [at_ms, row] of more) if (row.startsWith('KEYS') && row !== 'KEYS 0 0 0') marked(at_ms, 'KEYS');
+          rows.push(...more);
+        }
+        const parts = chance() < 0.05 ? { at_ms: chance() < 0.5 ? now_ms : null } : null;
+        if (parts && !parting) {
+          parting = parts;
+          if (parts.at_ms !== null) marked(parts.at_ms, 'PART');
+        }
+        const is_full = chance() < 0.1;
+        if (!is_full && run.origin.of === 'virtual') end_ms = now_ms;
+        run.add({ now_ms, bumps, parting: parts, events, at: 0, places: at, is_running: true, is_full, rows: more });
+      };
+      for (let k = chance.below(60); k > 0; k -= 1) add(chance.below(3));
+      if (!isGood && chance() < 0.05) for (let k = 0; k < 5; k += 1) add(5000);
+      const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found).slice(0, 400)} in place of ${JSON.stringify(wanted).slice(0, 400)}`); };
+      is(run.marks, marks, 'marks');
+      is([run.rows, run.end_ms, run.parting], [rows, end_ms, parting], 'what its file has, its end, and where it parts');
+      const known = rows.length ? rows : run.fileRows;
+      for (const at_ms of [0, 50, 600, now_ms / 2]) is(run.readAt('DISTANCE', at_ms) ?? null, known.filter(([when, row]) => when <= at_ms && row.startsWith('READ')).at(-1)?.[1].split(' ').at(-1) ?? null, `read at ${at_ms}`);
+      const { moments, seconds } = run;
+      return { ends: [parting ? 'parted' : 'whole'], seen: isGood && structuredClone([moments.length, moments.events, moments.parts, moments.at(moments.length - 1).shown, moments.last_ms, seconds]) };
     };
   },
 
@@ -1063,44 +1271,115 @@ const PARTS = {
 
   // Python in its worker, which may be tried again until it is there.
   async python() {
-    let fails = '';
     const page = freshPage();
-    const notes = [];
+    const workers = [];
     globalThis.Worker = class extends EventTarget {
+      hasSpoken = false;
+      isEnded = false;
+      asked = [];
       constructor() {
         super();
-        const how = fails;
-        const says = (data, ms) => setTimeout(() => this.isEnded || this.dispatchEvent(Object.assign(new Event('message'), { data })), ms);
-        if (how === 'silent') return;
-        says({ begun: true }, 5);
-        if (how === 'error') setTimeout(() => this.dispatchEvent(Object.assign(new Event('error'), { message: 'broken' })), 10);
-        else says({ id: 0, error: how && 'not fetched' }, 20);
+        this.began_ms = now();
+        workers.push(this);
+      }
+      says(data) {
+        this.hasSpoken = true;
+        this.dispatchEvent(Object.assign(new Event('message'), { data }));
       }
       terminate() { this.isEnded = true; }
-      postMessage({ id, request }) {
-        setTimeout(() => this.isEnded || this.dispatchEvent(Object.assign(new Event('message'), { data: { id, answer: request } })), 30);
-      }
+      postMessage({ id, request }) { this.asked.push({ id, number: JSON.parse(request).number }); }
     };
     const { Python } = await page.load('python.js');
-    let python = null;
+    const NOTICE_MS = 3000, TIMEOUT_MS = 20_000;
     return async (chance, isGood) => {
-      notes.length = 0;
-      fails = isGood ? '' : chance.of(['error', 'not fetched', 'silent']);
-      const end = fails;
-      if (python) python.tryAgain('en');
-      else {
-        python = new Python('en');
-        python.listen({ onWait: () => notes.push('waits'), onBegin() {}, onFail: () => notes.push('fails') });
+      workers.length = 0;
+      const told = [], wanted = [];
+      const listens = () => ({ onWait: () => told.push('waits'), onFail: () => told.push('fails'), onBegin: () => told.push('begins') });
+      const ends = new Set();
+      let isReady = false, isLate = false, isThere = true, isAnswering = false, asks = 0;
+      const open = new Set(), ended = [], wantedEnds = [];
+      const python = new Python('en');
+      python.listen(listens());
+      python.ready.then(() => { isAnswering = true; });
+      const newest = () => workers.at(-1);
+      const rejects = () => {
+        for (const number of open) wantedEnds.push([number, 'rejected']);
+        open.clear();
+        newest().asked = [];
+      };
+      const fails = (end) => {
+        ends.add(end);
+        rejects();
+        if (isReady) return;
+        [isThere, isLate] = [false, false];
+        wanted.push('fails');
+      };
+      const acts = {
+        asks() {
+          const number = (asks += 1);
+          if (isThere) open.add(number);
+          else wantedEnds.push([number, 'rejected']);
+          python.ask({ number }).then((answer) => ended.push([number, answer]), () => ended.push([number, 'rejected']));
+        },
+        answers() {
+          const [request] = newest().asked.splice(0, 1);
+          if (!isThere || !request) return;
+          open.delete(request.number);
+          const isError = chance() < 0.3;
+          wantedEnds.push([request.number, isError ? 'rejected' : request.number]);
+          newest().says(isError ? { id: request.id, error: 'no' } : { id: request.id, answer: JSON.stringify(request.number) });
+        },
+        begins: () => isThere && newest().says({ begun: true }),
+        waits() {
+          if (!isThere) return;
+          wanted.push('waits');
+          isLate = !isReady; // what a lesson needs may be late when it is there
+          newest().says({ waits: true });
+        },
+        readies() {
+          if (!isThere) return;
+          [isReady, isLate] = [true, false];
+          newest().says({ id: 0 });
+        },
+        'not fetched'() {
+          if (!isThere || isReady) return;
+          fails('not fetched');
+          newest().says({ id: 0, error: 'not fetched' });
+        },
+        error() {
+          if (!isThere) return;
+          fails('error');
+          newest().dispatchEvent(Object.assign(new Event('error'), { message: 'broken' }));
+        },
+        tries() {
+          if (!isThere) wanted.push('begins');
+          isThere = true;
+          python.tryAgain('en');
+        },
+        listens() {
+          if (!isThere) wanted.push('fails');
+          else if (isLate) wanted.push('waits');
+          python.listen(listens());
+        },
+      };
+      const goesOn = async (ms) => { // nobody waits for a worker that says nothing
+        for (const [limit_ms, does] of [[NOTICE_MS, () => { isLate = true; wanted.push('waits'); }], [TIMEOUT_MS, () => fails('silent')]]) {
+          const worker = newest(), left_ms = worker.began_ms + limit_ms - now();
+          if (isThere && !worker.hasSpoken && left_ms > 0 && left_ms <= ms) does();
+        }
+        await passes(ms);
+      };
+      for (let k = 6 + chance.below(20); k > 0; k -= 1) {
+        const act = chance.of(['asks', 'asks', 'answers', 'waits', 'tries', 'tries', 'listens', chance.of(isGood ? ['begins', 'readies'] : Object.keys(acts))]);
+        acts[act]();
+        await goesOn(chance.of([0, 10, 2000, 19_000, 25_000]));
+        const is = (found, right, what) => { if (JSON.stringify(found) !== JSON.stringify(right)) throw new Error(`after ${act} ${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(right)}`); };
+        is(told, wanted, 'it is told');
+        is(ended, wantedEnds, 'asks end');
+        is([python.isLate, isAnswering], [isLate, isReady], 'late and ready');
+        is(workers.map(({ isEnded }) => isEnded), workers.map((worker) => !isThere || worker !== newest()), 'those that have ended');
       }
-      let open = 0;
-      for (let k = 0; k < 4; k += 1) {
-        open += 1;
-        python.ask({ k }).then((found) => isGood && notes.push(found), () => isGood && notes.push('rejected')).finally(() => { open -= 1; });
-        await passes(chance.below(100));
-      }
-      await passes(120_000);
-      if (open) throw new Error(`${open} never end: ${notes}`);
-      return { ends: [end], seen: [...notes] };
+      return { ends: [...ends], seen: [] };
     };
   },
 
@@ -2344,27 +2623,101 @@ const PARTS = {
     };
   },
 
-  // The worlds that were drawn, as they are kept.
+  // The worlds that were drawn or opened, in a tab that is loaded again: the newest and those before it are there as they were
+  // when they were last kept, but those that no file can say, and those that nobody can read.
   async worlds() {
-    const page = freshPage();
-    await learns(page);
-    const { OwnWorlds } = await page.load('world/own.js');
-    const { loadWorldTexts } = await page.load('programs/work.js');
-    let late = () => 5;
-    const own = new OwnWorlds({ ask: async ({ form }) => { await later(late()); return { text: `text of ${form.name}` }; } });
-    return async (chance, isGood) => {
-      late = () => (isGood ? 50 : 5 + chance.below(600));
-      const count = 1 + chance.below(5);
-      for (let k = 0; k < count; k += 1) {
-        own.setNewest({ name: `${isGood ? 'good' : 'bad'} ${k}` }, isGood);
-        own.storeTexts('tinibot');
-        if (!isGood) await passes(chance.below(300));
+    const MOST_EARLIER = 5;
+    return async (chance) => {
+      const page = freshPage();
+      await learns(page);
+      const { OwnWorlds } = await page.load('world/own.js');
+      const { loadWorldTexts } = await page.load('programs/work.js');
+      const unreadable = new Set();
+      let made = 0, late = () => 5, asks = 0, isReady = true, wrong = '';
+      const textOf = ({ id = 0 }) => (id % 7 ? `text of ${id}\n# no name` : '');
+      const python = () => ({
+        ready: later(isReady ? 0 : 200).then(() => { isReady = true; }),
+        async ask({ do: what, form, name }, data) {
+          if (!isReady) wrong = 'it is asked before it is there';
+          asks += 1;
+          await later(late());
+          if (what === 'write_world') return textOf(form) ? { text: textOf(form) } : { refused: ['no'] };
+          const text = new TextDecoder().decode(data), id = Number(/^text of (\d+)\n# no name$/.exec(text)?.[1]);
+          return id && !unreadable.has(id) ? { world: { name, id } } : {};
+        },
+      });
+      let own = new OwnWorlds(python());
+      let worlds = [null]; // the newest first
+      let kept = [null];
+      let newest = 0; // of the times that they were kept
+      const has = () => [own.newestWorld, ...own.earlierWorlds].map((world) => world && [world.id, world.name]);
+      const rowOf = (list) => list.map((world) => world && [world.id, world.name]);
+      const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
+      const hasRoomFor = (hasRoom) => { window.localStorage.room = window.sessionStorage.room = hasRoom ? Infinity : 0; };
+      const sets = (world, isOther) => {
+        const [before, ...earlier] = worlds;
+        worlds = [world, ...isOther && before ? [before] : [], ...earlier].slice(0, 1 + MOST_EARLIER);
+      };
+      const acts = {
+        draws() {
+          const world = { id: (made += 1), name: chance.of(['', 'n', '# n']) }, isOther = chance() < 0.6;
+          sets(world, isOther);
+          own.setNewest(world, isOther);
+        },
+        earlier() {
+          const index = chance.below(MOST_EARLIER), [, ...earlier] = worlds, world = earlier[index];
+          own.restoreEarlier(index);
+          if (!world) return;
+          worlds = [worlds[0], ...earlier.filter((each) => each !== world)];
+          sets(world, true);
+        },
+        keeps() {
+          const number = (newest += 1), now_ = worlds, hasRoom = chance() < 0.8;
+          hasRoomFor(hasRoom);
+          own.storeTexts('tinibot').then((isKept) => {
+            if (number !== newest) return is(isKept, true, 'what a newer one says');
+            is(isKept, window.localStorage.room > 0, 'whether it is kept');
+            if (isKept) kept = [textOf(now_[0] ?? {}) ? now_[0] : kept[0], ...now_.slice(1)]; // one that nobody can write takes no other's place
+          }).catch((why) => { wrong = String(why); });
+        },
+        async reloads() {
+          await passes(3000);
+          hasRoomFor(true);
+          for (const world of kept) if (world && chance() < 0.15) unreadable.add(world.id);
+          isReady = chance() < 0.5;
+          own = new OwnWorlds(python());
+          const isThere = ([world]) => Boolean(world && textOf(world) && !unreadable.has(world.id));
+          const [before, ...earlier] = kept, hadText = before && textOf(before);
+          let isWhole = null;
+          own.restore().then((found) => { isWhole = found; });
+          await passes(3000);
+          is(isWhole, !hadText || isThere([before]), 'whether it is whole');
+          worlds = [isThere([before]) ? before : null, ...earlier.filter((world) => isThere([world]))];
+        },
+        async rests() { // then nobody has to write them once more
+          acts.keeps();
+          await passes(3000);
+          asks = 0;
+          acts.keeps();
+          await passes(3000);
+          is(asks, 0, 'how often they are written');
+        },
+        waits: () => {},
+      };
+      const ends = new Set();
+      for (let k = 5 + chance.below(20); k > 0; k -= 1) {
+        const act = chance.of(['draws', 'draws', 'keeps', ...Object.keys(acts)]);
+        late = () => 5 + chance.below(chance.of([5, 600]));
+        ends.add(act);
+        await acts[act]();
+        await passes(chance.of([0, 100, 2000]));
+        is(has(), rowOf(worlds), `after it ${act}`);
+        if (wrong) throw new Error(wrong);
       }
-      if (!isGood) return { ends: [count > 1 ? 'several' : 'one'], seen: [] };
-      own.earlierWorlds = [];
-      own.storeTexts('tinibot');
-      await passes(2000);
-      return { ends: ['good'], seen: loadWorldTexts().newest };
+      await passes(3000);
+      const [newestText, ...texts] = kept.map((world) => (world && textOf(world) ? `${world.name && `# ${world.name}\n`}${textOf(world)}` : ''));
+      is(loadWorldTexts(), { newest: newestText, before: texts.filter(Boolean) }, 'what is kept');
+      return { ends: [...ends], seen: [] };
     };
   },
 
@@ -2731,77 +3084,251 @@ const PARTS = {
     };
   },
 
+  // Where a real robot halts, over a link that is late and loses answers: what starts is what was pressed last, and has its
+  // places; who goes on is halted; at rest the robot knows the breakpoints, and nothing of a halt before is seen.
+  async places() {
+    const page = freshPage();
+    await learns(page);
+    const { Debugging } = await page.load('robot/debugging.js');
+    const { pageState } = await page.load('page/page_state.js');
+    const { LINK } = await page.load('page/words.js');
+    const { dataset } = document.documentElement;
+    const text = 'F(1)\nF(2)\nF(3)\nF(4)\nF(5)\nF(6)\nF(7)\nF(8)\nF(9)';
+    const places = text.split('\n').map((_, k) => [10 * k, k + 1, 1, k + 1, 5]), halts = places.map(([offset]) => offset + 1);
+    const programs = ['a', 'b'].map((program) => ({ program, places, halts, variables: [{ name: 'X', is_yes_no: false }] }));
+    const points = places.map(() => ({}));
+    pageState.programText.set(text);
+    let answersLate = () => 5, loses = () => false, wrong = '';
+    let info = null; // of the robot that is connected
+    let newest = null; // what was pressed last: a stop, or a start, and what the robot has to know before
+    let wanted = []; // where it is to halt
+    let known = '', told = null; // where it halts, and what has said so
+    let isHalted = false, clock = 0; // whether its time stands
+    let isPaused = false; // before its first instruction
+    const fails = (what) => { wrong ||= what; };
+    const all = () => `${(isPaused ? [0, ...wanted] : wanted).slice(0, LINK.most_breakpoints)}`;
+    const debugging = new Debugging({
+      async ask(request) {
+        const { do: what } = request;
+        if (what === 'start') {
+          if (newest?.kind !== 'start') fails(`it is started after ${newest?.kind}`);
+          else if (newest.hasPlaces && known !== all() && !(newest.isPaused && known.startsWith('0'))) fails(`it starts with ${known} in place of ${all()}`);
+        }
+        const isLost = loses();
+        if (what === 'break') [known, told] = [`${request.places}`, request]; // requests arrive in their order
+        if (what === 'resume') {
+          if (!isHalted) fails('what is not halted goes on');
+          isHalted = false;
+        }
+        const by = info;
+        await later(answersLate());
+        if (isLost && told === request && by === info) known = 'nobody knows';
+        if (isLost || by !== info) return null; // also of a robot that is gone
+        return what === 'variables' ? { variables: [7] } : what === 'tasks' ? { tasks: [['RUNNING', 0], ['WAITING', 20]] } : { ok: true };
+      },
+      uploadPaused: () => acts.uploads(null, true), say() {}, canGetHalting: async () => false, getHalting() {},
+      place: { hold: () => {}, goOn: () => {} },
+      recorder: { halt: () => { clock = 1; }, goOn: () => { clock = 0; } },
+    });
+    let program = null, isRunning = false, isStepping = false;
+    const tells = (event) => debugging.onEvent(event);
+    const over = (starts) => {
+      [isRunning, isHalted, isStepping] = [starts, false, false];
+      if (!starts) isPaused = false;
+      clock = 0;
+    };
+    const acts = {
+      meets(chance) {
+        info = chance() < 0.9 ? { has_breakpoints: chance() < 0.8, is_running: chance() < 0.2 } : null;
+        [program, known, newest] = [null, '', null];
+        over(info?.is_running ?? false);
+        debugging.meet(info);
+      },
+      uploads(chance, paused = chance() < 0.3) {
+        if (!info || isRunning) return;
+        program = programs[clock % 2];
+        [known, isPaused] = ['', paused];
+        newest = { kind: 'upload' };
+        const mine = newest, by = info, starts = !chance || chance() < 0.8;
+        const does = debugging.onUpload(program, paused);
+        if (Boolean(does) !== Boolean(info.has_breakpoints && (paused || wanted.length))) fails('its places are not sent');
+        if (!does) isPaused = false;
+        later(answersLate()).then(() => {
+          if (by !== info) return;
+          if (newest === mine && starts) newest = { kind: 'start', hasPlaces: true, isPaused: paused }; // which halts at once, and gets what is new then
+          does?.(starts);
+        });
+      },
+      startAgain() {
+        if (!info || isRunning) return;
+        isPaused = false;
+        newest = { kind: 'start', hasPlaces: Boolean(program && info.has_breakpoints) };
+        debugging.startAgain();
+      },
+      stop() {
+        newest = { kind: 'stop' };
+        debugging.stop();
+      },
+      line() {
+        if (known) known = 'none'; // what it halts at is gone
+        debugging.onLine();
+      },
+      breaks(chance) {
+        const lines = places.filter(() => chance() < 0.3).map(([, line]) => line);
+        wanted = lines.map((line) => halts[line - 1]);
+        pageState.breakpoints.set(lines.map((line) => ({ line, column: 1, point: points[line - 1] })));
+      },
+      begins() {
+        if (!info || isRunning) return;
+        over(true);
+        tells({ event: 'STARTED', is_program: true });
+      },
+      ends(chance) {
+        over(false);
+        tells({ event: chance.of(['DONE', 'FAULT', 'STOPPED', 'LOST']) });
+      },
+      halts(chance) {
+        if (!isRunning || isHalted || !program || !info?.has_breakpoints) return;
+        const offset = chance.of([halts[2], halts[4], 3]), isWithin = offset === 3;
+        isHalted = true;
+        const goesOn = isWithin && (isStepping || isPaused);
+        if (!goesOn) isPaused = false;
+        tells({ event: 'HALTED', is_program: true, at: offset, task: 0 });
+        if (isHalted === goesOn) fails(`at ${offset} it ${isHalted ? 'stands' : 'goes on'}`);
+        if (!clock) fails('the clock of the recording goes on in a halt');
+      },
+      goesOn(chance) {
+        const isStep = chance() < 0.5, before = isHalted;
+        if (!isStep || before) {
+          if (before) [isStepping, clock] = [isStep, 1];
+          page.byId(isStep ? 'link_step' : 'link_go_on').click();
+          if (before && (isHalted || clock)) fails('it does not go on');
+        }
+      },
+      waits: () => {},
+    };
+    return async (chance, isGood) => {
+      wrong = '';
+      acts.meets(chance);
+      const acted = new Set();
+      for (let k = 10 + chance.below(40); k > 0; k -= 1) {
+        answersLate = () => 1 + chance.below(chance.of([5, 300]));
+        loses = () => !isGood && chance() < 0.3;
+        const act = chance.of([...!info || !program ? ['meets', 'uploads'] : isRunning ? ['halts', 'goesOn', 'halts', 'ends'] : ['uploads', 'breaks', 'startAgain', 'stop'], ...Object.keys(acts)]);
+        acts[act](chance);
+        acted.add(act);
+        await passes(chance.of([0, 20, 500]));
+        if (wrong) throw new Error(`after ${[...acted]}: ${wrong}`);
+        const isShown = dataset['halt'];
+        if ((isShown === 'halted' || isShown === 'read') !== isHalted) throw new Error(`after it ${act} ${isShown} is seen`);
+        if (!isHalted && isShown !== (isRunning ? 'running' : 'none')) throw new Error(`after it ${act} ${isShown} is seen of what runs: ${isRunning}`);
+      }
+      return { ends: [...acted], seen: [] };
+    };
+  },
+
   // The recording of a run, before and after runs of others: each row at its time, which stands while the program is halted.
   async recording() {
     const page = freshPage();
     await learns(page);
     const { Recorder } = await page.load('robot/recorder.js');
     const { Runs } = await page.load('virtual/runs.js');
+    const { pageState } = await page.load('page/page_state.js');
+    const { text: textOf } = await page.load('page/texts.js');
+    const MOST_EVENTS = 10_000, MOST_MS = 600_000, MOST_PROGRAMS = 20;
     const runs = new Runs();
+    let trims = 0;
     page.byId('record_play').hidden = true; // as in index.html
-    const recorder = new Recorder({ runs, play() {} });
-    recorder.addProgram({ program: 'aa', places: [], shows: [], variables: [] });
-    let own = []; // what the newest run of ours has told, and when
-    let isOpen = false;
-    let hasUnread = false; // what a sensor of the newest run has read, and nobody knows
-    let began = null; // by the clock that stands in a halt; null before the first row of a run by the button
-    let halted = null;
-    const tells = (event) => {
-      began ??= now();
-      if (isOpen) own.push([Math.round(now() - began), event]);
+    const recorder = new Recorder({ runs: { addRun: (run) => runs.addRun(run), trim: () => { trims += 1; runs.trim(); } }, play() {} });
+    let sent = []; // the programs that robots have from here, the newest last
+    const sends = (name, isSensing) => {
+      const text = `// ${name}${isSensing ? ' DISTANCE' : ''}`;
+      pageState.robotName.set('tinibot');
+      pageState.programText.set(text);
+      sent = [...sent.filter((each) => each.name !== name), { name, text }].slice(-MOST_PROGRAMS);
+      recorder.addProgram({ program: name, places: [], shows: [], variables: [] });
     };
+    let own = []; // what the newest run of ours has told, and when
+    let ran = null; // its program
+    let isOpen = false;
+    let unread = false; // what a sensor of the newest run has read, and nobody knows
+    let lacks = false; // the robot tells of no readings
+    let began = null; // by the clock that stands in a halt; null before the first row of a run by the button
+    let halted = null, byButton = false, end_ms = null, over = 0;
     const goesOn = () => {
-      if (halted !== null) began += now() - halted;
+      if (halted !== null && began !== null) began += now() - halted;
       halted = null;
     };
+    const elapsed = () => (began === null ? 0 : Math.round(now() - began));
     const ends = (event) => {
       goesOn();
-      tells(event);
+      if (!isOpen) return;
+      end_ms = Math.min(elapsed(), MOST_MS);
+      own.push([end_ms, event]);
       isOpen = false;
+      over += 1;
     };
-    const begins = (at) => {
-      own = [];
-      isOpen = true;
-      hasUnread = false;
-      began = at;
-      halted = null;
+    const begins = (name, at) => {
+      ends('STOPPED');
+      [own, unread, halted] = [[], false, null];
+      ran = sent.find((each) => each.name === name) ?? null;
+      isOpen = ran !== null;
+      [began, byButton, end_ms] = [at, at === null, null];
+    };
+    const isFull = (at_ms) => own.length >= MOST_EVENTS || at_ms > MOST_MS;
+    const told = (rows) => {
+      if (isOpen) for (const row of rows) {
+        began ??= now() - row[0];
+        if (isFull(row[0])) { ends('STOPPED'); break; }
+        own.push(row);
+        unread ||= row[1].startsWith('UNREAD');
+      }
+      recorder.onEvent({ event: 'READING', rows });
     };
     const acts = {
-      ours() {
-        begins(now());
-        recorder.onEvent({ event: 'STARTED', program: 'aa', is_program: true });
+      sends: (chance) => sends(`p${chance.below(30)}`, chance() < 0.5),
+      meets(chance) {
+        lacks = chance() < 0.5;
+        recorder.meet({ has_readings: !lacks });
       },
-      waits() {
-        begins(null);
-        recorder.awaitButton('aa');
+      ours(chance) {
+        const { name } = chance.of(sent), ms = chance() < 0.2 ? chance.below(50) : undefined;
+        if (ms !== undefined) lacks = true;
+        begins(name, now());
+        recorder.onEvent({ event: 'STARTED', program: name, is_program: true, ms });
+      },
+      waits(chance) {
+        const { name } = chance.of(sent);
+        begins(name, null);
+        recorder.awaitButton(name);
       },
       theirs() {
         ends('STOPPED');
         recorder.onEvent({ event: 'STARTED', program: 'bb', is_program: false });
       },
-      unknown() { // of which this page has nothing
-        ends('STOPPED');
-        [own, hasUnread] = [[], false];
-        recorder.onEvent({ event: 'STARTED', program: 'cc', is_program: true });
+      unknown(chance) { // of which this page has nothing, or nothing any more
+        const name = chance.of(['cc', `p${chance.below(30)}`]);
+        begins(name, now());
+        recorder.onEvent({ event: 'STARTED', program: name, is_program: true });
       },
       shows(chance) {
         if (halted !== null) return; // it stands
-        const value = String(chance.below(1000));
-        if (isOpen) tells(`SHOW ${value}`);
-        recorder.onEvent({ event: 'SHOW', value });
+        const value = String(chance.below(1000)), ms = chance() < 0.2 ? Math.max(0, elapsed() + 20 - chance.below(60)) : undefined;
+        if (isOpen) {
+          began = Math.min(began ?? Infinity, now() - (ms ?? 0));
+          if (isFull(elapsed())) ends('STOPPED');
+          else own.push([ms ?? elapsed(), `SHOW ${value}`]);
+        }
+        recorder.onEvent({ event: 'SHOW', value, ms });
       },
       reads(chance) { // in the robot's own time
-        const at_ms = now() - (began ?? now() - 5), row = [Math.round(at_ms), chance.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])];
         if (halted !== null) return;
-        if (isOpen) {
-          began ??= now() - row[0];
-          own.push(row);
-          hasUnread ||= row[1].startsWith('UNREAD');
-        }
-        recorder.onEvent({ event: 'READING', rows: [row] });
+        const at_ms = now() - (began ?? now() - 5);
+        told([[Math.round(at_ms), chance.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]]);
       },
       ends(chance) {
         const event = chance.of(['DONE', 'STOPPED', 'MISSED', 'LOST', 'RESTARTED']);
+        if (isOpen) began ??= now();
         ends(event === 'RESTARTED' ? 'LOST' : event);
         recorder.onEvent({ event });
       },
@@ -2818,21 +3345,38 @@ const PARTS = {
         goesOn();
         recorder.goOn();
       },
+      lasts: (chance) => passes(chance.of([1000, 700_000])),
     };
-    return async (chance, isGood) => {
-      let end = '';
-      if (isGood) acts.ours();
-      for (let k = 1 + chance.below(12); k > 0; k -= 1) {
+    return async (chance) => {
+      const acted = new Set();
+      let end = '', isTold = true;
+      sends('aa', false);
+      if (chance() < 0.3) for (let k = 29; k >= 0; k -= 1) sends(`p${k}`, false);
+      const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`after it ${end} ${what}: ${JSON.stringify(found)?.slice(-300)} in place of ${JSON.stringify(wanted)?.slice(-300)}`); };
+      for (let k = 1 + chance.below(16); k > 0; k -= 1) {
         end = chance.of(['shows', 'shows', 'shows', ...Object.keys(acts)]);
-        acts[end](chance);
+        if (k === 2 && chance() < 0.08) {
+          end = 'floods';
+          acts.ours(chance);
+          told(Array.from({ length: MOST_EVENTS + chance.of([0, 9]) }, () => [elapsed(), 'READ DISTANCE 5']));
+        } else await acts[end](chance);
+        acted.add(end);
         await passes(chance.below(300));
-        if (page.byId('record_play').hidden !== !own.length) throw new Error(`what can be played is ${own}`);
-        if (!own.length) continue;
-        const told = runs.newestFirst[0].rows;
-        if (`${told}` !== `${own}`) throw new Error(`${told} in place of ${own}`);
-        if (page.byId('record_lacks').hidden === hasUnread) throw new Error(`that not all was read is ${hasUnread ? 'not ' : ''}said`);
+        is(page.byId('record_play').hidden, !own.length, 'nothing can be played');
+        is(trims, over, 'those that have ended');
+        if (!ran) continue;
+        const run = runs.newestFirst[0];
+        is(run.rows, own, 'its rows');
+        is([run.origin.text, run.origin.is_by_button, run.end_ms], [ran.text, byButton, end_ms], 'of which program, and until when');
+        is(run.clock(), Math.min(MOST_MS, elapsed()), 'its clock');
+        const older = runs.newestFirst[1];
+        if (older) is(older.clock(), Math.min(MOST_MS, older.rows.at(-1)?.[0] ?? 0), 'the clock of the one before');
+        const notice = unread ? textOf('record_untold', { sensors: 'DISTANCE' }) : lacks && ran.text.includes('DISTANCE') ? textOf('record_no_readings') : '';
+        const place = page.byId('record_lacks');
+        if (['meets', 'ours', 'waits'].includes(end)) isTold = end !== 'meets'; // what a robot that is met tells is of the next run
+        if (isTold) is([place.hidden, place.textContent], [!notice, notice], 'what was not read');
       }
-      return { ends: [end], seen: isGood && [...own] };
+      return { ends: [...acted], seen: [] };
     };
   },
 
@@ -3124,17 +3668,25 @@ const PARTS = {
     /** What a browser keeps for an address, by the name of each store. @type {Map<string, Map<string, string>>} */
     let kept = new Map();
     let served = 0;
+    let claimed = 0; // by which build the open pages are answered
     let loses = () => false;
-    const fetches = async (name) => {
+    let before = new Map(); // what the browser itself has fetched, which it may give again
+    const nameOf = (request) => request.name ?? request;
+    const fetches = async (request) => {
+      const name = nameOf(request);
       await later(5);
       if (loses()) throw new Broken();
-      return `${name} of ${served}`;
+      if (request.cache !== 'reload' && before.has(name)) return before.get(name);
+      before.set(name, `${name} of ${served}`);
+      return before.get(name);
     };
-    const nameOf = (request) => request.name ?? request;
     const storeOf = (all) => ({
-      match: async (request) => all.get(nameOf(request)),
+      match: async (request, { ignoreSearch = false } = {}) => {
+        const pathOf = (name) => (ignoreSearch ? name.split('?')[0] : name);
+        return [...all].find(([name]) => pathOf(name) === pathOf(nameOf(request)))?.[1];
+      },
       async addAll(requests) {
-        const found = await Promise.all(requests.map(async (each) => [nameOf(each), await fetches(nameOf(each))]));
+        const found = await Promise.all(requests.map(async (each) => [nameOf(each), await fetches(each)]));
         for (const [name, content] of found) all.set(name, content);
       },
     });
@@ -3147,12 +3699,12 @@ const PARTS = {
       delete: async (name) => kept.delete(name),
       keys: async () => [...kept.keys()],
     };
-    class Request { constructor(name) { this.name = name; } }
+    class Request { constructor(name, { cache }) { Object.assign(this, { name, cache }); } }
     /** The worker of a build. @returns {(kind: string, more?: object) => Promise<any>} */
     const worker = (version) => {
       const heard = new Map();
-      const self = { addEventListener: (kind, does) => heard.set(kind, does), clients: { claim: async () => {} } };
-      new Function('self', 'caches', 'fetch', 'Request', 'VERSION', 'FILES', 'LANGUAGES', source)(self, caches, (request) => fetches(nameOf(request)), Request, `v${version}`, FILES, LANGUAGES);
+      const self = { addEventListener: (kind, does) => heard.set(kind, does), clients: { claim: async () => { claimed = version; } } };
+      new Function('self', 'caches', 'fetch', 'Request', 'VERSION', 'FILES', 'LANGUAGES', source)(self, caches, fetches, Request, `v${version}`, FILES, LANGUAGES);
       return async (kind, more = {}) => {
         let done = null;
         const takes = (promise) => { done = promise; };
@@ -3162,6 +3714,7 @@ const PARTS = {
     };
     return async (chance, isGood) => {
       kept = new Map([['of others', new Map([['./', 'theirs']])]]);
+      before = new Map();
       const ends = new Set();
       let open = null; // the build that the page is of
       let version = 0;
@@ -3175,7 +3728,7 @@ const PARTS = {
       for (let k = 3 + chance.below(8); k > 0; k -= 1) {
         loses = () => !isGood && chance() < 0.15;
         const act = chance.of(open ? ['builds', 'speaks', 'speaks', 'stranger'] : ['builds']);
-        if (act === 'stranger') kept.set(`tiniscript-studio-v${served + 1}`, new Map([...FILES, 'es.json', './?'].map((name) => [name, 'a stranger has put it there'])));
+        if (act === 'stranger') kept.set(`tiniscript-studio-v${served + 1}`, new Map(['./?', ...FILES, 'es.json'].map((name) => [name, 'a stranger has put it there'])));
         if (act === 'speaks') {
           const language = chance.of(Object.keys(LANGUAGES));
           if (await ended(open('message', { data: language }))) seen.add(language);
@@ -3187,11 +3740,17 @@ const PARTS = {
           if (isThere) {
             [open, version] = [next, served];
             await ended(open('activate'));
+            if (claimed !== version) throw new Error(`the open pages are those of ${claimed}`);
             if (`${[...kept.keys()].sort()}` !== `of others,tiniscript-studio-v${version}`) throw new Error(`it keeps ${[...kept.keys()]} of ${version}`);
           }
           ends.add(isThere ? 'installed' : 'lost');
         }
         if (!open) continue;
+        loses = () => false;
+        let other = '';
+        open('fetch', { request: { name: 'other', method: 'GET', cache: 'reload' } }).then((found) => { other = found; });
+        await passes(20);
+        if (other !== `other of ${served}`) throw new Error(`with a network it gives ${other}`);
         loses = () => true;
         if (await open('fetch', { request: { name: './robots', method: 'POST' } })) throw new Error('it answers for the server');
         for (const name of ['./?', ...FILES, ...[...seen].flatMap((language) => LANGUAGES[language])]) {
@@ -3199,7 +3758,7 @@ const PARTS = {
           open('fetch', { request: { name, method: 'GET' } }).then((found) => { answer = found; }, () => {});
           await passes(20);
           if (answer.startsWith('a stranger')) throw new Error(`${name} is what a stranger has left`);
-          if (name !== './?' && !(FILES.includes(name) ? [`${name} of ${version}`] : Array.from({ length: served }, (_, n) => `${name} of ${n + 1}`)).includes(answer)) throw new Error(`without a network ${name} of ${version} is ${answer}`);
+          if (!(name === './?' ? [`./ of ${version}`] : FILES.includes(name) ? [`${name} of ${version}`] : Array.from({ length: served }, (_, n) => `${name} of ${n + 1}`)).includes(answer)) throw new Error(`without a network ${name} of ${version} is ${answer}`);
         }
       }
       return { ends: [...ends], seen: [] };
@@ -3591,6 +4150,14 @@ const PARTS = {
     const { formOf } = await page.load('blocks/form.js');
     const container = page.byId('blocks');
     Object.assign(container, { clientWidth: 600, clientHeight: 400 });
+    let hearers = 0; // of what is done in the pane, and in the whole page
+    for (const each of [container, document, window, globalThis]) {
+      const { addEventListener: adds, removeEventListener: removes = () => {} } = each;
+      Object.assign(each, {
+        addEventListener(...given) { hearers += 1; return adds.apply(each, given); },
+        removeEventListener(...given) { hearers -= 1; return removes.apply(each, given); },
+      });
+    }
     let changes = 0;
     let tried = null;
     const toggled = [];
@@ -3601,6 +4168,7 @@ const PARTS = {
       playTone() {},
     });
     const workspace = () => seen.workspaces.at(-1);
+    const firstHearers = hearers;
     await passes(100);
     const all = () => workspace().getAllBlocks(true).filter((block) => !block.isShadow());
     return async (chance, isGood) => {
@@ -3665,6 +4233,64 @@ const PARTS = {
           blocks.updateLanguage();
           isAlone = '';
           for (const name of Object.keys(says)) says[name]();
+        },
+        searches() { // what is typed is looked for until somebody is at the blocks, at a group, or has given up
+          const input = container.querySelectorAll('.search')[0].children[1];
+          const list = workspace().getFlyout();
+          const focusAt = (className) => {
+            const target = Object.assign(document.createElement('g'), { className });
+            const event = new Event('focusin');
+            Object.defineProperty(event, 'target', { value: target });
+            workspace().getInjectionDiv().dispatchEvent(event);
+          };
+          const key = (name) => {
+            const event = Object.assign(new Event('keydown', { cancelable: true }), { key: name });
+            let isShortcut = true;
+            event.stopPropagation = () => { isShortcut = false; };
+            input.dispatchEvent(event);
+            if (isShortcut) throw new Error('what is typed is a shortcut');
+          };
+          list.hide();
+          seen.focused = null;
+          let typed = '', shown = '';
+          for (let k = 4 + chance.below(20); k > 0; k -= 1) {
+            const did = chance.of(['types', 'types', 'comes back', 'blocks', 'group', 'list', 'Escape', 'Enter', 'x']);
+            const goes = () => { [typed, shown] = ['', '']; };
+            if (did === 'types') {
+              input.value = typed = chance.of(['', ' ', 'wait', 'qqqq']);
+              seen.group = 'a group';
+              input.dispatchEvent(new Event('input'));
+              shown = typed.trim();
+              if (seen.group) throw new Error('a group stays chosen');
+            } else if (did === 'comes back') {
+              input.dispatchEvent(new Event('focus'));
+              if (typed) shown = typed.trim();
+            } else if (did === 'list') focusAt('blocklyFlyout');
+            else if (did === 'blocks') {
+              focusAt('blocklyBlock');
+              if (typed) goes();
+            } else if (did === 'group') {
+              focusAt('blocklyToolbox');
+              typed = '';
+              if (shown && !list.shown) throw new Error('the blocks of a group are hidden');
+              list.hide(); // Blockly shows those of the group
+              shown = '';
+            } else if (did === 'Escape') {
+              key(did);
+              goes();
+              if (seen.focused !== workspace()) throw new Error('the focus is not at the blocks');
+              seen.focused = null;
+            } else {
+              key(did);
+              if (Boolean(seen.focused) !== (did === 'Enter' && shown !== '')) throw new Error(`with ${shown} the focus is ${seen.focused ? '' : 'not '}at what was found`);
+              seen.focused = null;
+            }
+            if (input.value !== typed) throw new Error(`after it ${did} ${input.value} is looked for in place of ${typed}`);
+            const found = list.shown?.map(({ kind }) => kind);
+            if (!shown !== !found || (shown && (found.includes('label') !== (shown === 'qqqq') || !found.length))) throw new Error(`after it ${did} ${found} is found of ${shown}`);
+          }
+          input.value = '';
+          list.hide();
         },
         resizes: () => blocks.resize(),
         begins: () => blocks.beginProgram(),
@@ -3846,6 +4472,7 @@ const PARTS = {
         const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`after ${act} ${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
         is(essence(formOf(workspace()).form), essence(form), 'the blocks');
         is(blocks.lines.length, list.length, 'their lines');
+        is(hearers, firstHearers, 'who hears of what is done there');
         const wanted = new Map();
         const looks = (id, look) => id && wanted.set(id, [...new Set([...wanted.get(id) ?? [], look])]);
         for (const place of has.running) looks(idAt(place), 'running');
@@ -4102,11 +4729,30 @@ const PARTS = {
         const isAgain = code !== '' && store.getItem('tiniscript.loaded') === code;
         location.hash = code ? `#code=${code}` : chance.of(['', '#code=12', '#other']);
         const { hash } = location, before = store.getItem('tiniscript.token') ?? '';
-        let isForeign = chance() < 0.4, reloads = 0;
+        let reloads = 0;
         location.reload = () => { reloads += 1; };
-        const registration = () => ({ active: {}, unregister: async () => { isForeign = false; } });
-        playsNavigator({ serviceWorker: { getRegistrations: async () => (isForeign ? [registration()] : []) } });
-        globalThis.caches = { keys: async () => [], delete: async () => true };
+        const scriptURL = 'http://127.0.0.1/service_worker.js';
+        /** What a browser has registered here: the page's own, or one of somebody else. */
+        let registrations = Array.from({ length: chance.below(3) }, () => {
+          const kind = chance.of(['own', 'own', 'first', 'address', 'kept', 'newer', 'lost', 'waits']);
+          const isOwn = kind === 'own' || kind === 'first', worker = { scriptURL: kind === 'address' ? 'http://127.0.0.1/other.js' : scriptURL };
+          const each = {
+            isOwn,
+            ...kind === 'first' ? { active: null, installing: worker } : { active: worker, waiting: kind === 'waits' ? { scriptURL } : null },
+            updateViaCache: kind === 'kept' ? 'all' : 'imports',
+            async update() {
+              await later(3);
+              if (kind === 'lost') throw new Broken();
+              if (kind === 'newer') each.installing = { scriptURL };
+            },
+            unregister: async () => { registrations = registrations.filter((other) => other !== each); },
+          };
+          return each;
+        });
+        const ownCount = registrations.filter(({ isOwn }) => isOwn).length, isForeign = registrations.length > ownCount;
+        playsNavigator({ serviceWorker: { getRegistrations: async () => registrations } });
+        const cached = new Set(['theirs', 'ours']);
+        globalThis.caches = { keys: async () => [...cached], delete: async (name) => cached.delete(name) };
         ends = chance.of(['given', 'given', 'used', 'lost']);
         let asked = 0;
         const tokens = [];
@@ -4128,6 +4774,7 @@ const PARTS = {
         }
         const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
         again = reloads && chance() < 0.8 ? code : '';
+        is([registrations.filter(({ isOwn }) => isOwn).length, registrations.length, cached.size], [ownCount, wasForeign || !isForeign ? ownCount : registrations.length, wasForeign ? 0 : 2], 'what is registered, and kept');
         if (wasForeign && !isFull && !isAgain) is([reloads, asked, location.hash], [1, 0, hash], 'beside a worker of somebody else');
         else {
           const token = wasForeign ? before : !code ? before : ends === 'given' ? `token ${code}` : '';

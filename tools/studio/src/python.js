@@ -114,7 +114,7 @@ export class Python {
     this.#startWorker(language);
   }
 
-  /** Whether nothing has come for a while. */
+  /** Whether it is not there, and nothing has come for a while. */
   get isLate() { return this.#isLate; }
 
   /** Tells of it from now on, and where it is. @param {PythonListener} listener */
@@ -160,7 +160,7 @@ export class Python {
   /** @param {Worker} worker */
   #reportWait(worker) {
     if (worker !== this.#worker) return;
-    this.#isLate = true;
+    this.#isLate = !this.#isReady;
     this.#listener.onWait();
   }
 

@@ -108,6 +108,7 @@ export class Blocks {
     setRobot(robotName);
     setActuators(robotName);
     this.#workspace = this.#makeWorkspace();
+    if (listener) this.#insertByKeys();
     for (const eventName of ['pointerdown', 'wheel', 'keydown']) {
       container.addEventListener(eventName, () => {
         this.#isTouched = true;
@@ -184,17 +185,17 @@ export class Blocks {
     }
   }
 
-  /** Whoever chooses a block of a list with the keyboard has it where the focus was. @param {Blockly.WorkspaceSvg} workspace */
-  #insertByKeys(workspace) {
+  /** Whoever chooses a block of a list with the keyboard has it where the focus was. */
+  #insertByKeys() {
     /** @type {Blockly.BlockSvg | null} */
     let lastFocused = null; // that had the focus of the program
     this.#container.addEventListener('focusin', ({ target }) => {
       const blockElement = /** @type {Element} */ (target).closest('.blocklyBlock');
-      lastFocused = workspace.getBlockById(blockElement?.getAttribute('data-id') ?? '') ?? lastFocused;
+      lastFocused = this.#workspace.getBlockById(blockElement?.getAttribute('data-id') ?? '') ?? lastFocused;
     });
     this.#container.addEventListener('keydown', (event) => {
-      const listBlock = Blockly.getFocusManager().getFocusedNode();
-      const isInList = listBlock instanceof Blockly.BlockSvg && listBlock.isInFlyout && workspace === this.#workspace && workspace === listBlock.workspace.targetWorkspace;
+      const workspace = this.#workspace, listBlock = Blockly.getFocusManager().getFocusedNode();
+      const isInList = listBlock instanceof Blockly.BlockSvg && listBlock.isInFlyout && workspace === listBlock.workspace.targetWorkspace;
       if (!isInList || !['Enter', ' '].includes(event.key) || event.shiftKey || event.ctrlKey || event.metaKey) return;
       const isLastThere = lastFocused && workspace.getBlockById(lastFocused.id) === lastFocused;
       const block = insert(/** @type {Blockly.BlockSvg} */ (listBlock.getRootBlock()), workspace, isLastThere ? lastFocused : null);
@@ -235,7 +236,6 @@ export class Blocks {
       this.#zoomButtons = makeZoomButtons(workspace, START_SCALE);
       this.#container.append(this.#zoomButtons);
       this.#runFollower = new RunFollower(workspace);
-      this.#insertByKeys(workspace);
     }
     workspace.MAX_UNDO = 0;
     hideTextMeasure();

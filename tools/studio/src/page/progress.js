@@ -70,7 +70,10 @@ export class Progress {
  */
 export async function watchedFetch(resource, { onWait, cancelSignal, onProgress = () => {}, onFail = () => {}, ...options } = {}, fetcher = fetch) {
   const progress = new Progress({ onWait, cancelSignal });
-  progress.signal.addEventListener('abort', () => progress.end());
+  const endBadly = (/** @type {unknown} */ why) => {
+    progress.end();
+    onFail(why);
+  };
   try {
     const answer = await fetcher(resource, { ...options, signal: progress.signal });
     if (!answer.ok || !answer.body) {
@@ -85,11 +88,10 @@ export async function watchedFetch(resource, { onWait, cancelSignal, onProgress 
       },
       flush: () => progress.end(),
     });
-    answer.body.pipeTo(writable).catch(onFail);
+    answer.body.pipeTo(writable).catch(endBadly);
     return new Response(readable, { status: answer.status, headers: answer.headers });
   } catch (error) {
-    progress.end();
-    onFail(error);
+    endBadly(error);
     throw error;
   }
 }

@@ -22,7 +22,7 @@ import { StopOffsets } from '../writing/parts.js';
  */
 
 const END_EVENTS = ['DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST'];
-const NO_PLACES = '?'; // no list of places
+const UNKNOWN_PLACES = '?'; // no list of places: it may have none
 
 export class Debugging {
   #page;
@@ -104,7 +104,7 @@ export class Debugging {
 
   /** A line is sent: it takes the robot's places away. */
   onLine() {
-    if (this.#sentPlaces) this.#sentPlaces = NO_PLACES;
+    if (this.#sentPlaces) this.#sentPlaces = UNKNOWN_PLACES;
   }
 
   /** @param {RobotEvent} event */
@@ -154,9 +154,12 @@ export class Debugging {
     const haltOffsets = this.#haltOffsets;
     const places = (this.#isHaltingFirst ? [0, ...haltOffsets.filter((offset) => offset !== 0)] : haltOffsets).slice(0, LINK.most_breakpoints);
     if (places.join() === this.#sentPlaces) return true;
-    this.#sentPlaces = places.join();
-    if (await this.#page.ask({ do: 'break', places }) === null) return false;
-    return this.#sentPlaces !== NO_PLACES || this.#sendPlaces();
+    const sentPlaces = this.#sentPlaces = places.join();
+    if (await this.#page.ask({ do: 'break', places }) === null) {
+      if (this.#sentPlaces === sentPlaces) this.#sentPlaces = UNKNOWN_PLACES;
+      return false;
+    }
+    return this.#sentPlaces !== UNKNOWN_PLACES || this.#sendPlaces();
   }
 
   // -- a halt -------------------------------------------------------------------------------------
