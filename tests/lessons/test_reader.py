@@ -137,6 +137,8 @@ def test_a_page_names_the_numbers_of_its_lesson(folder: Path) -> None:
     with pytest.raises(LessonRefused) as exception_info:
         catalogue.page(folder, catalogue.PUPIL, "en")
     (sentence,) = describe(exception_info.value, "en")
-    assert "pupil.en.md uses {pauses.seconds}, but the lesson has no number of that name" in sentence
+    assert (
+        "pupil.en.md uses {pauses.seconds}, but the lesson has no number of that name" in sentence
+    )
     assert "pauses.at_least_seconds" in sentence
     assert describe(exception_info.value, "es") != [sentence]
