@@ -174,7 +174,7 @@ def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None
 @pytest.mark.parametrize(
     ("words", "code", "message"),
     [
-        (["--break", "9"], 1, "on line 9 or after it"),
+        (["--break", "9"], 1, "on or after line 9"),
         (["--break", "0"], 2, "--break"),
         (["--break", "one"], 2, "--break"),
         ([word for line in "12467" for word in ("--break", line)], 2, "at most 4"),
@@ -253,7 +253,7 @@ def test_a_line_halts_where_it_is_told_and_nowhere_in_what_came_before(pty_robot
     """The lines that it needs are sent before it. Lines of the text that is typed count."""
     result = on(pty_robot, "live", "-", "--break", "3", data="\n".join(LINES).encode()).gives(0, "")
     assert result.out.splitlines() == [
-        "TELL: now known.",
+        "Now defined: TELL.",
         "X 4",
         "Halted before line 3: X = X + 1",
         "  X = 4",
@@ -305,7 +305,7 @@ def test_a_person_steps_lines_at_the_prompt(pty_robot: PtyRobot) -> None:
 def test_a_line_that_has_no_such_place_or_a_robot_that_cannot_halt_gets_nothing(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    on(pty_robot, "live", "F(1, 80)", "--break", "2").gives(1, "on line 2 or after it")
+    on(pty_robot, "live", "F(1, 80)", "--break", "2").gives(1, "on or after line 2")
     on(pty_robot, "live", "F(1, 80)", "--break", "0").gives(2, "--break")
     monkeypatch.setattr(debugger, "BREAKPOINTS", 0)
     on(pty_robot, "live", "F(1, 80)", "--break", "1").gives(3, "breakpoint")

@@ -60,7 +60,7 @@ def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) 
     assert "is connected to the broker localhost, in the class 3b" in err
     later = on(school.robot, "set", "wifi").out
     assert "is connected to the broker" in later and "tsc class" not in later, "it knows no port"
-    _, *next_command = shlex.split(err.partition("To see all of them:  ")[2])
+    _, *next_command = shlex.split(err.partition("To see the whole class:  ")[2])
     assert "no program; nothing is running; yours" in inside(*next_command, data=b"a secret\n").out
 
 

@@ -151,7 +151,7 @@ def test_who_has_no_key_sees_and_stops(
     for data in (b"wrong\n", b"\n", b""):
         result = process("class", *room.access, data=data)
         assert result.code in (2, 3) and result.out == "" and "assword" in result.err, data
-    process("class", *room.place_options).gives(3, "does not let this computer in")
+    process("class", *room.place_options).gives(3, "refuses this computer")
     assert "no deja entrar" in process("class", *room.place_options, "--lang", "es").err
     tsc(room, "list").gives(0)
     result = tsc(room, "upload", "-e", DRIVES).gives(3)

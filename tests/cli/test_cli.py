@@ -99,7 +99,7 @@ def test_map_says_which_line(tsc: Tsc, tmp_path: Path) -> None:
 def test_each_fault_of_a_program_is_explained(tsc: Tsc) -> None:
     for instruction, fault, what in (
         ("SHOW(2000000 * 2000000)", "OVERFLOW", "Use smaller numbers."),
-        ("SHOW(1 / 0)", "DIVIDE_BY_ZERO", "Check with IF"),
+        ("SHOW(1 / 0)", "DIVIDE_BY_ZERO", "check with IF"),
         ("F(20 CM, 0)", "NO_POWER", "Use more power."),
     ):
         result = tsc("run", "-e", f"SI|{instruction}")
@@ -250,7 +250,7 @@ def test_an_image_of_another_robot_says_which(tsc: Tsc, tmp_path: Path) -> None:
         result = tsc("run", target)
         assert result.code == 1
         assert (
-            f"is for another robot, not for tinibot. Name that robot:  --robot {robot}"
+            f"is for another robot, not for tinibot. Name the right one:  --robot {robot}"
             in result.err
         )
         assert tsc("run", target, "--robot", robot).code == 0

@@ -124,7 +124,7 @@ def test_a_port_that_another_program_has_locked() -> None:
         holder.close()
         assert result.code == 3
         assert "1. Another program is using this port (sure)" in result.out
-        assert "does not say by whom" in result.out
+        assert "does not say by which program" in result.out
         assert inside("doctor", "--port", end.port).code == 0
 
 

@@ -45,11 +45,11 @@ def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None
     result = inside("upload", "--virtual", "-e", "SB|F(1, 80);SHOW(1.5)", "--plot", picture)
     receipt, *rest = result.out.splitlines()
     assert result.code == 0
-    assert receipt.endswith("SB: its button is pushed right away, since there are no keys here")
+    assert receipt.endswith("SB: its button is pressed right away, since there is no keyboard here")
     assert sorted(rest[:3]) == [
         "Done.",
         "SHOW 1.5",
-        "Saved. It starts with the button.",
+        "Saved. The button starts it.",
     ]  # the program is saved meanwhile
     assert rest[3].startswith("The virtual robot drove 36 cm in 1.0 s and touched nothing.")
     assert picture.read_bytes().startswith(b"\x89PNG")
@@ -105,7 +105,7 @@ def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
     )
     # 2.5 s at 80 % of 45 cm a second, to the millisecond
     assert result.out.splitlines()[1:] == [
-        "The time set with --for is over.", "Saved. It starts with the button.",
+        "The time set with --for is over.", "Saved. The button starts it.",
         "The virtual robot drove 90 cm in 2.5 s and touched nothing.",
     ]  # fmt: skip
 
@@ -215,18 +215,18 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
     "words, message",
     [
         (["-e", "SI|SHOW(DISTANCE);SHOW(DISTANCE)"],
-         "DISTANCE read 0. To give it readings:  --sensor DISTANCE=50,9\n"),
+         "DISTANCE always read 0. To supply readings:  --sensor DISTANCE=50,9\n"),
         (["-e", "SI|SHOW(DISTANCE)", "--machine", "cpp"],
-         "DISTANCE read 0. To give it readings:  --sensor DISTANCE=50,9\n"),
+         "DISTANCE always read 0. To supply readings:  --sensor DISTANCE=50,9\n"),
         (["-e", "SI|SHOW(DISTANCE)", "--show", "--lang", "es"],
          "DISTANCE midió 0: --sensor DISTANCE=50,9\n"),
         (["-e", "SI|SHOW(DISTANCE)", "--sensor", "DISTANCE=0"], ""),
         (["-e", "SI|SHOW(DISTANCE + LIGHT_R)", "--sensor", "DISTANCE=5"],
-         "LIGHT_R read 0. To give it readings:  --sensor LIGHT_R=127,23\n"),
+         "LIGHT_R always read 0. To supply readings:  --sensor LIGHT_R=127,23\n"),
         (["-e", "SI|IF(FALSE);SHOW(DISTANCE);ENDIF"], ""),
         (["-e", "// robot: liner\nSI|SHOW(BUTTON);SHOW(BATTERY)"],
-         "BUTTON read FALSE. To give it readings:  --sensor BUTTON=FALSE,TRUE\n"
-         "BATTERY read 0. To give it readings:  --sensor BATTERY=1,0.2\n"),
+         "BUTTON always read FALSE. To supply readings:  --sensor BUTTON=FALSE,TRUE\n"
+         "BATTERY always read 0. To supply readings:  --sensor BATTERY=1,0.2\n"),
     ],
 )  # fmt: skip
 def test_a_sensor_without_readings_is_told_once(words: list[str], message: str, tsc: Tsc) -> None:
@@ -241,7 +241,7 @@ def test_a_sensor_without_readings_is_told_once(words: list[str], message: str, 
 def test_a_fault_by_a_zero_is_told_with_its_cause(tsc: Tsc) -> None:
     result = tsc("run", "-e", "SI|SHOW(1 / DISTANCE)").gives(1)
     assert result.err.startswith(
-        "DISTANCE read 0. To give it readings:  --sensor DISTANCE=50,9\nfault DIVIDE_BY_ZERO"
+        "DISTANCE always read 0. To supply readings:  --sensor DISTANCE=50,9\nfault DIVIDE_BY_ZERO"
     )
 
 
@@ -439,7 +439,7 @@ def test_a_file_is_found_by_the_name_that_a_folder_shows(
     path.write_text("SI|F(1, 80)")
     result = tsc("check", folder / expected).gives(0)
     assert result.out == f"{path}: no mistakes.\n"
-    assert f"tsc uses {path}, its full name" in result.err
+    assert f"tsc uses {path} instead" in result.err
     assert tsc("compile", folder / expected).code == 0
     assert (folder / "prog.bin").exists()
     assert "su nombre completo" in tsc("run", folder / expected, "--lang", "es").err

@@ -41,7 +41,7 @@ def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
     result = on(pty_robot, "live", "-", data="\n".join(lines).encode())
     assert result.code == 1  # the fault ends it
     assert result.out.splitlines() == [
-        "TELL: now known.", "X 30.5", "X 31.5", "X 31.5", "READY TRUE", "-X -31.5",
+        "Now defined: TELL.", "X 30.5", "X 31.5", "X 31.5", "READY TRUE", "-X -31.5",
     ]  # fmt: skip
     assert "DIVIDE_BY_ZERO" in result.err
 
@@ -124,7 +124,7 @@ def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
         "DEF TELL\n  SHOW(1)\nEND_DEF\nLOOP(2)\n\n  TELL // twice\nEND_LOOP\nSHOW(3)\n"
     )
     assert (result.code, result.err) == (0, "")
-    assert result.out == "TELL: now known.\nSHOW 1\nSHOW 1\nSHOW 3\n"
+    assert result.out == "Now defined: TELL.\nSHOW 1\nSHOW 1\nSHOW 3\n"
     result = run_live("LOOP(2)\nF(2 80)\nEND_LOOP\nSHOW(4)\n").gives(1, out="")
     assert (
         result.err.startswith("line 2:") and "comma" in result.err and "END_LOOP" not in result.err

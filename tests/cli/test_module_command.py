@@ -194,4 +194,4 @@ def test_a_pulled_cable_and_ctrl_c_say_at_which_speeds_the_module_may_be(
         result = command.wait_for_result()
     assert result.code == code
     assert expected in (result.out if is_pulled else result.err)
-    assert ("WRONG  module: The port vanished" in result.out) == is_pulled
+    assert ("WRONG  module: The port disappeared" in result.out) == is_pulled

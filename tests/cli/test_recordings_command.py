@@ -26,7 +26,7 @@ from tiniscript.studio.recordings import REAL, Row, decode, encode, header_line
 TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
 CHECKSUM = compile(TEXT).checksum
 HEAD = header_line(REAL, TEXT, robots.load("tinibot"), CHECKSUM)
-AGAIN = "The virtual robot did exactly the same again. Rows: "
+AGAIN = "The virtual robot did exactly the same again. Rows compared: "
 
 
 def real(*events: tuple[int, str]) -> bytes:
@@ -92,7 +92,7 @@ def test_a_real_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     assert 0 < recording.rows[0].ms <= recording.rows[1].ms < 2000
     assert not is_foreign(file)
     result = tsc("run", file)
-    assert (result.code, result.err) == (0, "Both did the same. Values compared: 2.\n")
+    assert (result.code, result.err) == (0, "Both robots did the same. Values compared: 2.\n")
     file.write_bytes(file.read_bytes().replace(b'SHOW 5"', b'SHOW 6"'))
     result = tsc("run", file, "--world", "line", "--lang", "es").gives(1)
     assert result.err.startswith("Línea 1: el robot dice 6 a los 0.")
@@ -124,7 +124,7 @@ def test_a_real_run_is_recorded_with_what_it_read_and_played_in_another_world(
         result = inside("run", file, "--world", world)
         assert (result.code, result.err) == (
             0,
-            f"Both did the same. Values compared: {values + 1}.\n",
+            f"Both robots did the same. Values compared: {values + 1}.\n",
         )
 
 
@@ -153,7 +153,7 @@ def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
     for event, wanted_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
         assert wanted_ms <= event.ms <= wanted_ms + 100, events
     result = inside("run", file)
-    assert (result.code, result.err) == (0, "Both did the same. Values compared: 7.\n")
+    assert (result.code, result.err) == (0, "Both robots did the same. Values compared: 7.\n")
 
 
 def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> None:
@@ -171,13 +171,13 @@ def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> 
         (
             ((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")),
             0,
-            "Both did the same. Values compared: 2.",
+            "Both robots did the same. Values compared: 2.",
         ),
-        (((200, "SHOW 5"), (300, "LOST")), 0, "Both did the same. Values compared: 1."),
+        (((200, "SHOW 5"), (300, "LOST")), 0, "Both robots did the same. Values compared: 1."),
         (((200, "SHOW 5"), (400, "MISSED")), 0, "Some of the robot's values did not arrive"),
         ((), 1, "The recording ends before the robot sent anything"),
         (((200, "LOST"),), 1, "The recording ends before the robot sent anything"),
-        (((900, "SHOW 5"),), 1, "Line 1: the robot got there at a different time."),
+        (((900, "SHOW 5"),), 1, "Line 1: the times differ."),
         (((200, "SHOW 5"), (400, "DONE")), 1, "Line 3: the robot reported DONE after 0.4 s"),
         (((200, "SHOW 5"), (9000, "STOPPED")), 1, "Line 3: the virtual robot reported FAULT"),
     ],
@@ -201,7 +201,11 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
         for end in ("\n", "\r\n"):
             file.write_bytes((mark + text.replace("\n", end)).encode(encoding))
             result = tsc("run", file)
-            assert result.err == "Both did the same. Values compared: 2.\n", (encoding, end, result)
+            assert result.err == "Both robots did the same. Values compared: 2.\n", (
+                encoding,
+                end,
+                result,
+            )
 
 
 @pytest.mark.parametrize(

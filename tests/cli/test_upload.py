@@ -29,7 +29,7 @@ def test_upload_runs_the_program_and_stays_until_it_ends(
         "DISTANCE + 1.5 43.5",
         "SHOW TRUE",
         "Done.",
-        "Saved. It starts with the button.",
+        "Saved. The button starts it.",
     ]
     assert pty_robot.actions == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
@@ -161,7 +161,7 @@ def interrupt(command: Command) -> CommandResult:
 
 def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyRobot) -> None:
     command = Command("upload", "-e", WAITS, "--port", pty_robot.port)
-    command.until("Saved. It starts with the button.")
+    command.until("Saved. The button starts it.")
     pty_robot.switch_off_and_on()
     command.kill()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
@@ -169,7 +169,7 @@ def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyR
 
 def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
     interrupt(uploading(pty_robot)).gives(
-        2, "the robot has confirmed the stop", out="Saved. It starts with the button."
+        2, "the robot has confirmed the stop", out="Saved. The button starts it."
     )
     pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
@@ -237,7 +237,7 @@ def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRob
     """The JSON form is a receipt."""
     first, second = with_two(pty_robot)
     for language, checksum, expected, saved_text in (
-        ("en", first, "it has the previous program again, checksum", "Saved. It starts"),
+        ("en", first, "it has the previous program again, checksum", "Saved. The button"),
         ("es", second, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
     ):
         result = on(pty_robot, "start", "--previous", "--lang", language).gives(0, "")

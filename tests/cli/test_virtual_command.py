@@ -41,7 +41,7 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
         assert (result.code, result.err) == (0, "")
         receipt, *rest = result.out.splitlines()
         assert receipt.startswith(f"-e -> KAT ({running_robot.port})")
-        assert rest == ["SHOW 1.5", "Done.", "Saved. It starts with the button."]
+        assert rest == ["SHOW 1.5", "Done.", "Saved. The button starts it."]
         # a value is shown when there is room for it on the line
         lines = [
             re.sub(r"^\d+ (SHOW|BEEP|DONE)", r"\1", line) for line in running_robot.until("DONE")
@@ -214,7 +214,7 @@ def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None
     result = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
                    "--plot", way)  # fmt: skip
     assert result.code == 0
-    assert "The time set with --for is over.\nSaved. It starts with the button.\n" in result.out
+    assert "The time set with --for is over.\nSaved. The button starts it.\n" in result.out
     assert f"and touched nothing. Picture: {way}\n" in result.out
     before, colours_after = colours(still.read_bytes()), colours(way.read_bytes())
     assert before["way"] < 20 < 4000 < colours_after["way"]
@@ -229,7 +229,7 @@ def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
     assert result.code == 0  # text that a radio inserts is printed too
     assert result.out.splitlines()[1:3] in (
         ["TIME 40", "Done."],
-        ["Done.", "Saved. It starts with the button."],
+        ["Done.", "Saved. The button starts it."],
     )
 
 

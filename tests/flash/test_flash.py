@@ -345,7 +345,7 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
 
 
 @pytest.mark.parametrize(("words", "message"), [
-    ([], "on which port"),
+    ([], "which port is the board"),
     (["--port", ""], "--port takes a port's name"),
     (["--port", "socket://localhost:1"], "is a wireless or network port."),
     (["--port", "/dev/none"], "there is no port /dev/none"),

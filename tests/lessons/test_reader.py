@@ -103,7 +103,7 @@ def test_answers_are_read_strictly(folder: Path) -> None:
         ("", "wrong[1].says.key is missing"),
         ("key = 'stil'", "wrong[1].says.key has stil, which is not a known word"),
         ("key = 'touches/wall'", 'wrong[1].says.seconds is missing. Add it, for example: seconds = "…"'),
-        ("key = 'touches/wall', seconds = 3", "says.seconds is a number. Write a text in quotes there"),
+        ("key = 'touches/wall', seconds = 3", "says.seconds is a number. Write text in quotes there"),
         ("key = 'still', cm = '3'", "The lesson's file has no key wrong[1].says.cm"),
     ],
 )  # fmt: skip
@@ -137,6 +137,8 @@ def test_a_page_names_the_numbers_of_its_lesson(folder: Path) -> None:
     with pytest.raises(LessonRefused) as exception_info:
         catalogue.page(folder, catalogue.PUPIL, "en")
     (sentence,) = describe(exception_info.value, "en")
-    assert "pupil.en.md has {pauses.seconds}, which is not a number of this lesson" in sentence
+    assert (
+        "pupil.en.md uses {pauses.seconds}, but the lesson has no number of that name" in sentence
+    )
     assert "pauses.at_least_seconds" in sentence
     assert describe(exception_info.value, "es") != [sentence]

@@ -51,7 +51,7 @@ def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot
     for count, port in enumerate((NAME, PLACE, "BLE://tini 1", PLACE.lower()), 1):
         result = inside("upload", "-e", DRIVE, "--port", port)
         assert (result.code, result.err) == (0, ""), port
-        assert result.out.splitlines()[-2:] == ["Done.", "Saved. It starts with the button."]
+        assert result.out.splitlines()[-2:] == ["Done.", "Saved. The button starts it."]
         assert (ble.robot.actions, ble.connections) == (DROVE * count, 2 * count - 1)
         assert inside("set", "trim", "--show").code == 0  # the port is remembered
     assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
@@ -220,7 +220,7 @@ def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:
 def test_what_is_no_robot_is_said(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 1500)
     bluez.add(Peripheral("lamp", OTHER, LAMP))
-    inside("doctor", "--identify", "--port", "ble://lamp").gives(3, "does not offer what tsc needs")
+    inside("doctor", "--identify", "--port", "ble://lamp").gives(3, "does not offer a robot's")
     bluez.add(Echo("echo", ADDRESS))
     inside("doctor", "--identify", "--port", "ble://echo").gives(3, "comes back")
 

@@ -68,7 +68,7 @@ def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_
     assert form[2].endswith("last restart: power on")
     assert "12345678" not in report.read_text("utf-8")
     # a busy computer may be late
-    answers = r"1\. It responds: \d+ of 20 arrived at once, and 0 arrived damaged"
+    answers = r"1\. It responds: \d+ of 20 pings were answered at once; damaged messages: 0"
     assert re.fullmatch(answers, form[3])
     assert [row.endswith(f": {BLANK_FIELD}") for row in form[6::3]] == [True] * (
         len(FORM_STEPS) - 1

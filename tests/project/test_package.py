@@ -245,7 +245,7 @@ def test_a_wheel_says_what_it_is_made_without(
     version = python("-m", "tiniscript", "--version", "--lang", "en", folder=tmp_path,
                      PYTHONPATH=str(tmp_path / "made"))  # fmt: skip
     assert "without prebuilt firmware" in version.stdout
-    assert ("without the page" in version.stdout) == (page == "none")
+    assert ("without the tsc studio page" in version.stdout) == (page == "none")
 
 
 @pytest.mark.sampled(of="source packages")

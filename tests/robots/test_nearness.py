@@ -64,7 +64,7 @@ def test_the_command_says_it_of_a_file_and_of_nothing_shipped(tsc: Tsc, tmp_path
     own.write_text(TEXTS["grabber"].replace("[0, 180]", "[0, 90]"), encoding="utf-8")
     result = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
     assert result.err == (
-        "The robot that comes with tsc and is nearest to yours is grabber. In common: DISTANCE,"
-        " TEMPERATURE, BUTTON, LED. Only grabber has: GRIPPER. Only yours has: GRIPPER.\n"
+        "Of the robots that come with tsc, grabber is the most similar to yours. In common:"
+        " DISTANCE, TEMPERATURE, BUTTON, LED. Only grabber has: GRIPPER. Only yours has: GRIPPER.\n"
     )
     assert tsc("firmware", "--board", "grabber", "-o", tmp_path / "own.h").err == ""

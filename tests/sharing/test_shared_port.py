@@ -55,7 +55,7 @@ def test_commands_share_a_session_that_is_begun_once(
     pty_robot: PtyRobot, link: Command, tmp_path: Path
 ) -> None:
     result = on(pty_robot, "upload", "-e", "SI|F(0.1, 80);SHOW(1.5)").gives(0, "")
-    assert result.out.splitlines()[1:] == ["SHOW 1.5", "Done.", "Saved. It starts with the button."]
+    assert result.out.splitlines()[1:] == ["SHOW 1.5", "Done.", "Saved. The button starts it."]
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     assert on(pty_robot, "live", "X = 1 / 0").code == 1
     assert "3 round trips" in on(pty_robot, "doctor", "--count", "3").out

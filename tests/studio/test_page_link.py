@@ -405,10 +405,10 @@ def agrees(page: Page, run: Callable[[], None]) -> None:
         page.click("#side_real")
         run()
         page.click("#record_play")
-        doing.filter(has_text=re.compile("Values compared|different time")).wait_for()
-        if "a different time" not in doing.inner_text():
+        doing.filter(has_text=re.compile("Values compared|times differ")).wait_for()
+        if "times differ" not in doing.inner_text():
             break
-    assert doing.inner_text() == "Both did the same. Values compared: 3."
+    assert doing.inner_text() == "Both robots did the same. Values compared: 3."
 
 
 @drawn

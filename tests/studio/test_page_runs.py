@@ -126,7 +126,8 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
     write(page, "SI|S")
     open_run(page, data, tmp_path / "run.tsr")
     wait_for_status(
-        page, f"The virtual robot did exactly the same again. Rows: {played_divergence.agreed}."
+        page,
+        f"The virtual robot did exactly the same again. Rows compared: {played_divergence.agreed}.",
     )
     run_names(page)
     assert decode(save_run(page, 0)).rows == recording.rows
@@ -137,7 +138,9 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
 def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path) -> None:
     data, rows = next(run for run in map(record_run, range(99)) if b'"tinibot32"' in run[0])
     open_run(page, data, tmp_path / "run.tsr")
-    wait_for_status(page, f"The virtual robot did exactly the same again. Rows: {len(rows)}.")
+    wait_for_status(
+        page, f"The virtual robot did exactly the same again. Rows compared: {len(rows)}."
+    )
     first = json.loads(data.splitlines()[0])
     assert (page.input_value("#robot"), page.input_value("#world")) == (
         first["robot"], first["world"])  # fmt: skip
@@ -149,7 +152,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
 ) -> None:
     rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
     open_run(page, real(*rows), tmp_path / "run.tsr")
-    wait_for_status(page, "Both did the same. Values compared: 4.")
+    wait_for_status(page, "Both robots did the same. Values compared: 4.")
     changed = (*rows[:2], (451, "SHOW 6"), (452, "DONE"))
     open_run(page, real(*changed), tmp_path / "run.tsr")
     wait_for_status(
@@ -208,4 +211,4 @@ def test_a_file_that_is_dropped_is_opened(page: Page) -> None:
         "#note", has_text="x.png was not opened. The file name of a saved run ends in .tsr."
     ).wait_for()
     page.evaluate(drop, ["mine.tsr", real(*rows)])
-    wait_for_status(page, "Both did the same. Values compared: 4.")
+    wait_for_status(page, "Both robots did the same. Values compared: 4.")

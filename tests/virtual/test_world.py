@@ -108,7 +108,7 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
         (RIGHT + "[[walls]]\npoints = [[1, 2]]\n", "walls[1].points has 1 points. Write 2 to 200"),
         (
             RIGHT + "[[walls]]\npoints = [[1, 2], ['a', 3]]\n",
-            "walls[1].points[2] is a text in quotes. Write a number there.",
+            "walls[1].points[2] is text in quotes. Write a number there.",
         ),
         (
             RIGHT + "[[lines]]\npoints = [[1, 2], [1, 9e9]]\n",

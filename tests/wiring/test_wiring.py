@@ -349,7 +349,7 @@ def test_the_command_writes_a_page(tsc: Tsc, tmp_path: Path) -> None:
     page = tmp_path / "page.html"
     result = tsc("firmware", "--wiring", "-o", page)
     assert (result.code, result.err) == (0, "")
-    assert result.out == f"{page}: how TiniBot is wired. Open it in a browser, or print it.\n"
+    assert result.out == f"{page}: the wiring of TiniBot. Open it in a browser, or print it.\n"
     assert page.read_text(encoding="utf-8") == html_of(plan_of(robots.load("tinibot"), "en"))
     assert tsc("firmware", "--wiring", "-o", "-").out == page.read_text(encoding="utf-8")
 

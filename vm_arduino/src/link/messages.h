@@ -173,9 +173,9 @@ enum class Answer : uint8_t {
   kOk = 0,  // The robot has done it.
   kUnknownMessage = 64,  // The robot's firmware is older than this tsc, and does not know this message.
   kBadLength = 65,  // A message had more or fewer bytes than the robot expects.
-  kBadValue = 66,  // A message asked for something that does not exist.
+  kBadValue = 66,  // A message contained a value that the robot does not accept.
   kStale = 67,  // The robot was stopped or restarted after this was sent, so it did nothing.
-  kOtherLink = 68,  // The robot uses version {detail} of the link; this tsc uses another one.
+  kOtherLink = 68,  // The robot uses version {detail} of the link protocol; this tsc uses another one.
   kOtherMachine = 69,  // The robot runs programs of version {version}; this program is for another version.
   kWrongKit = 70,  // The program is for another kit; this robot's kit is {kit}.
   kTooLarge = 71,  // The program is too large: the robot has room for {detail} bytes of code.
