@@ -24,6 +24,7 @@ from tiniscript.link.session import DEAF_MS, Session
 IN_A_ROW = 4  # packets of both that are lost before an answer arrives
 DEAD_MS, ALIVE_MS = 2500, 1500  # of a line that is dead again and again
 LATE_MS = 1200  # most delay of data to the robot
+MOST_POLLS = 5  # polls in one moment
 EACH_MS = 10_000  # of a request and of each of its pieces
 LONG = "SI|" + "F(0.1, 30); B(0.1, 20);" * 60
 GOES_ON = "SI|F(20, 40)"
@@ -70,8 +71,19 @@ class BadLine:
         return b"" if is_lost else data
 
 
+def polled_when_due(session: Session, now_ms: int) -> bytes:
+    """Return what a session sends that is polled when it wants that, which is seldom."""
+    data = b""
+    for _ in range(MOST_POLLS):
+        wakes_ms = session.wakes_at()
+        if wakes_ms is None or wakes_ms > now_ms:
+            return data
+        data += session.poll(now_ms)
+    raise AssertionError("it wants to be woken again and again")
+
+
 def turn(session: Session, robot: HostFirmware, line: BadLine) -> None:
-    data = line.takes(session.poll(robot.now_ms), robot.now_ms)
+    data = line.takes(polled_when_due(session, robot.now_ms), robot.now_ms)
     line.under_way.append((robot.now_ms + line.late_ms, data))
     due_ms, data = line.under_way[0]
     is_there = due_ms <= robot.now_ms
@@ -136,7 +148,7 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
             turn(session, robot, line)
         silent_ms = rng.choice((200, 1000, 4000, 40_000))
         for _ in range(silent_ms // 50):
-            session.poll(robot.now_ms)
+            polled_when_due(session, robot.now_ms)
             robot.wait(50)
         if rng.random() < 0.5:
             fresh = HostFirmware(TINIBOT, robot.memory(), seed=rng.getrandbits(32) | 1)
@@ -150,6 +162,33 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
         if until(session, robot, line, session.hello(), EXCHANGE_TIMEOUT_MS) != OK:
             raise AssertionError(f"seed {seed}: it is there")
         assert until(session, robot, line, ASKED["a long program"](session), 20_000) == OK, seed
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_who_polls_when_a_session_wants_it_does_so_seldom_and_misses_nothing(seed: int) -> None:
+    """This holds whatever is requested, and whatever is lost."""
+    rng = random.Random(seed)
+    robot, session, is_dead = switched_on(), computer(), False
+    for _ in range(60):
+        match rng.choice(("ask", "ask", "press", "stop", "die", "live", "wait")):
+            case "ask":
+                rng.choice([*ASKED.values()])(session)
+            case "press":
+                session.press(rng.randrange(4))
+            case "stop":
+                session.stop(robot.now_ms)
+            case "die":
+                is_dead = True
+            case "live":
+                is_dead = False
+        for _ in range(rng.choice((1, 10, 100, 400))):
+            data = polled_when_due(session, robot.now_ms)
+            sent = robot.wait(10, b"" if is_dead else data)
+            session.receive(b"" if is_dead else sent, robot.now_ms)
+    line = BadLine(rng)
+    line.is_bursty, line.likely, line.late_ms = False, 0, 0
+    session.stop(robot.now_ms)
+    assert until(session, robot, line, session.hello(), EACH_MS) == OK
 
 
 def lost_after_ms(session: Session, robot: HostFirmware) -> int:
