@@ -40,8 +40,8 @@ const ways = {
     };
     const port = { isRadio: true, goneBy: '', open: async () => {}, write: async () => {}, close: async () => {} };
     const { DirectRobot } = await page.load('robot/direct.js');
-    const robot = new DirectRobot(python, port, heard, () => {});
-    robot.connect('tinibot', 'en', '');
+    const robot = new DirectRobot(python, port, heard, { load: () => '', keep() {} });
+    robot.connect('tinibot', 'en');
     return { robot, asked: () => count };
   },
 };

@@ -3560,8 +3560,8 @@ const PARTS = {
       const notes = [];
       for (let k = isGood ? 1 : 1 + chance.below(3); k > 0; k -= 1) {
         const own = { robot: null };
-        const robot = own.robot = new DirectRobot(python, port(own), { onEvent() {}, onEnd: ({ reason }) => notes.push(reason) }, () => {});
-        const met = robot.connect('tinibot', 'en', '').then(() => 'met', ({ reason }) => reason);
+        const robot = own.robot = new DirectRobot(python, port(own), { onEvent() {}, onEnd: ({ reason }) => notes.push(reason) }, NO_KEYS);
+        const met = robot.connect('tinibot', 'en').then(() => 'met', ({ reason }) => reason);
         await passes(isGood ? 1000 : chance.below(chance.of([20, 300, 1200])));
         if (!isGood && chance() < 0.3 && state === 'open') goes();
         const wasOpening = state === 'opening';
@@ -3607,8 +3607,8 @@ const PARTS = {
       [given, bytes] = [[], []];
       let hears = () => {};
       const port = { isRadio: true, goneBy: 'port_gone', async open(onData) { hears = onData; }, async write() {}, async close() {} };
-      const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, () => {});
-      robot.connect('tinibot', 'en', '').catch(() => {});
+      const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, NO_KEYS);
+      robot.connect('tinibot', 'en').catch(() => {});
       await passes(1000);
       const came = [];
       const ended = [];
@@ -4903,6 +4903,9 @@ const PARTS = {
     };
   },
 };
+
+/** A browser in which nobody has the key of a robot. */
+const NO_KEYS = { load: () => '', keep() {} };
 
 /** What the side with a real robot imports, where a part plays the robot. */
 const REAL_SIDE = {

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from random import Random
 from typing import Any
 
 import pytest
 
+from tests.support.node import in_node, page_data
 from tests.support.virtual_robot import robot_in
 from tiniscript import compile, robots
 from tiniscript.link import keys
@@ -17,6 +19,9 @@ from tiniscript.studio import page_line, worker
 from tiniscript.studio.page_line import ATTENDED_MS, PageKeys, PageRobot
 from tiniscript.studio.robot_link import MOST_WAITING, BadRequest
 
+__all__ = ["page_data"]  # a fixture
+TABS_SCRIPT = Path(__file__).with_name("stored_keys_in_node.mjs")
+TABS_SEEDS = 30
 FOREVER = "LOOP(FOREVER);\nF(1, 80);\nEND_LOOP"
 OWNER = 0
 
@@ -150,26 +155,33 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
     robot and person, and so does the session with a connected robot.
     """
     monkeypatch.setattr(page_line, "_robot", None)
-    chance, kept_text = Random(seed), ""
+    chance, kept_text, known_text = Random(seed), "", ""
     newest_keys: dict[tuple[int, int], bytes] = {}
+
+    def add_in_other_tab() -> None:
+        nonlocal kept_text
+        others = PageKeys(kept_text.encode())
+        robot = chance.randrange(5, 9)
+        others.add(keys.encode_keys([RobotKey(robot, OWNER, chance.randbytes(KEY_BYTES))]))
+        kept_text = others.file()
+        newest_keys.update({key.slot: key.key for key in others.keys})
+
+    def link(now_ms: int) -> dict[str, Any]:
+        fields = {} if kept_text == known_text else {"kept": kept_text}
+        return ask(b"", do="link", now_ms=now_ms, asked=[], **fields)
+
     for now_ms in range(40):
         new_keys = [
             RobotKey(robot, chance.choice((OWNER, KEY_TEACHER)), chance.randbytes(KEY_BYTES))
             for robot in chance.sample(range(1, 5), 2)
         ]
+        if chance.random() < 0.3:
+            add_in_other_tab()
         match chance.choice(("connect", "import", "claim", "link")):
             case "connect":
                 ask(kept_text.encode(), do="connect", robot="tinibot", language="en")
-                new_keys = []
+                new_keys, known_text = [], kept_text
             case "import":
-                others = PageKeys(kept_text.encode())  # in another tab
-                others.add(
-                    keys.encode_keys(
-                        [RobotKey(chance.randrange(5, 9), OWNER, chance.randbytes(KEY_BYTES))]
-                    )
-                )
-                kept_text = others.file()
-                newest_keys |= {key.slot: key.key for key in others.keys}
                 kept_text = ask(keys.encode_keys(new_keys), do="import_keys", kept=kept_text)[
                     "keys"
                 ]
@@ -177,15 +189,27 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
                 new_keys = new_keys[: does == "claim"]
                 for key in (*new_keys, *new_keys):  # the second time it is there already
                     page_line._robot.keys.settle_key(key)
-                answer = ask(b"", do="link", now_ms=now_ms, asked=[])
-                assert ("keys" in answer) == bool(new_keys)  # another tab may have kept others
-                kept_text = answer.get("keys", kept_text)
+                answer = link(now_ms)
+                assert ("keys" in answer) == bool(new_keys)
+                known_text = kept_text
+                if new_keys and chance.random() < 0.3:  # in this moment, so they are not stored
+                    add_in_other_tab()
+                    answer = link(now_ms)
+                known_text = kept_text = answer.get("keys", kept_text)
             case _:
                 continue
         newest_keys |= {key.slot: key.key for key in new_keys}
         kept_keys = keys.decode_keys(kept_text.encode()) if kept_text else []
         assert {key.slot: key.key for key in kept_keys} == newest_keys
         assert not page_line._robot or page_line._robot.keys.keys_of_robot(None) == kept_keys
+
+
+def test_tabs_lose_no_key_of_each_other_and_store_one_before_a_robot_has_it(
+    page_data: Path,
+) -> None:
+    rows = [json.loads(line) for line in in_node(TABS_SCRIPT, str(page_data), str(TABS_SEEDS))]
+    assert len(rows) == TABS_SEEDS and sum(row["count"] for row in rows) > 10 * TABS_SEEDS
+    assert [row for row in rows if row["lost"] or row["early"]] == []
 
 
 @pytest.mark.parametrize(

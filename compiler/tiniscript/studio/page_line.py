@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TypeVar
 
 from tiniscript.link.authority import KeyRing, RobotKey
@@ -33,6 +34,7 @@ class PageKeys(KeyRing):
         """`data` is a file of keys, or nothing. Raises BadKeys."""
         self.keys: list[RobotKey] = decode_keys(data) if data else []
         self.has_changed = False
+        self._kept_keys = self.keys  # the last ones that the page was known to keep
 
     def file(self) -> str:
         self.has_changed = False
@@ -45,14 +47,19 @@ class PageKeys(KeyRing):
         return len(new_keys)
 
     def add_kept(self, data: bytes) -> None:
-        """Take what the page keeps now: another tab may have added to it. Raises BadKeys."""
+        """Take what the page keeps now: another tab may have changed it. What has changed here
+        since then stays as it is here. Raises BadKeys.
+        """
         kept_keys = decode_keys(data) if data else []
-        places = {(key.slot, key.is_pending) for key in kept_keys}
-        self._change_keys(
-            lambda keys: (
-                [key for key in keys if (key.slot, key.is_pending) not in places] + kept_keys
-            )
+        before, here, there = (
+            {key[:3]: key for key in keys} for keys in (self._kept_keys, self.keys, kept_keys)
         )
+        merged_keys = [
+            (here if there.get(key) == before.get(key) else there).get(key)
+            for key in {**there, **here}
+        ]
+        self.keys, self._kept_keys = [key for key in merged_keys if key is not None], kept_keys
+        self.has_changed = self.keys != kept_keys
 
     def _stored_keys(self) -> list[RobotKey]:
         return self.keys
@@ -158,8 +165,13 @@ def _connect(fields: Json, data: bytes) -> Json:
 
 
 def _link(fields: Json, data: bytes) -> Json:
-    """Go on with the session; `data` has arrived."""
+    """Go on with the session; `data` has arrived. `kept` is the file of the page's keys where
+    another tab has changed it.
+    """
     assert _robot is not None, "no robot is connected"
+    if "kept" in fields:
+        with suppress(BadKeys):  # a damaged file has none
+            _robot.keys.add_kept(fields["kept"].encode())
     return _robot.advance(data, fields["now_ms"], fields["asked"])
 
 

@@ -19,6 +19,13 @@ import { LINK, robotOf } from '../page/words.js';
  * @property {() => Promise<void>} close
  */
 
+/**
+ * Where the keys of robots are stored, as the text of a file of keys; other tabs change it, too.
+ * @typedef {object} KeyStore
+ * @property {() => string} load
+ * @property {(keys: string) => unknown} keep
+ */
+
 const OPEN_LIMIT_MS = 20_000; // a radio that looks for its robot
 const LONGEST_WAIT_MS = 100; // between two looks at the latest
 const CLOSE_LIMIT_MS = 10_000; // for the last write and the end of a port: the next connection waits no longer
@@ -42,42 +49,44 @@ export class DirectRobot extends RequestQueue {
   #unlock = () => {};
   /** @type {(why: Error) => void} */
   #rejectConnect = () => {};
-  #keepKeys;
+  #keyStore;
+  /** The keys that the session knows to be stored. */
+  #storedKeys = '';
 
   /**
    * @param {import('../python.js').Python} python
    * @param {Port} port
    * @param {RobotListener} listener
-   * @param {(keys: string) => unknown} keepKeys
+   * @param {KeyStore} keyStore
    */
-  constructor(python, port, listener, keepKeys) {
+  constructor(python, port, listener, keyStore) {
     super(listener);
     this.#python = python;
     this.#port = port;
-    this.#keepKeys = keepKeys;
+    this.#keyStore = keyStore;
   }
 
   /**
    * Connects; rejects with a ConnectionFailure.
    * @param {string} robotName
    * @param {string} language
-   * @param {string} keys
    * @returns {Promise<RobotInfo>}
    */
-  async connect(robotName, language, keys) {
+  async connect(robotName, language) {
     /** @type {Promise<never>} */
     const disconnection = new Promise((_, reject) => {
       this.#rejectConnect = reject;
     });
-    return Promise.race([this.#open(robotName, language, keys), disconnection]);
+    return Promise.race([this.#open(robotName, language), disconnection]);
   }
 
-  /** @param {string} robotName @param {string} language @param {string} keys */
-  async #open(robotName, language, keys) {
+  /** @param {string} robotName @param {string} language */
+  async #open(robotName, language) {
     try {
       await closingPorts;
       await this.#acquireLock();
-      await this.#python.ask({ do: 'connect', robot: robotName, language }, new TextEncoder().encode(keys));
+      this.#storedKeys = this.#keyStore.load();
+      await this.#python.ask({ do: 'connect', robot: robotName, language }, new TextEncoder().encode(this.#storedKeys));
       if (this.isOver) throw new ConnectionFailure('left'); // nothing of it is in the way of the next one
       const opening = this.#port.open(
         (data) => {
@@ -166,10 +175,11 @@ export class DirectRobot extends RequestQueue {
         const now_ms = Math.floor(performance.now());
         const data = new Uint8Array(this.#receivedBytes.splice(0));
         const requests = this.requests.splice(0);
-        const answer = await this.#python.ask({ do: 'link', now_ms, asked: requests }, data);
+        const answer = await this.#python.ask({ do: 'link', now_ms, asked: requests, ...this.#newKeys() }, data);
+        const areKept = !answer.keys || this.#keepKeys(answer.keys); // before the robot gets one
         if (this.isOver) return;
-        if (answer.send) await this.#port.write(bytesOf(answer.send));
-        if (answer.keys) this.#keepKeys(answer.keys);
+        if (!areKept) this.#isNewDue = true; // the session repeats what it has sent
+        else if (answer.send) await this.#port.write(bytesOf(answer.send));
         for (const news of answer.news) {
           this.takeNews(news);
           await undefined; // who has asked hears its answer before what comes next
@@ -182,6 +192,22 @@ export class DirectRobot extends RequestQueue {
       this.#isExchanging = false;
     }
     if (!this.isOver) this.timer = window.setTimeout(() => this.send(), wait_ms);
+  }
+
+  /** The stored keys, if somebody else has changed them, such as another tab. */
+  #newKeys() {
+    const kept = this.#keyStore.load();
+    if (kept === this.#storedKeys) return {};
+    this.#storedKeys = kept;
+    return { kept };
+  }
+
+  /** Stores the session's keys if it knows those that are stored; returns whether it does. @param {string} keys */
+  #keepKeys(keys) {
+    if (this.#keyStore.load() !== this.#storedKeys) return false;
+    this.#storedKeys = keys;
+    this.#keyStore.keep(keys);
+    return true;
   }
 
   /** @param {ConnectionFailure} failure @param {Promise<unknown>} [lastWrite] */

@@ -239,8 +239,9 @@ export class RobotPanel {
 
   /** @param {import('./direct.js').Port} port @param {import('./transport.js').RobotListener} listener */
   #openDirect(port, listener) {
-    const transport = new DirectRobot(this.#page.python, port, listener, (keys) => storeText(KEYS_STORAGE_KEY, keys));
-    return { transport, connected: transport.connect(pageState.robotName.value, currentLanguage(), loadText(KEYS_STORAGE_KEY)) };
+    const keyStore = { load: () => loadText(KEYS_STORAGE_KEY), keep: (/** @type {string} */ keys) => storeText(KEYS_STORAGE_KEY, keys) };
+    const transport = new DirectRobot(this.#page.python, port, listener, keyStore);
+    return { transport, connected: transport.connect(pageState.robotName.value, currentLanguage()) };
   }
 
   /** @param {(listener: import('./transport.js').RobotListener) => Promise<{transport: Transport, connected: Promise<RobotInfo>}>} openTransport */

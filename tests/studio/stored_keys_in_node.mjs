@@ -1,0 +1,61 @@
+// node stored_keys_in_node.mjs SOURCES MADE SEEDS: a robot at a port of this tab, whose session gets new keys now and then, and
+// other tabs that store keys of their own at any moment. Prints as JSON, for each seed, how many keys were stored by others or
+// given to the robot, those that are not stored at the end, and those that the robot was given before they were.
+
+import { chanceOf, freshPage, later, learns, passes, playsNavigator, words } from './page_in_node.mjs';
+
+playsNavigator({});
+const page = freshPage();
+await learns(page);
+const { DirectRobot } = await page.load('robot/direct.js');
+for (let seed = 0; seed < Number(words[0]); seed += 1) {
+  const chance = chanceOf(seed + 1);
+  const all = new Set();
+  const early = [];
+  let stored = [];
+  let count = 10;
+  const ring = new Set();
+  const python = {
+    async ask({ do: what, kept }, data) {
+      const text = what === 'connect' ? new TextDecoder().decode(data) : kept;
+      const before = ring.size;
+      for (const key of text?.split(',') ?? []) if (key) ring.add(key);
+      let isNew = ring.size > before && what === 'link';
+      let send = '';
+      if (what === 'link' && chance() < 0.1) {
+        isNew = true;
+        send = String(count += 1);
+        ring.add(send);
+      }
+      const keys = isNew ? [...ring].join() : undefined;
+      await later(chance.below(60));
+      return { send, keys, news: [], wakes_ms: null };
+    },
+  };
+  const port = {
+    isRadio: true, goneBy: 'port_gone', async open() {}, async close() {},
+    async write(data) {
+      if (data.length === 1) { // no zeros, which stop it
+        const key = data[0].toString(16);
+        all.add(key);
+        if (!stored.includes(key)) early.push(key);
+      }
+      await later(1);
+      if (chance() < 0.02) throw new Error('it is gone');
+    },
+  };
+  const keyStore = { load: () => stored.join(), keep(keys) { stored = keys.split(','); } };
+  const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, keyStore);
+  robot.connect('tinibot', 'en').catch(() => {});
+  for (let k = 0; k < 40; k += 1) {
+    await passes(chance.below(300));
+    if (chance() < 0.3) {
+      const key = String(count += 1);
+      all.add(key);
+      stored = [...stored, key];
+    }
+  }
+  robot.leave();
+  await passes(500);
+  console.log(JSON.stringify({ count: all.size, lost: [...all].filter((key) => !stored.includes(key)), early }));
+}
