@@ -9,6 +9,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 from struct import pack
+from typing import Any
 
 import pytest
 
@@ -19,8 +20,10 @@ from tests.support.remote_readings import RELEASED, remote_readings
 from tests.support.session_frames import greet as described
 from tests.support.unsent_requests import image, open_session
 from tiniscript.base.kit import YES_NO, Device, Kit
+from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
+    AUTHORITY_MS,
     BY_NAME,
     HOLD_MS,
     REMOTE,
@@ -269,6 +272,45 @@ def test_keys_that_never_rest_leave_others_their_turn() -> None:
     assert len(requests) == 15
     assert all(request.outcome and request.outcome.status == OK for request in requests)
     assert len(one.words) > 20
+
+
+def test_requests_that_never_rest_leave_keys_their_turn() -> None:
+    one = hand()
+    waiting = [one.session.status() for _ in range(3)]
+    for held in (UP, A, NOTHING_PRESSED, LEFT):
+        one.holds(held)
+        for _ in range(300):
+            waiting = [request for request in waiting if request.outcome is None]
+            waiting += [one.session.status() for _ in range(3 - len(waiting))]
+            one.talk(1)
+        assert one.robot.remote() == remote_readings(held)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_keys_and_requests_of_an_owner_are_all_obeyed_whoever_comes_first(seed: int) -> None:
+    """They come at any moment, also while the robot is shown a key, which it forgets in silence."""
+    rng = random.Random(seed)
+    table, keys = Owned(), Keys()
+    table.claim_session(keys)
+    robot, session, requests = table.robot, table.session(keys, nonce=4), []
+    asks: list[Callable[[], PendingRequest[Any]]] = [
+        session.hello, session.status, session.trim,
+        lambda: session.live(image("W(0.1)").code),
+    ]  # fmt: skip
+    for _ in range(60):
+        if rng.random() < 0.2 and all(request.outcome for request in requests):
+            robot.wait(AUTHORITY_MS + 100)
+        for _ in range(rng.choice((0, 0, 1, 3))):
+            requests.append(rng.choice(asks)())
+        if rng.random() < 0.7:
+            session.press(rng.randint(0, 63), rng.randint(-100, 100))
+        robot.talk(session, rng.choice((1, 3, 10, 30, 100, 300)))
+    for _ in range(20):
+        session.press(*UP)
+        robot.talk(session, 100)
+    assert robot.remote() == remote_readings(UP)
+    assert {request.outcome.status if request.outcome else None for request in requests} == {OK}
+    assert [(key.is_stale, key.is_pending) for key in keys.stored_keys] == [(False, False)]
 
 
 def test_keys_go_between_the_tries_of_a_request_that_waits() -> None:
