@@ -26,7 +26,7 @@ from tests.support.images import TINIBOT, image_of
 from tests.support.robot_on_host import computer, switched_on
 from tiniscript.base.version import __version__
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.outcomes import Event, TimedEvent
+from tiniscript.link.outcomes import Event, JoinedEvent, LeftEvent, TimedEvent
 from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing import server as server_of
@@ -48,6 +48,7 @@ class SteppedLine:
 
     def __init__(self) -> None:
         self.robot_itself, self.session = switched_on(), computer()
+        self.posted: list[tuple[str, str]] = []  # the events of this process alone
         self.session.tells_starts = True
 
     @property
@@ -58,7 +59,9 @@ class SteppedLine:
         self._on_events = on_events
 
     def post_event(self, event: Event) -> None:
-        """Post an event of this process alone."""
+        """Post an event of this process alone: a command has come or left."""
+        assert isinstance(event, (JoinedEvent, LeftEvent))
+        self.posted.append((event.name, event.verb.decode()))
 
     def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
         return make(self.session)
@@ -289,6 +292,46 @@ def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:
 def test_the_next_client_is_as_the_first_one(part: int, monkeypatch: pytest.MonkeyPatch) -> None:
     counts = Counter(check(seed, monkeypatch) for seed in range(part * 12, (part + 1) * 12))
     assert counts["little"] < 6, counts
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It does so by leaving or by its silence, and others do not. A stop ends it, and another run
+    takes its place; a detached one ends with nobody. Each who comes and goes is told once."""
+    rng = random.Random(seed)
+    with desk(monkeypatch) as at:
+        owner: Client | str = ""
+        verbs: dict[Client, str] = {}
+        told: list[tuple[str, str]] = []
+        for _ in range(40):
+            client = rng.choice([*verbs]) if verbs else None
+            how = rng.choice(
+                (*["comes"] * 4, *["starts"] * 3, "asks", "stops", "leaves", "is silent")
+            )
+            if client is None or how == "comes":
+                verb = rng.choice(("upload", "live", "monitor", protocol.LOOKING_VERB))
+                client = at.join(verb)
+                verbs[client] = verb
+                told += [("JOINED", verb)] * (verb != protocol.LOOKING_VERB)
+            elif how == "starts":
+                is_detached = rng.random() < 0.2
+                client.asks("upload", **upload("SI|F(60, 50)", is_detached))
+                owner = "itself" if is_detached else client
+            elif how == "asks":
+                client.asks("status")
+            elif how == "stops":
+                client.says({"do": "stop"})
+                owner = ""
+            else:
+                verb = verbs.pop(client)
+                ENDS[how](rng, client)
+                told += [("LEFT", verb)] * (how == "leaves" and verb != protocol.LOOKING_VERB)
+                owner = "" if owner is client else owner
+            at.steps(1600 if how == "is silent" else 300)
+            assert at.line.session.is_running == (owner != ""), how
+            assert at.line.posted == told, how
 
 
 if __name__ == "__main__":
