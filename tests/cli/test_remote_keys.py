@@ -3,11 +3,28 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
+from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
-from tiniscript.cli.robot.remote_keys import FIRST_HOLD_S, REPEAT_HOLD_S, HeldKeys
-from tiniscript.link.remote import NOTHING_PRESSED, remote_state_of
+from tiniscript.cli.robot import remote_keys
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.remote_keys import (
+    FIRST_HOLD_S,
+    POLL_S,
+    REPEAT_HOLD_S,
+    SEND_INTERVAL_S,
+    HeldKeys,
+    TerminalRemote,
+)
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.messages import REMOTE, STATUSES
+from tiniscript.link.outcomes import CANCELLED, LOST
+from tiniscript.link.remote import NOTHING_PRESSED, RemoteState, remote_state_of
+from tiniscript.link.requests import OK, Reply
 
 UP, LEFT = "\x1b[A", "\x1b[D"
 KEYS = (
@@ -88,3 +105,115 @@ def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
         ]
         assert any(leaves) == whole.press_typed(typed_text, now_s), (k, typed_text)
         assert cut.keys_at(now_s) == whole.keys_at(now_s), (k, typed_text)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_what_was_typed_a_while_ago_holds_nothing_now(seed: int) -> None:
+    chance, used, fresh, now_s = random.Random(seed), HeldKeys(), HeldKeys(), 0.0
+    for _ in range(20):
+        used.press_typed(chance.choice(KEYS)[0], now_s)
+        now_s += chance.random()
+    now_s += FIRST_HOLD_S
+    for _ in range(20):
+        typed_text = chance.choice(KEYS)[0]
+        used.press_typed(typed_text, now_s)
+        fresh.press_typed(typed_text, now_s)
+        for _ in range(chance.randrange(9)):
+            assert used.keys_at(now_s) == fresh.keys_at(now_s)
+            now_s += 0.1
+
+
+# -- a terminal and a robot ------------------------------------------------------------------------
+
+
+class Refused(Exception):
+    """The robot accepts no keys."""
+
+
+class Table:
+    """A terminal, the connection to a robot, and a clock."""
+
+    def __init__(self, features: int = REMOTE) -> None:
+        self.now_s, self.typed, self.is_entered = 0.0, "", False
+        self.device_info = SimpleNamespace(values=SimpleNamespace(features=features))
+        self.words: list[tuple[float, RemoteState]] = []
+        self.status: int | None = None  # of the answers
+
+    def __enter__(self) -> None:
+        self.is_entered = True
+
+    def __exit__(self, *_: object) -> None:
+        self.is_entered = False
+
+    def read_keys(self) -> str:
+        typed, self.typed = self.typed, ""
+        return typed
+
+    def begin_request(self, make: Callable[[Any], PendingRequest[Any]]) -> PendingRequest[Any]:
+        return make(self)
+
+    def press(self, *state: int) -> PendingRequest[Any]:
+        self.words.append((self.now_s, RemoteState(*state)))
+        request: PendingRequest[Any] = PendingRequest()
+        request.outcome = None if self.status is None else Reply(self.status)
+        return request
+
+    def error_for_reply(self, reply: Reply[Any]) -> Exception:
+        return Refused(reply.status)
+
+
+def remote_at(table: Table, monkeypatch: pytest.MonkeyPatch) -> TerminalRemote:
+    monkeypatch.setattr(remote_keys, "monotonic", lambda: table.now_s)
+    monkeypatch.setattr(remote_keys, "Keys", lambda: table)
+    return TerminalRemote(cast(Connection, table))
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_robot_hears_at_once_what_is_held_and_again_while_it_is(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It hears nothing while nothing is held."""
+    chance, table, held_keys = random.Random(seed), Table(), HeldKeys()
+    with remote_at(table, monkeypatch) as remote:
+        for _ in range(1500):
+            table.typed = chance.choice(KEYS)[0] if chance.random() < 0.05 else ""
+            held_keys.press_typed(table.typed, table.now_s)
+            table.status = chance.choice((OK, CANCELLED, LOST, None))
+            remote.poll()
+            held = held_keys.keys_at(table.now_s)
+            said_s, said = table.words[-1] if table.words else (0.0, NOTHING_PRESSED)
+            assert said == held
+            assert held == NOTHING_PRESSED or table.now_s - said_s < SEND_INTERVAL_S
+            table.now_s += POLL_S
+        assert table.is_entered
+    assert not table.is_entered
+    for (before_s, before), (after_s, after) in pairwise(table.words):
+        is_due = after_s - before_s > SEND_INTERVAL_S - POLL_S and after != NOTHING_PRESSED
+        assert before != after or is_due
+
+
+@pytest.mark.parametrize("name", ["NOT_OWNER", "NO_REMOTE", "LATCHED"])
+def test_a_robot_that_accepts_no_keys_is_an_error(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    table = Table()
+    with remote_at(table, monkeypatch) as remote, pytest.raises(Refused):
+        table.status, table.typed = STATUSES[name], "a"
+        remote.poll()
+        remote.poll()
+    assert not table.is_entered
+    older = Table(features=0)
+    with pytest.raises(Refused), remote_at(older, monkeypatch):
+        pass
+    assert not older.is_entered and not older.words
+
+
+def test_q_interrupts_as_ctrl_c_does_and_is_told_from_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    table = Table()
+    with remote_at(table, monkeypatch) as remote:
+        remote.poll()
+        assert not remote.has_quit
+        table.typed = "aq"
+        with pytest.raises(KeyboardInterrupt):
+            remote.poll()
+        assert remote.has_quit and not table.words
