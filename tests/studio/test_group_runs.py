@@ -20,6 +20,12 @@ ENDS: tuple[Json, ...] = (
     {"event": "LOST"},
     {"over": "left", "said": ""},
 )
+# What comes late is of no run.
+AT_REST: tuple[Json, ...] = (
+    {"connected": {"robot": {"name": "TINI"}}},
+    {"event": "SHOW", "value": "late", "at": -1},
+    {"event": "TEXT", "text": "late"},
+)
 
 
 class Robot:
@@ -30,7 +36,7 @@ class Robot:
         self.program = self.line = ""
         self.driver = DRIVERS[0]
         self.place: int | None = None
-        self.values = self.runs = 0
+        self.values = self.runs = self.connections = 0
         self.meant: list[str] = []  # the values of all runs of programs
         self.nth: dict[str, int] = {}  # index of each value in its run
         self.count = 0  # number of values in a run
@@ -38,7 +44,14 @@ class Robot:
     def tells(self) -> Json:
         does = self.chance.choice(("value", "value", "value", "place", "place", "text", "next"))
         if not (self.program or self.line) or does == "next":
-            return self._begins() if not (self.program or self.line) else self._ends()
+            if self.program or self.line:
+                replaces = self.chance.random() < 0.3
+                return self._begins("program", "line") if replaces else self._ends()
+            if self.chance.random() < 0.3:
+                event = self.chance.choice(AT_REST)
+                self.connections += "connected" in event
+                return event
+            return self._begins("program", "line", "button")
         program = self.program or self.line
         if does == "place":
             at = self.chance.randrange(500)
@@ -54,11 +67,13 @@ class Robot:
             return {"event": "TEXT", "text": value}
         return {"event": "SHOW", "value": value, "at": 7, "program": program}
 
-    def _begins(self) -> Json:
+    def _begins(self, *kinds: str) -> Json:
+        """Begin a run of one of these kinds, in the place of what runs."""
         self.runs += 1
+        self.program = self.line = ""
         self.count, self.place = 0, None
         self.driver = self.chance.choice(DRIVERS)
-        kind = self.chance.choice(("program", "line", "button"))
+        kind = self.chance.choice(kinds)
         program = f"{self.runs:08x}"
         if kind == "line":
             self.line = program
@@ -106,6 +121,7 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
     page, drivers = Page(runs, "teo"), [Page(runs, name) for name in DRIVERS]
     page.looks()
     most = chance.choice((1, 5, 60))
+    connections: list[Json] = []
     values_by_driver: dict[str, list[str]] = {name: [] for name in DRIVERS}
     for _ in range(200):
         for _ in range(chance.randint(1, most)):
@@ -119,6 +135,8 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
         assert len(places) <= 1
         if robot.place is not None:
             assert last_place(page) == robot.place
+        assert is_running(page) == bool(robot.program)
+        connections += [item["robot"] for item in items if item["event"] == "ROBOT"]
         for driver in drivers:
             driver.looks()
     numbers = [item["number"] for item in page.heard]
@@ -133,10 +151,20 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
         assert "nth" not in row or row["nth"] == robot.nth[value]
     if most == 1:
         assert page.values == robot.meant
+        assert len(connections) == robot.connections
 
 
 def waiting(runs: GroupRuns) -> int:
     return sum(len(json.dumps(row.news)) for row in runs._rows)
+
+
+def is_running(page: Page) -> bool:
+    """Return whether a program runs as far as the page knows."""
+    names = [item["event"] for item in page.heard]
+    ends = {"OVER", *(end.get("event", "OVER") for end in ENDS)}
+    return next(
+        (name == "STARTED" for name in reversed(names) if name in {"STARTED", *ends}), False
+    )
 
 
 def last_place(page: Page) -> int:
