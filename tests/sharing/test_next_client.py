@@ -26,7 +26,16 @@ from tests.support.images import TINIBOT, image_of
 from tests.support.robot_on_host import computer, switched_on
 from tiniscript.base.version import __version__
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.outcomes import Event, JoinedEvent, LeftEvent, TimedEvent
+from tiniscript.link.outcomes import (
+    Event,
+    JoinedEvent,
+    LeftEvent,
+    PlaceEvent,
+    ShownEvent,
+    TextEvent,
+    TimedEvent,
+)
+from tiniscript.link.payloads import StoppedEvent
 from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing import server as server_of
@@ -332,6 +341,34 @@ def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
             at.steps(1600 if how == "is silent" else 300)
             assert at.line.session.is_running == (owner != ""), how
             assert at.line.posted == told, how
+
+
+DROPPED: dict[str, Event] = {
+    "SHOW": ShownEvent(5, 0, 1, 7, 3),
+    "PLACE": PlaceEvent(1, 7, 3),
+    "TEXT": TextEvent(b"a line of text"),
+}
+
+
+@pytest.mark.parametrize("name", [*DROPPED, "others"])
+def test_who_reads_nothing_has_little_waiting_and_is_let_go_where_nothing_can_be_left_out(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    event = DROPPED.get(name, StoppedEvent(1))
+    most_bytes = 1000 + (server_of.FULL_BYTES if name in DROPPED else server_of.TOO_FULL_BYTES)
+    with desk(monkeypatch) as at:
+        client = at.join("monitor")
+        at.steps(60)
+        client.says({"do": "places"})
+        at.steps(60)
+        [served] = at.server._clients
+        served.peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)
+        client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        for _ in range(40):
+            at.server._on_events([(0, event)] * 1000)
+            at.server._attend()
+            assert len(served.output) <= most_bytes
+        assert (served in at.server._clients) == (name in DROPPED)
 
 
 if __name__ == "__main__":
