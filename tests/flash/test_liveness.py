@@ -91,6 +91,20 @@ def test_what_stands_still_ends(clock: Clock, seed: int) -> None:
     assert limit_s - LOOK_S < at_s - last_s < limit_s + 2 * LOOK_S
 
 
+@pytest.mark.parametrize("failed", range(4))
+def test_a_bootloader_that_misses_the_first_try_is_waited_for(clock: Clock, failed: int) -> None:
+    """One that misses more is none: avrdude would go on for a minute."""
+    tries = [
+        (5.0 * k, f"avrdude: stk500_getsync() attempt {k} of 10: not in sync: resp=0x00\n")
+        for k in range(1, failed + 1)
+    ]
+    good = output(random.Random(failed), MEGA_S, NO_ANSWER_TIMEOUT_S - 1)
+    parts = [*tries, *((5.0 * failed + at_s, part) for at_s, part in good)]
+    how, at_s = watch_parts(clock, parts, parts[-1][0] + 1)
+    assert how == (WriteResult(avrdude.NOBODY) if failed > 1 else None)
+    assert failed < 2 or at_s < 5.0 * 2 + 2 * LOOK_S
+
+
 def test_what_only_says_something_ends(clock: Clock) -> None:
     parts = [(0.0, SIGNATURE + "Writing | #"), *((k * 1.0, ".") for k in range(1000))]
     how, at_s = watch_parts(clock, parts, RUN_TIMEOUT_S + 10)
