@@ -266,6 +266,24 @@ def test_a_page_that_is_loaded_again_goes_on(two: Two) -> None:
     assert "W(95)" in two.meet()
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_what_was_undone_before_any_reload_is_redone_after_it_and_not_undone(seed: int) -> None:
+    """The reload comes before the computer has heard of the undo."""
+    chance, two = Random(seed), Two()
+    for k in range(chance.randint(1, 3)):
+        two.types(two.ana, f"F({k + 1}, 80)" if k else "F(1, 80)", f"F({k + 2}, 80)")
+        two.sends(two.ana)
+    last = k + 2
+    assert two.ana.undo()
+    for _ in range(chance.randint(1, 2)):
+        kept = json.loads(json.dumps(two.ana.store_data()))
+        two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
+    assert f"F({last - 1}, 80)" in two.meet()
+    assert not two.ana.undo()
+    assert two.ana.redo()
+    assert f"F({last}, 80)" in two.meet()
+
+
 def test_a_page_that_gets_another_name_loses_nothing_and_doubles_nothing(two: Two) -> None:
     two.inserts(two.ana, ROOT, two.find("L(1, 60)"))
     two.program.submit(two.ana.pending_changes)  # and the answer is lost
