@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.class_room import HERE, FakeRobot, Json, Room
+from tests.support.class_room import HERE, FakeHosting, FakeRobot, Json, Room
 from tests.support.waiting import HANGS_S
 from tiniscript.cli.commands import studio as command
 from tiniscript.studio import class_keeping, classroom, recordings
@@ -453,6 +453,16 @@ def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
     assert "given" not in room.checks_in(second, took=take_change(room.checks_in(second)["given"]))
     assert texts_of(room) == ["F(1, 50)"]
+
+
+@pytest.mark.parametrize("given_s", [None, 120])
+def test_a_class_goes_on_with_its_turns_unless_others_are_given(given_s: int | None) -> None:
+    room = Room()
+    room.teaches("class_turn", seconds=300)
+    state = json.loads(json.dumps(room.made.state_to_keep()))
+    resumed = classroom.Classroom(FakeHosting(), [], given_s)  # type: ignore[arg-type]
+    resumed.resume(state)
+    assert resumed.teach({"do": "class"})["turn_s"] == (given_s or 300)
 
 
 def test_a_crash_between_giving_and_having_loses_no_work(kept_at: Path) -> None:
