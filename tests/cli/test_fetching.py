@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from importlib import metadata
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
@@ -435,6 +436,83 @@ def test_what_does_not_end_well_has_not_done_it(tmp_path: Path, end: str | None)
     except CommandError as failure:
         failures.remove(failure.exit_code)
     assert not failures
+
+
+CAUSES = {"fetch_no_room": "No space left on device", "fetch_offline": "ECONNRESET",
+          "fetch_failed": "a mistake"}  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_each_failure_has_its_own_step_cause_and_log(
+    seed: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Whatever was fetched before, and where the program cannot be started at all."""
+    chance = Random(seed)
+    for k in range(20):
+        keys = chance.choices(["fetch_npm_now", "fetch_node_now"], k=chance.randrange(5))
+        cause = chance.choice([*CAUSES])
+        log, exit_code = f"{k} {CAUSES[cause]}", chance.choice((0, 1, 7, None))
+
+        def pretended_run(command: object, folder: object, look: Any, *more: object) -> Any:
+            if exit_code is None:  # noqa: B023 - it runs at once
+                raise children.CannotStart(5, log)  # noqa: B023
+            for count in range(len(keys)):  # noqa: B023
+                look("x" * count)
+            return exit_code, log  # noqa: B023
+
+        monkeypatch.setattr(children, "run", pretended_run)
+        failure = None
+        try:
+            fetching.run(["npm"], Path(), lambda so_far: fetching.Step(keys[len(so_far)], 5), "en")  # noqa: B023
+        except CommandError as error:
+            failure = error
+        steps = [key for j, key in enumerate(keys) if j == 0 or keys[j - 1] != key]
+        steps = [] if exit_code is None else [text(key, "en") for key in steps]
+        assert capsys.readouterr().err == "".join(f"{step} …\n" for step in steps)
+        assert (failure is None) == (exit_code == 0)
+        if failure is not None:
+            assert (failure.exit_code, failure.key) == (2, cause)
+            assert (steps[-1] if steps else "npm") in failure.sentence("en")
+            assert log in (cache_folder() / fetching.LOG_FILE).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_folder_that_fills_is_measured_seldom_and_never_shrinks(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Files are put away while others come, and the last one is not all."""
+    chance, now_s, mb = Random(seed), 100.0, 40
+    sizes = [0]
+
+    def size_of(folder: Path) -> int:
+        sizes.append(chance.randrange(12) * mb * 100_000)
+        return sizes[-1]
+
+    monkeypatch.setattr(fetching, "size_of", size_of)
+    monkeypatch.setattr(fetching, "monotonic", lambda: now_s)
+    folder_progress = fetching.FolderProgress(Path(), mb)
+    newest_percent, began_s = 0, now_s
+    for _ in range(200):
+        percent = folder_progress.percent()
+        assert newest_percent <= percent == min(99, max(sizes) // (10_000 * mb))
+        newest_percent = percent
+        now_s += chance.random() / 10
+    most_measures = (now_s - began_s) / fetching.MEASURE_INTERVAL_S + 1
+    assert most_measures / 2 < len(sizes) - 1 <= most_measures
+
+
+def test_files_that_go_away_do_not_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("a", "gone", "z"):
+        (tmp_path / name).write_bytes(b"12345")
+    real = os.lstat
+
+    def lstat(path: str) -> os.stat_result:
+        if path.endswith("gone"):
+            raise FileNotFoundError(path)
+        return real(path)
+
+    monkeypatch.setattr(os, "lstat", lstat)
+    assert fetching.size_of(tmp_path) == 10
 
 
 def test_the_measure_of_the_progress_is_that_of_the_packages() -> None:

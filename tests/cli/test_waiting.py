@@ -158,6 +158,35 @@ def test_a_bar_is_not_full_before_all_is_done(
     assert " 99 %" in output and "100 %" not in output and "." in output.rpartition("[")[2]
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_a_bar_writes_where_something_changes_and_leaves_nothing(
+    seed: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """This holds for any amount, also for none, and however often it is drawn and ended."""
+    chance, now_s, line = Random(seed), 100.0, ""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setattr(progress, "monotonic", lambda: now_s)
+    bar = progress.Progress("en", total := chance.choice((0, 7, 200)))
+    newest = ""  # the newest line that is no empty one
+    for _ in range(60):
+        now_s += chance.choice((0.0, 0.02, 0.1))
+        if chance.random() < 0.2:
+            bar.end()
+            wanted = ""
+        else:
+            done = chance.randint(0, total)
+            bar.draw(done)
+            percent = f"{min(100 * done // total, 99)} %" if total else ""
+            is_late = now_s - 100 >= progress.DRAW_DELAY_S and percent != newest
+            wanted = percent if is_late else line
+            newest = wanted or newest
+        output = capsys.readouterr().err
+        assert bool(output) == (wanted != line)
+        shown_line = output.split("\r")[-1].strip() if output else line
+        assert shown_line.rpartition("] ")[2].strip() == wanted
+        line = wanted
+
+
 def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is not reported as foreign or silent while it waits for its button."""
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
