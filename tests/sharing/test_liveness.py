@@ -8,17 +8,19 @@ import random
 import socket
 from bisect import insort
 from collections.abc import Callable
-from typing import cast
+from contextlib import suppress
+from typing import Any, cast, get_type_hints
 
 import pytest
 
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.outcomes import POLL_INTERVAL_S, ConnectionLost, ShownEvent
-from tiniscript.link.payloads import EmptyReply
+from tiniscript.link.payloads import EmptyReply, HelloReply
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing import protocol, shared_connection
 from tiniscript.link.sharing.protocol import JsonMessage, MessageReader
 from tiniscript.link.sharing.registry import Registration
+from tiniscript.link.sharing.requests import ClientRequest
 from tiniscript.link.sharing.shared_connection import DEAF_S, SharedConnection
 
 LONG_S = 20 * DEAF_S
@@ -37,6 +39,7 @@ class Holder:
         self.now_s, self.dies_s = 100.0, 100.0 + dies_s
         self.beats = 0
         self._answer_s = answer_s
+        self.is_gone = False  # the process has ended
         self._limit_s = 0.0
         self._coming: list[tuple[float, bytes]] = []
         self._reader = MessageReader(protocol.LINE_BYTES)
@@ -47,12 +50,14 @@ class Holder:
     def says(self, message: JsonMessage, after_s: float) -> None:
         at_s = self.now_s + after_s
         if at_s < self.dies_s:
-            insort(self._coming, (at_s, protocol.encode_message(message)))
+            insort(self._coming, (at_s, protocol.encode_message(message)), key=lambda one: one[0])
 
     def settimeout(self, seconds: float) -> None:
         self._limit_s = seconds
 
     def sendall(self, data: bytes) -> None:
+        if self.is_gone:
+            raise BrokenPipeError
         for message in self._reader.read_messages(data):
             if message["do"] == "beat":
                 self.beats += 1
@@ -132,3 +137,83 @@ def test_a_request_that_takes_long_is_answered(
     assert line.wait(request).status == OK
     assert holder.now_s - 100.0 >= takes_s
     assert (line.heard_count, line.early_bytes) == (9, b"\xfe")
+
+
+HELLO_VALUES: JsonMessage = {
+    name: b"TINI".hex() if kind is bytes else 1 for name, kind in get_type_hints(HelloReply).items()
+}
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_client_knows_what_its_holder_has_told_and_why_it_has_ended(
+    monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    """Requests are answered in any order, each once; the end comes after the events before it."""
+    rng = random.Random(seed)
+    holder = Holder(lambda: 0.0)
+    line = open_shared_connection(monkeypatch, holder)
+    asked: list[tuple[int, PendingRequest[Any], str]] = []
+    events: list[int] = []
+    told: list[int] = []
+    number, name = 0, ""
+
+    def listen(seconds: float) -> None:
+        end_s = holder.now_s + seconds
+        while holder.now_s < end_s:
+            if (timed_event := line.event(POLL_INTERVAL_S)) is not None:
+                events.append(timed_event[0])
+
+    for k in range(60):
+        how = rng.choice(("ask", "ask", "answer", "answer", "progress", "event"))
+        if how == "ask":
+            number += 1
+            new_name = rng.choice(("", f"Pia{k}"))
+            message = (
+                ClientRequest("name", EmptyReply, name=new_name.encode().hex())
+                if new_name
+                else ClientRequest("hello", HelloReply)
+            )
+            request: PendingRequest[Any] = line.begin(lambda _: message)  # noqa: B023 - at once
+            asked.append((number, request, new_name))
+        elif how == "event":
+            holder.says({**SHOWN, "ms": k}, 0)
+            told.append(k)
+        elif asked and how == "progress":
+            answered, request, _ = rng.choice(asked)
+            holder.says({"id": answered, "done_bytes": k}, 0)
+            listen(POLL_INTERVAL_S)
+            assert request.done_bytes == k and request.outcome is None
+        elif asked:
+            answered, request, new_name = asked.pop(rng.randrange(len(asked)))
+            state = {"heard": k, "came": f"{k:02x}", "is_echoed": k % 2 == 0, "boot": k // 2}
+            status = rng.choice((OK, OK, 72))
+            values = {} if new_name or status != OK else HELLO_VALUES
+            holder.says(
+                {"id": answered, "status": status, "detail": k, "values": values, **state}, 0
+            )
+            listen(POLL_INTERVAL_S)
+            assert request.outcome and (request.outcome.status, request.outcome.detail) == (
+                status,
+                k,
+            )
+            assert (line.heard_count, line.early_bytes) == (k, bytes([k]))
+            assert (line.is_echoed, line.boot) == (k % 2 == 0, k // 2)
+            if status == OK and (name or not new_name):
+                name = new_name or "TINI"
+            assert (line.robot.name if line.robot else "") == name
+    listen(1.0)
+    assert events == told
+    holder.says({**SHOWN, "ms": 99}, 0)
+    is_port_lost = seed % 2 == 0
+    holder.says({"over": "gone" if is_port_lost else "ended", "why": "the cable"}, 0)
+    with suppress(ConnectionLost):
+        listen(POLL_INTERVAL_S)
+    holder.is_gone = True
+    assert events == [*told, 99]
+    for look in (
+        lambda: line.event(0),
+        lambda: line.wait(line.begin(lambda one: one.status())),
+    ) * 2:
+        with pytest.raises(ConnectionLost) as lost:
+            look()
+        assert (lost.value.detail, lost.value.is_server) == ("the cable", not is_port_lost)
