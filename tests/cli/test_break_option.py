@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import random
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
@@ -12,9 +14,10 @@ from tests.support.command import Tsc
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
 from tiniscript.cli.robot import debugger
+from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.debugger import GO_KEYS, STEP_KEYS
 from tiniscript.cli.terminal.keys import Keys, letters_of
-from tiniscript.link.messages import RESUME_STEP
+from tiniscript.link.messages import RESUME_GO, RESUME_STEP
 
 PROGRAM = """SI|N = 1
 FAR = DISTANCE > 20
@@ -223,20 +226,29 @@ def test_no_key_of_several_characters_steps_or_goes_on(seed: int) -> None:
     )
 
 
-def test_a_key_that_is_pressed_while_the_program_runs_does_nothing(
-    monkeypatch: pytest.MonkeyPatch,
+@pytest.mark.parametrize("seed", range(10))
+def test_the_first_key_at_a_halt_answers_it_and_no_other_key_does_anything(
+    seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """At any halt, and while the program runs."""
+    rng, typed, asked, wanted = random.Random(seed), "", list[int](), list[int]()
     it = debugger.Debugger.__new__(debugger.Debugger)
-    it.has_keys, it.is_halted, typed, asked = True, False, ["g", "", "s"], list[int]()
-    monkeypatch.setattr(debugger.Debugger, "_resume", lambda self, how: asked.append(how))
-    it.keys = Keys()
-    monkeypatch.setattr(it.keys, "read_keys", lambda: typed.pop(0))
-    it.poll_keys()
-    it.is_halted = True
-    it.poll_keys()
-    assert asked == []
-    it.poll_keys()
-    assert asked == [RESUME_STEP]
+    it.has_keys, it.is_halted, it.is_stepping, it.keys = True, False, False, Keys()
+    session = SimpleNamespace(resume=asked.append)
+    it.connection = cast(Connection, SimpleNamespace(request=lambda make: make(session)))
+    monkeypatch.setattr(it.keys, "read_keys", lambda: typed)
+    is_halted = False
+    for _ in range(60):
+        if rng.random() < 0.3:
+            it.is_halted = is_halted = True
+        typed = "".join(rng.choices("sgx", k=rng.choice((0, 1, 1, 2))))
+        it.poll_keys()
+        key = next((key for key in typed if key in "sg"), "")
+        if key and is_halted:
+            wanted.append(RESUME_STEP if key == "s" else RESUME_GO)
+            is_halted = False
+        assert asked == wanted
+        assert it.is_stepping == (wanted[-1:] == [RESUME_STEP])
 
 
 # -- lines of `tsc live` -------------------------------------------------------------------------
