@@ -20,6 +20,7 @@ from tests.support.link_channel import World, damage_frame, program, run_upload_
 from tests.support.owners import Keys
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
+    AUTHORITY_MS,
     BY_NAME,
     KEY_OWNER,
     LARGE_FRAME,
@@ -157,6 +158,28 @@ def test_the_frames_of_a_session_are_sealed() -> None:
     assert request.outcome and request.outcome.status == 0
     frames = [decode_frame(frame.rstrip(b"\0")) for frame in world.frames[-2:]]
     assert [(frame.number, frame.is_sealed) for frame in frames if frame] == [(8, True), (8, True)]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_an_event_without_a_seal_is_believed_only_of_a_robot_that_may_have_dropped_ours(
+    seed: int,
+) -> None:
+    """It keeps ours while it hears it, however long that is ago first."""
+    world = QuietWorld(cpp_link(), random.Random(seed), 0, 0)
+    world.run(world.session.status())
+    forged_data = encode_payload(BY_NAME["DONE"].reply, {"run": 9})
+
+    def hears_forged() -> bool:
+        world.session.events()
+        frame = Frame(BY_NAME["DONE"].number, 9, world.session._epoch, forged_data, is_reply=True)
+        world.session.receive(b"\0" + encode_frame(frame), world.now_ms)
+        return bool(world.session.events())
+
+    for _ in range(10):
+        world.run(None, world.draw.choice((1, 100, 1000, 3000)))
+        assert not hears_forged()
+    world.now_ms += AUTHORITY_MS  # in which nobody talks
+    assert hears_forged()
 
 
 def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:
