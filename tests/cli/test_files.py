@@ -8,6 +8,7 @@ import socket
 import stat
 import subprocess
 import sys
+from contextlib import suppress
 from itertools import product
 from pathlib import Path
 from time import time
@@ -331,3 +332,61 @@ def test_another_user_s_link_in_a_shared_folder_leads_nowhere(
             assert precious.read_bytes() == b"now" and link.is_symlink()
     finally:
         link.unlink()
+
+
+# -- data for the next command -------------------------------------------------------------------
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such modes")
+def test_what_a_command_keeps_is_its_users_alone_also_where_it_was_not_before(
+    tmp_path: Path,
+) -> None:
+    folder = tmp_path / "kept"
+    for _ in range(2):
+        assert files.keep(folder / "data", b"new")
+        modes = [stat.S_IMODE(path.stat().st_mode) for path in (folder, folder / "data")]
+        assert modes == [0o700, 0o600]
+        folder.chmod(0o755)  # of an older version
+        (folder / "data").chmod(0o644)
+    (tmp_path / "file").touch()
+    assert not files.keep(tmp_path / "file" / "data", b"new")
+    assert not files.keep(folder / "da\0ta", b"new")
+
+
+def test_a_lock_is_held_by_one_until_its_end_whatever_that_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now_s = 0.0
+
+    def sleep(seconds: float) -> None:
+        nonlocal now_s
+        now_s += seconds
+
+    monkeypatch.setattr(files, "monotonic", lambda: now_s)
+    monkeypatch.setattr(files, "sleep", sleep)
+    path = tmp_path / "data"
+    for _ in range(2):
+        with suppress(KeyError), files.lock_file(path):
+            began_s = now_s
+            with pytest.raises(TimeoutError), files.lock_file(path):
+                raise AssertionError("two have the lock")
+            assert files.LOCK_WAIT_S <= now_s - began_s < files.LOCK_WAIT_S + 0.1
+            raise KeyError
+        began_s = now_s
+        with files.lock_file(path):
+            assert now_s == began_s
+
+
+def test_what_is_read_is_a_file_of_no_more_than_so_many_bytes(tmp_path: Path) -> None:
+    path = tmp_path / "data"
+    path.write_bytes(b"12345")
+    assert files.read_limited(path, 5) == b"12345"
+    others = [tmp_path, Path(os.devnull)]
+    if sys.platform != "win32":
+        os.mkfifo(tmp_path / "pipe")
+        others.append(tmp_path / "pipe")
+    for other in others:
+        with pytest.raises(OSError):
+            files.read_limited(other, 5)
+    with pytest.raises(OSError):
+        files.read_limited(path, 4)
