@@ -75,7 +75,7 @@ def polled_when_due(session: Session, now_ms: int) -> bytes:
     """Return what a session sends that is polled when it wants that, which is seldom."""
     data = b""
     for _ in range(MOST_POLLS):
-        wakes_ms = session.wakes_at()
+        wakes_ms = session.next_wake_ms()
         if wakes_ms is None or wakes_ms > now_ms:
             return data
         data += session.poll(now_ms)

@@ -292,7 +292,8 @@ def test_keys_and_requests_of_an_owner_are_all_obeyed_whoever_comes_first(seed: 
     rng = random.Random(seed)
     table, keys = Owned(), Keys()
     table.claim_session(keys)
-    robot, session, requests = table.robot, table.session(keys, nonce=4), []
+    robot, session = table.robot, table.session(keys, nonce=4)
+    requests: list[PendingRequest[Any]] = []
     asks: list[Callable[[], PendingRequest[Any]]] = [
         session.hello, session.status, session.trim,
         lambda: session.live(image("W(0.1)").code),
