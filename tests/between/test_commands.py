@@ -99,7 +99,7 @@ ON_ESP32 = tuple(
         *(BY_NAME[name] for name in ("stop", "doctor --yes", "set name")),
     )
 )
-ALL = (*COMMANDS, *CLIENTS, *ON_ESP32)
+ALL_COMMANDS = (*COMMANDS, *CLIENTS, *ON_ESP32)
 
 
 class TriedCommand(NamedTuple):
@@ -252,7 +252,7 @@ def print_table(commands: Sequence[TriedCommand]) -> None:
     for tried_command in commands:
         rows[tried_command.name].append(tried_command)
     print("| command | tries | longest silence, s | to its end, s |\n|---|---:|---:|---:|")
-    for command in ALL:
+    for command in ALL_COMMANDS:
         if mine := rows[command.name]:
             quiet = max(mine, key=lambda tried_command: tried_command.silence_s)
             late = max(mine, key=lambda tried_command: tried_command.took_s)
@@ -261,7 +261,7 @@ def print_table(commands: Sequence[TriedCommand]) -> None:
 
 
 def draw_cases(
-    count: int, seed: int, is_whole: bool, among: Sequence[Words] = ALL
+    count: int, seed: int, is_whole: bool, among: Sequence[Words] = ALL_COMMANDS
 ) -> list[tuple[Words, Fault, int]]:
     if is_whole:
         return [(words, fault, seed + k) for k in range(count)
@@ -325,7 +325,7 @@ ROOM_CI_S = 2.0  # processes start slowly when others run
 
 if __name__ == "__main__":
     options = make_options(100, 1, "whole", "clients", "esp32")
-    among = CLIENTS if options.clients else ON_ESP32 if options.esp32 else ALL
+    among = CLIENTS if options.clients else ON_ESP32 if options.esp32 else ALL_COMMANDS
     began_s = CLOCK.now_s
     commands = all_tried(draw_cases(options.count, options.seed, options.whole, among))
     print_table(commands)

@@ -20,11 +20,11 @@ from tools.campaign import goals, results
 from tools.campaign.goals import GOALS, Goal
 from tools.campaign.results import Result
 
-HERE = "tests.campaign.stand_in"  # a campaign without any duration
-IS_OLD = results.is_old
-COMMAND, PATHS = f"{HERE} {{count}} --seed {{seed}}", ("tried",)
-DONE = Goal("done", "It ends.", "things", 25, 10, COMMAND, PATHS, 5)
-BAD = Goal("bad", "It does not.", "things", 10, 5, f"{COMMAND} --fails", PATHS, 5)
+STAND_IN_MODULE = "tests.campaign.stand_in"  # a campaign without any duration
+REAL_IS_OLD = results.is_old
+COMMAND, PATHS = f"{STAND_IN_MODULE} {{count}} --seed {{seed}}", ("tried",)
+PASSING_GOAL = Goal("done", "It ends.", "things", 25, 10, COMMAND, PATHS, 5)
+FAILING_GOAL = Goal("bad", "It does not.", "things", 10, 5, f"{COMMAND} --fails", PATHS, 5)
 
 
 @pytest.fixture(autouse=True)
@@ -32,8 +32,8 @@ def own_goals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two goals, results in a folder of the test, and code that is committed."""
     (tmp_path / "results.json").write_text("{}")
     for module in (campaign, goals, results):
-        monkeypatch.setattr(module, "GOALS", (DONE, BAD), raising=False)
-    monkeypatch.setattr(campaign, "BY_NAME", {"done": DONE, "bad": BAD})
+        monkeypatch.setattr(module, "GOALS", (PASSING_GOAL, FAILING_GOAL), raising=False)
+    monkeypatch.setattr(campaign, "BY_NAME", {"done": PASSING_GOAL, "bad": FAILING_GOAL})
     monkeypatch.setattr(results, "RESULTS_FILE", tmp_path / "results.json")
     monkeypatch.setattr(results, "current_commit", lambda: "a" * 10)
     monkeypatch.setattr(results, "is_old", lambda goal, result: False)
@@ -70,8 +70,8 @@ def test_it_goes_on_where_it_was(
     )
     output = capsys.readouterr().out
     assert [line.split("; ")[1] for line in output.splitlines()[:2]] == [
-        f"-m {HERE} 10 --seed 12",
-        f"-m {HERE} 5 --seed 17",
+        f"-m {STAND_IN_MODULE} 10 --seed 12",
+        f"-m {STAND_IN_MODULE} 5 --seed 17",
     ]
     assert campaign.main(["done"]) == 0
     assert "--seed" not in capsys.readouterr().out, "nothing is left to do"
@@ -127,7 +127,7 @@ def test_a_figure_is_old_when_what_it_tried_has_changed(
             assert results.git(*words).returncode == 0
         return results.git("rev-parse", "--short=10", "HEAD").stdout.strip()
 
-    monkeypatch.setattr(results, "is_old", IS_OLD)
+    monkeypatch.setattr(results, "is_old", REAL_IS_OLD)
     monkeypatch.setattr(results, "ROOT", tmp_path)
     monkeypatch.setattr(results, "DOCUMENT", tmp_path / "page")
     results.git("init")
@@ -135,7 +135,7 @@ def test_a_figure_is_old_when_what_it_tried_has_changed(
     second = commit_file("other", "2")
 
     def figure_in(commit: str) -> str:
-        return results.figure_text(DONE, Result(25, 1, 7, 22, "", commit))
+        return results.figure_text(PASSING_GOAL, Result(25, 1, 7, 22, "", commit))
 
     assert figure_in(first) == figure_in(second) == "25"
     assert figure_in("b" * 10) == figure_in(f"{second}+") == "25, old"

@@ -21,8 +21,8 @@ import pytest
 from tests.support.claimed_robots import as_another, claim_with_button
 from tests.support.command import FOREVER, Command, CommandResult, inside, process
 from tests.support.esp32_near import (
-    DRIVES,
-    DROVE,
+    DRIVE_ACTIONS,
+    DRIVE_PROGRAM,
     NETWORK,
     PASSWORD,
     files_with,
@@ -127,7 +127,7 @@ def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> No
     tsc(room).gives(0, out=("12345678", "0badcafe"))
     result = tsc(room, "upload", "-e", "SI|F(0.2, 80); SHOW(7)").gives(0)
     assert result.out.count("SHOW 7") == 2, result
-    assert all(list_motor_changes(robot)[-2:] == DROVE for robot in room)
+    assert all(list_motor_changes(robot)[-2:] == DRIVE_ACTIONS for robot in room)
     assert files_with(tmp_path / "cache", SECRET) == []
     command = driving(room)
     result = tsc(room, "stop")
@@ -154,7 +154,7 @@ def test_who_has_no_key_sees_and_stops(
     process("class", *room.place_options).gives(3, "refuses this computer")
     assert "no deja entrar" in process("class", *room.place_options, "--lang", "es").err
     tsc(room, "list").gives(0)
-    result = tsc(room, "upload", "-e", DRIVES).gives(3)
+    result = tsc(room, "upload", "-e", DRIVE_PROGRAM).gives(3)
     assert result.out.count("has an owner") == 2
     assert all(robot.moves for robot in room)
     tsc(room, "stop").gives(0)
@@ -172,7 +172,7 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
     command = driving(room)
     command.process.kill()
     command.process.wait()
-    tsc(room, "upload", "-e", DRIVES).gives(0)
+    tsc(room, "upload", "-e", DRIVE_PROGRAM).gives(0)
 
 
 @drawn
@@ -334,7 +334,7 @@ def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
     """A stranger's retained messages never reach a terminal unescaped."""
     inside("class", "--broker", "127.0.0.1:1").gives(3, "no MQTT broker responds")
     broker_option = ("--broker", f"127.0.0.1:{broker.port}")
-    for words in ([], ["stop"], ["upload", "-e", DRIVES], ["show"]):
+    for words in ([], ["stop"], ["upload", "-e", DRIVE_PROGRAM], ["show"]):
         inside("class", *words, *broker_option).gives(3, "no robot of the class class")
     assert inside("class", "--tls", *broker_option).code == 3
     stranger = broker.connect_client()

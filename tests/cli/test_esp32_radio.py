@@ -13,8 +13,8 @@ from tests.support.claimed_robots import as_another, claim_with_button
 from tests.support.command import FOREVER, LONG, Command, inside, process
 from tests.support.esp32_announced import Announced
 from tests.support.esp32_near import (
-    DRIVES,
-    DROVE,
+    DRIVE_ACTIONS,
+    DRIVE_PROGRAM,
     NETWORK,
     PASSWORD,
     files_with,
@@ -135,10 +135,10 @@ def test_two_computers_at_once_over_cable_and_network(
     for words in (("set", "wifi", "Other"), ("set", "wifi", "--forget")):
         inside(*words, "--port", place, data=PASSWORD).gives(2, "Bluetooth")
     assert NETWORK in inside("set", "wifi", "--port", place).out
-    assert inside("upload", "-e", DRIVES, "--port", place).code == 0
-    assert list_motor_changes(robot_in_network)[-2:] == DROVE
+    assert inside("upload", "-e", DRIVE_PROGRAM, "--port", place).code == 0
+    assert list_motor_changes(robot_in_network)[-2:] == DRIVE_ACTIONS
     command = driving(robot_in_network, place)
-    on(robot_in_network, "upload", "-e", DRIVES).gives(3, "another connection")
+    on(robot_in_network, "upload", "-e", DRIVE_PROGRAM).gives(3, "another connection")
     assert "otra conexión" in on(robot_in_network, "live", "F(1, 20)", "--lang", "es").err
     as_another(monkeypatch, tmp_path)
     assert on(robot_in_network, "doctor").code == 0
@@ -146,7 +146,7 @@ def test_two_computers_at_once_over_cable_and_network(
     assert on(robot_in_network, "stop").code == 0
     assert not robot_in_network.moves
     assert "stopped" in command.wait_for_result().out + command.wait_for_result().err
-    assert inside("upload", "-e", DRIVES, "--port", place).code == 3, "it is another's robot"
+    assert inside("upload", "-e", DRIVE_PROGRAM, "--port", place).code == 3, "it is another's robot"
 
 
 def test_over_a_bad_network(robot_in_network: Esp32PtyRobot, tmp_path: Path) -> None:

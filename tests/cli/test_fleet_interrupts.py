@@ -29,9 +29,9 @@ from tiniscript.library.client import Client
 
 TINIBOT = robots.load("tinibot").kit
 # The stages that the thread of a robot may have reached.
-OPENING, OPENED, ASKING, ASKED, SENDING, DRIVING = range(6)
+OPENING_STAGE, OPENED_STAGE, ASKING_STAGE, ASKED_STAGE, SENDING_STAGE, DRIVING_STAGE = range(6)
 # It begins to drive once: that it drives on is no start.
-ENDLESS, DRIVES = "SI|M(80, 80);LOOP(FOREVER);W(1);END_LOOP", "MOTORS 80 80"
+ENDLESS_PROGRAM, DRIVE_ACTION = "SI|M(80, 80);LOOP(FOREVER);W(1);END_LOOP", "MOTORS 80 80"
 
 
 class Room:
@@ -51,12 +51,14 @@ class Room:
 
     def may_press(self) -> bool:
         return all(
-            pupil.moves if self.stages[pupil.port] == DRIVING else pupil.port in self.waiting_ports
+            pupil.moves
+            if self.stages[pupil.port] == DRIVING_STAGE
+            else pupil.port in self.waiting_ports
             for pupil in self.fleet.pupils
         )
 
     def count_states(self) -> list[int]:
-        return [pupil.actions.count(DRIVES) for pupil in self.fleet.pupils]
+        return [pupil.actions.count(DRIVE_ACTION) for pupil in self.fleet.pupils]
 
 
 def stepping(
@@ -88,10 +90,16 @@ def test_after_ctrl_c_nothing_starts(
 ) -> None:
     rng = random.Random(seed)
     first = seed % 6  # the stages of all robots overlap
-    room = Room(fleet, [first, *(rng.choice((OPENING, OPENED, ASKED, DRIVING)) for _ in "23")])
-    stepping(monkeypatch, room, opening, "connection_to", OPENING, OPENED)
-    stepping(monkeypatch, room, Client, "meet", ASKING, ASKED)
-    stepping(monkeypatch, room, Client, "send_program", SENDING, DRIVING + 1)
+    room = Room(
+        fleet,
+        [
+            first,
+            *(rng.choice((OPENING_STAGE, OPENED_STAGE, ASKED_STAGE, DRIVING_STAGE)) for _ in "23"),
+        ],
+    )
+    stepping(monkeypatch, room, opening, "connection_to", OPENING_STAGE, OPENED_STAGE)
+    stepping(monkeypatch, room, Client, "meet", ASKING_STAGE, ASKED_STAGE)
+    stepping(monkeypatch, room, Client, "send_program", SENDING_STAGE, DRIVING_STAGE + 1)
     interrupt = Fleet.interrupt_robots
 
     def press(_: Fleet) -> None:
@@ -105,7 +113,7 @@ def test_after_ctrl_c_nothing_starts(
 
     monkeypatch.setattr(Fleet, "_raise_if_reader_gone", press)
     monkeypatch.setattr(Fleet, "interrupt_robots", interrupt_and_note)
-    result = inside("upload", "-e", ENDLESS, "--all").gives(2)
+    result = inside("upload", "-e", ENDLESS_PROGRAM, "--all").gives(2)
     assert room.pressed.is_set()
     assert room.count_states() == room.starts, (room.stages, result)
     assert not any(pupil.moves for pupil in fleet.pupils)

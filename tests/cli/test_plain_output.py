@@ -32,10 +32,12 @@ from tiniscript.robots import DEFAULT
 from tiniscript.virtual import worlds
 
 # ESC and a colour, a C1 control, a line of its own, backspaces, and marks that turn the direction
-EVIL = "\x1b[31mx\x9b2J\r\ntsc: done\x08\x7f\u202e\u2066\u200f\u2028"
-BAD = re.compile(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2028\u2029\u2066-\u2069]")
+HOSTILE_TEXT = "\x1b[31mx\x9b2J\r\ntsc: done\x08\x7f\u202e\u2066\u200f\u2028"
+UNSAFE_CHARACTER = re.compile(
+    r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2028\u2029\u2066-\u2069]"
+)
 PARSERS = parsers()
-ENDS = {  # values that keep a verb from waiting
+END_ARGUMENTS = {  # values that keep a verb from waiting
     "robot": ["--for", "0.1", "--hurry", "max"],
     "monitor_hold": ["--port", "/none"], "start": ["--port", "/none"],
     "set_trim": ["--port", "/none"],
@@ -54,7 +56,7 @@ CASES = [(verb, dest) for verb, parser in PARSERS.items() for dest in values_of(
 
 def assert_plain(*texts: str) -> None:
     for printed_text in texts:
-        match = BAD.search(printed_text)
+        match = UNSAFE_CHARACTER.search(printed_text)
         assert match is None, f"{match[0]!r} in {printed_text!r}"
         assert "tsc: done" not in printed_text.splitlines(), "a line that tsc has not said"
 
@@ -70,22 +72,29 @@ def test_no_argument_of_any_verb_reaches_the_terminal_raw(
     tsc: Tsc, verb: str, dest: str, pytestconfig: pytest.Config
 ) -> None:
     option = values_of(PARSERS[verb])[dest]
-    ends = ENDS.get(verb, [])
+    ends = END_ARGUMENTS.get(verb, [])
     if dest in ("port", "ports", "listen") and ends:
         ends = ends[:-2]
     if dest in ("name", "line", "texts", "program", "text"):
         ends = [ending for ending in ends if ending not in ("X", "-e", PROGRAM, "F(1, 80)")]
     for language in some_of(pytestconfig, f"{verb} {dest}", LANGUAGES):
-        for evil in (EVIL, f"DISTANCE={EVIL}", f"{EVIL}.toml", f"/{EVIL}/x"):
+        for evil in (
+            HOSTILE_TEXT,
+            f"DISTANCE={HOSTILE_TEXT}",
+            f"{HOSTILE_TEXT}.toml",
+            f"/{HOSTILE_TEXT}/x",
+        ):
             words = [option, evil] if option else [evil]
             result = tsc(*words_of(verb), *words, *ends, "--lang", language)
             assert_plain(result.out, result.err)
 
 
 @pytest.mark.parametrize("words", [
-    [EVIL], [EVIL, "x"], ["--lang", EVIL], [f"--lang={EVIL}", "check"], ["check", f"--{EVIL}"],
-    ["check", "-e", "W(1)", EVIL], ["run", "-e", "W(1)", f"--show={EVIL}"], ["help", EVIL],
-    ["run", "-e", "W(1)", "--sensor", "DISTANCE=1", "--sensor", f"DISTANCE={EVIL}"],
+    [HOSTILE_TEXT], [HOSTILE_TEXT, "x"], ["--lang", HOSTILE_TEXT],
+    [f"--lang={HOSTILE_TEXT}", "check"], ["check", f"--{HOSTILE_TEXT}"],
+    ["check", "-e", "W(1)", HOSTILE_TEXT], ["run", "-e", "W(1)", f"--show={HOSTILE_TEXT}"],
+    ["help", HOSTILE_TEXT],
+    ["run", "-e", "W(1)", "--sensor", "DISTANCE=1", "--sensor", f"DISTANCE={HOSTILE_TEXT}"],
 ])  # fmt: skip
 def test_unknown_verbs_and_options_are_said_plainly(tsc: Tsc, words: list[str]) -> None:
     for language in ("en", "es"):
@@ -102,7 +111,7 @@ def spoil_each(toml: str) -> list[str]:
     """Return a text for each of its strings, and for each of its keys, with that one spoiled."""
     values = [match.span() for match in re.finditer(r'"[^"\n]*"', toml)]
     keys = [match.span(1) for match in re.finditer(r"^([a-z_A-Z]+) *=", toml, re.MULTILINE)]
-    return [toml[:a] + in_toml(EVIL) + toml[b:] for a, b in values + keys]
+    return [toml[:a] + in_toml(HOSTILE_TEXT) + toml[b:] for a, b in values + keys]
 
 
 @pytest.mark.parametrize("verb", ["check", "run", "firmware_wiring", "firmware_board", "robot"])
@@ -119,7 +128,7 @@ def test_no_string_of_a_profile_reaches_the_terminal_raw(
         words.append("evil.toml")
         words += ["-e", "X = DISTANCE"] if verb in ("check", "run") else []
         for language in some_of(pytestconfig, f"{verb} {number}", LANGUAGES):
-            ends = ENDS["robot"] if verb == "robot" else []
+            ends = END_ARGUMENTS["robot"] if verb == "robot" else []
             result = tsc(*words, *ends, "--lang", language)
             assert result.code != 2 or "evil.toml" in result.err
             assert_plain(result.out, result.err)
@@ -131,7 +140,9 @@ def test_no_string_of_a_world_reaches_the_terminal_raw(tsc: Tsc) -> None:
     for toml in texts:
         Path("evil.toml").write_text(toml, encoding="utf-8")
         for language in ("en", "es"):
-            result = tsc("robot", "--world", "evil.toml", *ENDS["robot"], "--lang", language)
+            result = tsc(
+                "robot", "--world", "evil.toml", *END_ARGUMENTS["robot"], "--lang", language
+            )
             assert_plain(result.out, result.err)
 
 
@@ -151,7 +162,7 @@ def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, 
     from tiniscript.cli import main
 
     def raise_hostile_error(arguments: list[str], language: str) -> int:
-        raise RuntimeError(f"the moon {EVIL}")
+        raise RuntimeError(f"the moon {HOSTILE_TEXT}")
 
     monkeypatch.setattr("tiniscript.cli.commands.check.run", raise_hostile_error)
     assert main(["check"]) == 2
@@ -166,7 +177,11 @@ def test_a_sentence_keeps_the_lines_of_other_sentences_alone() -> None:
     assert Sentence("{a}").format(a="x" * 10_000) == "x" * MOST_VALUE_CHARACTERS + "…"
     assert Sentence("{a:>3}").format(a=1) == "  1"
     assert isinstance(text("no_verb", "en"), Sentence)
-    assert CommandError(2, "no_verb", found=EVIL, near=EVIL).sentence("es").isprintable()
+    assert (
+        CommandError(2, "no_verb", found=HOSTILE_TEXT, near=HOSTILE_TEXT)
+        .sentence("es")
+        .isprintable()
+    )
 
 
 def test_what_is_printable_stays() -> None:
@@ -187,8 +202,8 @@ def test_one_byte_is_no_bytes() -> None:
 # -- a robot's messages ---------------------------------------------------------------------------
 
 # the cursor, a title, a new line, a bell, the direction, nothing to see, half a character
-ACTING = ("\x1b[2J", "\x9b2J", "\x1b]0;x\x07", "\r\n", "\b\b", "\u202e", "\u2066", "\u200b",
-          "\ufeff", "\u2028", "\x85", "\x7f", "\udcff")  # fmt: skip
+CONTROL_SIGNS = ("\x1b[2J", "\x9b2J", "\x1b]0;x\x07", "\r\n", "\b\b", "\u202e", "\u2066", "\u200b",
+                 "\ufeff", "\u2028", "\x85", "\x7f", "\udcff")  # fmt: skip
 FORMULAS = ("=1+1", "+1", "-1+1", "@SUM(A1)", "a;=1+1", 'a;"=1+1"', "a,@x", "|=x", "\uff1d1+1")
 
 
@@ -196,7 +211,7 @@ def is_harmless(text: str) -> bool:
     return text.replace("\n", "").isprintable()
 
 
-@each_row("sign", ACTING)
+@each_row("sign", CONTROL_SIGNS)
 def test_a_name_has_no_signs_that_act(sign: str) -> None:
     name = f"AB{sign}C".encode("utf-8", "surrogateescape")[:16]
     values = make_payload(HelloReply, {**DESCRIPTION, "name": name})
@@ -206,7 +221,7 @@ def test_a_name_has_no_signs_that_act(sign: str) -> None:
     assert is_harmless(known_ports.remembered_ports().name_by_port["/dev/x"])
 
 
-@each_row("sign", ACTING)
+@each_row("sign", CONTROL_SIGNS)
 def test_a_device_describes_itself_without_them(sign: str, monkeypatch: pytest.MonkeyPatch) -> None:
     class Port:
         device, description = "/dev/x", f"Arduino{sign}Uno"
@@ -253,7 +268,7 @@ def print_name(text: str, is_json: bool) -> tuple[str, str]:
     return "\n".join(lines), rows.getvalue()
 
 
-@each_row("sign", ACTING)
+@each_row("sign", CONTROL_SIGNS)
 def test_a_text_is_printed_without_them(sign: str) -> None:
     for is_json in (False, True):
         output, row = print_name(f"AB{sign}C", is_json)

@@ -26,7 +26,7 @@ from tiniscript.studio.recordings import REAL, Row, decode, encode, header_line
 TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
 CHECKSUM = compile(TEXT).checksum
 HEAD = header_line(REAL, TEXT, robots.load("tinibot"), CHECKSUM)
-AGAIN = "The virtual robot did exactly the same again. Rows compared: "
+SAME_RUN_MESSAGE = "The virtual robot did exactly the same again. Rows compared: "
 
 
 def real(*events: tuple[int, str]) -> bytes:
@@ -47,7 +47,7 @@ def test_a_run_on_the_virtual_robot_is_recorded_and_played_again(tsc: Tsc, tmp_p
     assert (recording.seed, recording.world and recording.world.name) == (7, "line")
     replayed_result = tsc("run", file)
     assert (replayed_result.code, replayed_result.out) == (0, result.out)
-    assert replayed_result.err == f"{AGAIN}{len(recording.rows)}.\n"
+    assert replayed_result.err == f"{SAME_RUN_MESSAGE}{len(recording.rows)}.\n"
     show = next(row for row in recording.rows if row.event.startswith("SHOW"))
     changed = recordings.encode_row(show), recordings.encode_row(show._replace(event="SHOW 100"))
     file.write_text(file.read_text().replace(*changed))
@@ -62,7 +62,7 @@ def test_a_run_is_as_long_as_it_may_be(tsc: Tsc, tmp_path: Path) -> None:
         "--record", file).gives(0)  # fmt: skip
     rows = decode(file.read_bytes()).rows
     assert [row.event for row in rows] == ["BUTTON DOWN", "BUTTON UP", "START", *["SHOW 1"] * 3]
-    assert tsc("run", file).gives(0).err.startswith(AGAIN)
+    assert tsc("run", file).gives(0).err.startswith(SAME_RUN_MESSAGE)
 
 
 def test_a_fault_is_recorded_and_told(tsc: Tsc, tmp_path: Path) -> None:
@@ -79,7 +79,7 @@ def test_a_world_of_a_file_is_in_the_file_of_the_run(tsc: Tsc, tmp_path: Path) -
     world.write_text(text.replace("heading =", "heading = 33.333 #", 1), encoding="utf-8")
     tsc("run", "-e", "F(1, 60) UNTIL(DISTANCE < 15)", "--record", file, "--world", world).gives(0)
     world.unlink()
-    assert tsc("run", file).gives(0).err.startswith(AGAIN)
+    assert tsc("run", file).gives(0).err.startswith(SAME_RUN_MESSAGE)
 
 
 def test_a_real_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:

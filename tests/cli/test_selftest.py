@@ -36,8 +36,8 @@ from tiniscript.library.simulated import SimulatedRobot
 from tiniscript.link.messages import RESETS
 from tiniscript.link.ports import open_port
 
-LIGHT, DISTANCE = 500_000, 42_000  # thousandths
-GOOD = (LIGHT, LIGHT, DISTANCE)
+GOOD_LIGHT, GOOD_DISTANCE = 500_000, 42_000  # thousandths
+GOOD_READINGS = (GOOD_LIGHT, GOOD_LIGHT, GOOD_DISTANCE)
 
 
 def found_by(pty_robot: PtyRobot, *words: str) -> tuple[int, dict[str, dict[str, object]]]:
@@ -50,7 +50,7 @@ def found_by(pty_robot: PtyRobot, *words: str) -> tuple[int, dict[str, dict[str,
 
 
 def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
-    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
     code, parts = found_by(pty_robot)
     assert code == 0
     verdicts = {name: value["verdict"] for name, value in parts.items()}
@@ -131,16 +131,16 @@ def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
 def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     """A sensor at the end of its range, a bad line, and in the middle of it the robot is silent."""
     low = pty_robot.kit.sensors[0].low
-    pty_robot.ask(lambda robot: robot.sense(low, LIGHT, DISTANCE))
+    pty_robot.ask(lambda robot: robot.sense(low, GOOD_LIGHT, GOOD_DISTANCE))
     _, parts = found_by(pty_robot)
     first, second = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
     assert parts[first]["cause"] == "stuck"
     assert parts[second]["verdict"] == "ok"
-    pty_robot.ask(lambda robot: robot.sense(LIGHT, LIGHT, 0))
+    pty_robot.ask(lambda robot: robot.sense(GOOD_LIGHT, GOOD_LIGHT, 0))
     code, parts = found_by(pty_robot)
     assert (code, parts["sensor DISTANCE"]["cause"]) == (3, "echo_hung")
     assert parts["sensor DISTANCE"]["verdict"] == "wrong"
-    pty_robot.ask(lambda robot: robot.sense(low, LIGHT, DISTANCE))
+    pty_robot.ask(lambda robot: robot.sense(low, GOOD_LIGHT, GOOD_DISTANCE))
     pty_robot.damages = 100
     code, parts = found_by(pty_robot)
     assert code == 3
@@ -247,11 +247,11 @@ class Wires(NamedTuple):
         return str({"left": 1, "right": 3}[wheel] + (not is_forward))
 
 
-AS_THEY_SHOULD = Wires()
+RIGHT_WIRES = Wires()
 
 
 def person(
-    pty_robot: PtyRobot, wires: Wires = AS_THEY_SHOULD, is_noticed: bool = True, learns: str = "2"
+    pty_robot: PtyRobot, wires: Wires = RIGHT_WIRES, is_noticed: bool = True, learns: str = "2"
 ) -> Callable[[str], str]:
     """Return a person with a hand, who watches the motors."""
 
@@ -259,7 +259,7 @@ def person(
         if "Now put a hand" in question and is_noticed:
             pty_robot.ask(lambda robot: robot.sense(100_000, 100_000, 5_000))
         elif "its surroundings clear" in question:
-            pty_robot.ask(lambda robot: robot.sense(*GOOD))
+            pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
         elif "motor turned" in question:
             return wires.answer_after(pty_robot.actions)
         return learns if "can remember" in question else "1"
@@ -272,7 +272,7 @@ def causes(out: str) -> set[str]:
 
 
 def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
-    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
     assert on(pty_robot, "upload", "-e", "SB|F(1, 50)").code == 0
     code, out, _ = run_self_test(pty_robot, person(pty_robot), "--json")
     assert code == 0, out
@@ -286,7 +286,7 @@ def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
 
 @pytest.mark.parametrize("motor", [1, 2])
 def test_ctrl_c_stops_the_robot_whichever_motor_turns(pty_robot: PtyRobot, motor: int) -> None:
-    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
     sensors = 2 * len(pty_robot.kit.sensors)
     answers = b"\n" * (1 + sensors) + b"1\n" * (motor - 1)
     command = Command("doctor", "--selftest", "--port", pty_robot.port, data=answers)
@@ -299,7 +299,7 @@ def test_ctrl_c_stops_the_robot_whichever_motor_turns(pty_robot: PtyRobot, motor
 
 def test_what_a_person_sees_is_wrong(pty_robot: PtyRobot) -> None:
     """The person reports motors that turn wrong or not at all, and sensors that notice nothing."""
-    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
     for wires, expected in (
         (Wires(is_exchanged=True), "tsc set trim"), (Wires(is_dead=True), "check its wires"),
     ):  # fmt: skip
@@ -354,7 +354,7 @@ WIRES = [Wires(*flags) for flags in product((False, True), repeat=3)]
 @pytest.mark.parametrize("wires", WIRES)
 def test_a_robot_learns_how_its_motors_are_wired(pty_robot: PtyRobot, wires: Wires) -> None:
     """Earlier values do not matter; the rest of its trim stays."""
-    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
     for before in ((), ("--exchange", "yes", "--reverse-left", "yes", "--balance", "7")):
         assert on(pty_robot, "set", "trim", *before, "--least", "3").code == 0
         code, out, _ = run_self_test(pty_robot, person(pty_robot, wires, learns="1"))
@@ -367,7 +367,7 @@ def test_a_robot_learns_how_its_motors_are_wired(pty_robot: PtyRobot, wires: Wir
 
 def test_once_more_turns_the_motor_again(pty_robot: PtyRobot) -> None:
     """Without a requested number, no motor moves. If the person leaves, no motor turns either."""
-    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
     assert on(pty_robot, "doctor", "--selftest").code == 0
     assert not any("MOTORS" in line for line in pty_robot.actions)
     answers = iter(["6", "7", "6", "1", "3", "1"])
@@ -383,7 +383,7 @@ def test_once_more_turns_the_motor_again(pty_robot: PtyRobot) -> None:
 
 # -- discs
 
-HURRY = 50.0
+HURRIED_PACE = 50.0
 
 
 @pytest.mark.parametrize("number", [None, 0, 1])
@@ -391,7 +391,7 @@ def test_a_disc_that_flickers_at_rest_is_wrong(number: int | None) -> None:
     robot = robot_in(name="tinibot2", eeprom_us=0)
     if number is not None:
         Flicker(robot, number, 20)
-    running = SimulatedRobot(robot, HURRY)
+    running = SimulatedRobot(robot, HURRIED_PACE)
     try:
         result = inside(
             "doctor", "--selftest", "--port", running.port, "--robot", "tinibot2", "--yes", "--json"

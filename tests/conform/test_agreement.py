@@ -86,7 +86,7 @@ def is_for(name: str, run: Run, answer: list[str]) -> bool:
     begin_ms, every_ms = run.schedule
     if answer[-1].startswith("REFUSED") or len(every_ms) > 1:
         return False
-    if name in avr.BUILT:
+    if name in avr.COMPILER_ARGUMENTS:
         sensors, actuators = AVR_DEVICES
         has_room = len(run.kit.readings) <= sensors and len(run.kit.actuators) <= actuators
         return has_room and len(run.image) < AVR_BYTES

@@ -40,7 +40,7 @@ from tools.builds import conformance
 
 TINIBOT = tuple(line.removesuffix("\n") for line in robots.load("tinibot").kit.lines())
 PAGE = ROOT / "docs" / "develop" / "conformance.md"
-FROM_SPEC = shlex.join([sys.executable, "-m", "tests.conform.spec_machine"])
+SPEC_MACHINE_COMMAND = shlex.join([sys.executable, "-m", "tests.conform.spec_machine"])
 
 
 def test_a_sensor_without_readings_has_a_line_without_values() -> None:
@@ -99,7 +99,7 @@ def test_the_machine_from_the_specification_passes_all(
     tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
-    result = conform(tsc, FROM_SPEC).gives(0)
+    result = conform(tsc, SPEC_MACHINE_COMMAND).gives(0)
     needing = sum(bool(case.needs) for case in machine_cases())
     count = len(machine_cases()) - needing
     assert count > 600 and needing > 600
@@ -109,8 +109,8 @@ def test_the_machine_from_the_specification_passes_all(
         f"{count} of {count} cases pass. Kit 5, bytecode {ISA_MAJOR}.{ISA_MINOR}.\n"
     )
     tasks = "--only", "tasks: "
-    assert json.loads(conform(tsc, FROM_SPEC, "--json", *tasks).out)["left_out"]
-    spanish = conform(tsc, FROM_SPEC, *tasks, "--lang", "es").out
+    assert json.loads(conform(tsc, SPEC_MACHINE_COMMAND, "--json", *tasks).out)["left_out"]
+    spanish = conform(tsc, SPEC_MACHINE_COMMAND, *tasks, "--lang", "es").out
     assert "casos con TASK, WHEN, CM o DEG se dejaron fuera" in spanish
 
 
@@ -129,7 +129,7 @@ def test_a_machine_lacks_tasks_only_if_it_refuses_the_first_image_with_some(refu
 
 
 # A file of `tests/oracle`, its text, the replacement, and a case that must be named.
-BREAKS = [
+BREAKAGES = [
     ("arithmetic", "(abs(number) * 2 + abs(by))", "(abs(number) * 2)", "arithmetic: MUL"),
     ("arithmetic", "a - b * (a // b)", "int(a - b * int(a / b))", "arithmetic: MOD"),
     ("arithmetic", "state >> 17", "state >> 16", "arithmetic: RANDOM"),
@@ -185,7 +185,9 @@ def patch_oracle(name: str, old: str, becomes: str) -> ModuleType:
     return module
 
 
-@pytest.mark.parametrize(("file", "old", "new", "named_text"), BREAKS, ids=[b[1] for b in BREAKS])
+@pytest.mark.parametrize(
+    ("file", "old", "new", "named_text"), BREAKAGES, ids=[b[1] for b in BREAKAGES]
+)
 def test_a_broken_machine_is_told(file: str, old: str, new: str, named_text: str) -> None:
     spec = Spec()
     if file == "verifier":
@@ -380,11 +382,11 @@ def test_without_its_file_the_command_that_makes_it_is_named(
                 in tsc("doctor", "--conform", *words, "--lang", language).err
             )
     conformance.main([str(tmp_path)])
-    conform(tsc, FROM_SPEC, "--only", "images: no code").gives(0)
+    conform(tsc, SPEC_MACHINE_COMMAND, "--only", "images: no code").gives(0)
     assert conformance.main([str(tmp_path / "nowhere")]) == 1
 
 
-WITHOUT = """
+WITHOUT_PACKAGES_CODE = """
 import sys
 sys.modules.update(dict.fromkeys(("pytest", "hypothesis", "construct", "wasmtime", "PIL"), None))
 from tools.builds import conformance
@@ -397,7 +399,7 @@ def test_cases_are_made_without_the_tools_of_tests_and_are_the_same(
 ) -> None:
     """A release makes them in two clones, with sets in another order in each."""
     subprocess.run(
-        [sys.executable, "-c", WITHOUT, tmp_path],
+        [sys.executable, "-c", WITHOUT_PACKAGES_CODE, tmp_path],
         cwd=ROOT, check=True, capture_output=True, env={**os.environ, "PYTHONHASHSEED": "7"},
     )  # fmt: skip
     for name in conformance.FILES:

@@ -13,7 +13,16 @@ import pytest
 
 from tests.machines.board import CONTROLS, HERTZ, MS, PORTS, Board
 from tests.machines.shift_register import HOLD_NS, ShiftRegister, WrongTiming
-from tests.support.board_states import BACK, FORWARD, MOVES, OFF, START, STOPS, TURN, start_board
+from tests.support.board_states import (
+    BACKWARD,
+    FORWARD,
+    MOVES,
+    OFF,
+    START,
+    STOPS,
+    TURN,
+    start_board,
+)
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
@@ -130,7 +139,7 @@ def test_the_motors_of_a_side_do_what_the_side_does(name: str, chip: str) -> Non
     states = seen_by_the_motors(board)
     assert at(states, START - 1) == {}
     assert at(states, START + FORWARD) == both(sides, 204, 204)
-    assert at(states, START + BACK) == both(sides, -102, -102)
+    assert at(states, START + BACKWARD) == both(sides, -102, -102)
     assert at(states, START + TURN) == both(sides, 127, -255)
     assert at(states, START + OFF) == {}
     assert board.quiet_us < 40  # half the time of two bytes at 115,200 baud

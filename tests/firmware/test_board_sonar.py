@@ -83,7 +83,7 @@ def test_until_looks_again_every_40_ms() -> None:
     assert board.motors(START + 178)[0] == "low"
 
 
-AGAIN = """
+RESTART_CODE = """
 #include <avr/io.h>
 #include "boards/board.h"
 // When A5 goes high this does what the start of a program does with readings; in the main loop, as
@@ -106,7 +106,7 @@ def test_a_start_forgets_readings_but_not_the_spacing(after_ms: float) -> None:
     text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.002);S;END_LOOP"
     plain = looking(text, 20, 70).run_for(START + 40)
     left = plain.edges(trigger)[0] / MS
-    board = looking(text, 20, 70, robot=robot, more=AGAIN)
+    board = looking(text, 20, 70, robot=robot, more=RESTART_CODE)
     board.level(left + after_ms, 19, True)
     board.run_for(START + 160)
     first, second, *others = ping_starts_ms(board, trigger)

@@ -14,10 +14,10 @@ from tiniscript.link.messages import STATE_STOPPED
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
-AWAY = (ROOT / "examples" / "away.ts").read_text(encoding="utf-8")
-LOOK_MS = 90.0  # time for a WHEN to notice: 20 ms, plus an echo 30 ms after the previous one
-BUSY = "F(FOREVER, 60);" + "TASK;X = 0;LOOP(FOREVER);X = X + 1;END_LOOP;END_TASK;" * 4
-STOP = bytes(8)
+AWAY_PROGRAM = (ROOT / "examples" / "away.ts").read_text(encoding="utf-8")
+NOTICE_MS = 90.0  # time for a WHEN to notice: 20 ms, plus an echo 30 ms after the previous one
+BUSY_PROGRAM = "F(FOREVER, 60);" + "TASK;X = 0;LOOP(FOREVER);X = X + 1;END_LOOP;END_TASK;" * 4
+STOP_BYTES = bytes(8)
 STOP_ZEROS = (
     3  # the last zero of a stop that a robot must have seen after a frame, which ends with one
 )
@@ -40,7 +40,7 @@ def test_the_pins_follow_the_trace(case: Case, robot: Uno) -> None:
 
 @each_board
 def test_while_four_tasks_count_the_clock_goes_on(robot: Uno) -> None:
-    text = "LOOP(3);F(0.1, 60);B(0.1, 60);END_LOOP;" + BUSY.partition(";")[2]
+    text = "LOOP(3);F(0.1, 60);B(0.1, 60);END_LOOP;" + BUSY_PROGRAM.partition(";")[2]
     check_pins(
         program(text)._replace(parts={"tiniscript": text, "senses": "max-time = 0.5"}), robot
     )
@@ -56,7 +56,7 @@ def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
     """It does so each time, and if the obstacle has gone in the meantime, it drives on at once."""
     robot.sonar("trigger", "echo", 80)
     wired_uno = computer(robot)
-    send(wired_uno, AWAY, is_detached=True)
+    send(wired_uno, AWAY_PROGRAM, is_detached=True)
     wired_uno.run(500)
     assert states(robot) == FORWARD
     for wait_ms in (0, 7):
@@ -69,8 +69,8 @@ def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
         settings = list_settings(robot, near)
         assert [setting[1:] for setting in settings] == [(-60, -60), (60, -60), (60, 60)]
         begins, turns, goes_on = (setting.ms for setting in settings)
-        assert begins < LOOK_MS and abs(turns - begins - 500) < OFF_MS
-        assert 500 - OFF_MS < goes_on - turns < 500 + LOOK_MS
+        assert begins < NOTICE_MS and abs(turns - begins - 500) < OFF_MS
+        assert 500 - OFF_MS < goes_on - turns < 500 + NOTICE_MS
 
 
 @each_board
@@ -119,13 +119,13 @@ def test_an_echo_from_before_an_interruption_ends_no_move(later_ms: int, robot: 
 def test_a_stop_in_the_middle_of_busy_tasks(robot: Uno) -> None:
     """It reaches the pins as fast as in any program, and no motor starts again."""
     wired_uno = computer(robot)
-    send(wired_uno, BUSY, is_detached=True)
+    send(wired_uno, BUSY_PROGRAM, is_detached=True)
     wired_uno.run(50)
     assert states(robot) == FORWARD
-    robot.send(STOP)
+    robot.send(STOP_BYTES)
     robot.run_ms(20)
     stop_cycle = max(robot.pins[name].cycle for name in ("left", "right"))
-    last = robot.received_bytes[STOP_ZEROS - 1 - len(STOP)].cycle
+    last = robot.received_bytes[STOP_ZEROS - 1 - len(STOP_BYTES)].cycle
     assert states(robot) == OFF
     assert 0 < stop_cycle - last < STOP_US * CYCLES_PER_MS // 1000
     wired_uno.run(300)
@@ -142,7 +142,7 @@ def test_a_stop_ends_all_tasks(state: str, robot: Uno) -> None:
     send(wired_uno, STATES[state], is_detached=True)
     wired_uno.run(300)
     assert (states(robot) == OFF) == (state == "a task waits")
-    robot.send(STOP)
+    robot.send(STOP_BYTES)
     robot.run_ms(20)
     assert states(robot) == OFF
     stop_cycle = robot.cycle

@@ -8,7 +8,7 @@ import pytest
 
 from tests.machines.board import MS, Board
 from tests.support.board_states import (
-    BACK,
+    BACKWARD,
     DRIVERS,
     FORWARD,
     LAMP,
@@ -33,7 +33,7 @@ from tiniscript.robots.ports import AVRS
 @pytest.mark.parametrize("name", sorted(DRIVERS))
 def test_states_of_the_motor_pins(name: str) -> None:
     board = start_board(robot_with_driver(name), MOVES).run_for(START + OFF + 50)
-    states = tuple(board.motors(START + ms) for ms in (FORWARD, BACK, TURN, OFF))
+    states = tuple(board.motors(START + ms) for ms in (FORWARD, BACKWARD, TURN, OFF))
     assert states == DRIVERS[name][1]
     assert board.motors(START - 1) == states[-1]
 
@@ -55,7 +55,7 @@ def test_shipped_robots_drive(name: str, chip: str) -> None:
     robot = on_board(name, chip)
     board = start_board(robot, MOVES).run_for(START + OFF + 50)
     states = DRIVERS[robot.board.motors.driver][1]
-    assert tuple(board.motors(START + ms) for ms in (FORWARD, BACK, TURN, OFF)) == states
+    assert tuple(board.motors(START + ms) for ms in (FORWARD, BACKWARD, TURN, OFF)) == states
 
 
 @pytest.mark.sampled("name", keep=2)

@@ -24,8 +24,8 @@ from tiniscript.link.payloads import HaltedEvent
 from tiniscript.link.requests import OK
 
 LIMIT_MS = 3000  # length of the observed time
-BEGINS_MS = 1500  # each run, because the seed of RANDOM depends on the time
-ENDS = ("DONE", "FAULT", "STOPPED")
+RUN_START_MS = 1500  # each run, because the seed of RANDOM depends on the time
+END_EVENTS = ("DONE", "FAULT", "STOPPED")
 
 
 def switched_on(kit: Kit, seed: int) -> HostFirmware:
@@ -46,7 +46,7 @@ def run(image: Image, kit: Kit, seed: int, how: str) -> list[str]:
     if how != "alone":
         some = statements[:1] if how == "steps" else rng.sample(statements, min(4, len(statements)))
         assert it.places(*some) == OK
-    it.talk(BEGINS_MS - it.robot.now_ms)
+    it.talk(RUN_START_MS - it.robot.now_ms)
     event_count = len(it.robot.did)
     it.start()
     own_ms, lines_there, halted_in = 0, list[str](), 0
@@ -58,7 +58,7 @@ def run(image: Image, kit: Kit, seed: int, how: str) -> list[str]:
         halts = [event for event in events if isinstance(event, HaltedEvent)]
         lines_there += lines
         lines_there += [f"SHOW {event.value}" for event in events if event.name == "SHOW"]
-        if any(event.name in ENDS for event in events):
+        if any(event.name in END_EVENTS for event in events):
             break
         for event in halts:
             assert event.at in statements
@@ -110,7 +110,9 @@ def test_a_program_that_is_stepped_does_what_it_does_alone(seed: int) -> None:
 
 # -- the next run ------------------------------------------------------------------------------
 
-NEXT = "SI|BEEP(0.001, 31);LOOP(3);SHOW(TIME);F(0.06, 80);END_LOOP;W(0.1);M(30, 30);W(0.2);SHOW(9)"
+NEXT_PROGRAM = (
+    "SI|BEEP(0.001, 31);LOOP(3);SHOW(TIME);F(0.06, 80);END_LOOP;W(0.1);M(30, 30);W(0.2);SHOW(9)"
+)
 STOPS: dict[str, Callable[[Debugged], object]] = {
     "nothing": lambda it: None,  # the next run ends it
     "zeros": lambda it: it.session.receive(it.robot.step(bytes(4)), it.robot.now_ms),
@@ -149,7 +151,7 @@ def seen_next(it: Debugged, places: list[int]) -> list[str]:
     while it.robot.now_ms < began_ms + 1500:
         is_halted = False
         for event in it.talk(4):
-            if event.name in ("SHOW", "HALTED", *ENDS):
+            if event.name in ("SHOW", "HALTED", *END_EVENTS):
                 what = getattr(event, "value", getattr(event, "at", ""))
                 lines.append(f"{event.name} {what}")
                 is_halted = event.name == "HALTED"
@@ -166,7 +168,7 @@ def seen_next(it: Debugged, places: list[int]) -> list[str]:
 @pytest.mark.parametrize("seed", range(24))
 def test_a_run_after_any_halts_is_as_on_a_fresh_robot(seed: int) -> None:
     rng = random.Random(seed)
-    it, fresh = Debugged(NEXT), Debugged(NEXT)
+    it, fresh = Debugged(NEXT_PROGRAM), Debugged(NEXT_PROGRAM)
     halts_before(it, rng)
     places = rng.sample(statement_starts(it.image.code), rng.choice((0, 0, 1, 2)))
     runs = []

@@ -8,7 +8,7 @@ import pytest
 
 from tests.machines.uno import skip_unless_available
 from tests.support.button_signals import ButtonEvents, button_events
-from tests.support.robot_on_uno import AWAY, OFF, computer, send, states
+from tests.support.robot_on_uno import AWAY_PROGRAM, OFF, computer, send, states
 from tools.uno import CYCLES_PER_MS, Uno
 
 SPIKE_US = 150
@@ -81,7 +81,7 @@ def test_an_uno_is_not_started_by_spikes(uno: Uno) -> None:
     """The whole firmware holds a program; spikes come in twos and fives."""
     skip_unless_available()
     wired_uno = computer(uno)
-    send(wired_uno, AWAY.replace("SI", "SB"))
+    send(wired_uno, AWAY_PROGRAM.replace("SI", "SB"))
     wired_uno.run(300)
     for spacing_ms in (1, 3, 10, 20, 25, *range(28, 36), 60, 100, 200):
         for count in (2, 5):
@@ -96,7 +96,7 @@ def test_an_uno_is_not_started_by_spikes(uno: Uno) -> None:
 
 def test_an_uno_that_runs_is_stopped_by_the_first_edge(uno: Uno) -> None:
     wired_uno = computer(uno)
-    send(wired_uno, AWAY)
+    send(wired_uno, AWAY_PROGRAM)
     wired_uno.run(100)
     at = uno.cycle + CYCLES_PER_MS
     uno.drive("button", False, at=at)

@@ -29,24 +29,24 @@ from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, RUN, SAVED_NOTHING, 
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
-OLD = "SB|F(0.1, 50)"
-ROOM = 389
-CHECKSUM_AT = 10  # offset of the checksum in an image
-STRIDE = 29  # step between the bytes that the tests choose
+OLD_PROGRAM = "SB|F(0.1, 50)"
+ROOM_BYTES = 389
+CHECKSUM_OFFSET = 10  # offset of the checksum in an image
+STRIDE_BYTES = 29  # step between the bytes that the tests choose
 STOP = bytes(8)
 SAVED_MEMORY = [name for name, _ in SAVED_STATES].index("MEMORY")
-CUT, STOPPED, STOPPED_TWICE = KINDS = ("cut", "stopped", "stopped twice")
+CUT_KIND, STOPPED_KIND, STOPPED_TWICE_KIND = KINDS = ("cut", "stopped", "stopped twice")
 
 
 def largest() -> Image:
     """An image that fills the robot, and drives at once."""
     begin = image_of("SI|F(9, 80)").code
     show = image_of("SI|SHOW(1)").code
-    code = begin + show * ((ROOM - len(begin)) // len(show))
+    code = begin + show * ((ROOM_BYTES - len(begin)) // len(show))
     return unpack(pack("SI", 0, code))
 
 
-NEW = largest()
+NEW_IMAGE = largest()
 
 
 def bytes_of(image: Image) -> bytes:
@@ -57,7 +57,7 @@ def sent_until(robot: HostFirmware, session: Session, count: int) -> bytes:
     """Begin an upload, until this many of its bytes have reached the robot; return the bytes that
     the computer sent afterwards, or no bytes if the upload is over.
     """
-    request = session.upload(NEW, saves=True)
+    request = session.upload(NEW_IMAGE, saves=True)
     while request.outcome is None:
         data = session.poll(robot.now_ms)
         if count < len(data):
@@ -76,11 +76,11 @@ def cut_at(memory: bytes, kind: str, count: int) -> bool:
     late = sent_until(robot, session, count)
     if not late:
         return True
-    if kind != CUT:
+    if kind != CUT_KIND:
         robot.step(STOP)
         robot.did.clear()
         robot.step(late)  # bytes under way
-        if kind == STOPPED_TWICE:
+        if kind == STOPPED_TWICE_KIND:
             robot.step(STOP)
         robot.wait(300)
         assert not [line for line in actions_of(robot) if line not in ("MOTORS 0 0",)], count
@@ -88,20 +88,23 @@ def cut_at(memory: bytes, kind: str, count: int) -> bool:
     robot.wait(1100)
     next_session = computer(2)
     assert robot.until(next_session, next_session.hello()) == OK
-    assert fetch_image(robot, next_session) in (bytes_of(image_of(OLD)), bytes_of(NEW)), count
-    if kind == CUT:
+    assert fetch_image(robot, next_session) in (
+        bytes_of(image_of(OLD_PROGRAM)),
+        bytes_of(NEW_IMAGE),
+    ), count
+    if kind == CUT_KIND:
         robot.did.clear()
         robot.push()
         robot.talk(next_session, 300)
         assert "MOTORS 50 50" in actions_of(robot) or "MOTORS 80 80" in actions_of(robot), count
-    assert robot.until(next_session, next_session.upload(NEW, runs=False)) == OK
-    assert fetch_image(robot, next_session) == bytes_of(NEW), count
+    assert robot.until(next_session, next_session.upload(NEW_IMAGE, runs=False)) == OK
+    assert fetch_image(robot, next_session) == bytes_of(NEW_IMAGE), count
     return False
 
 
 def break_off(kind: str, first: int, stride: int) -> int:
     """Break uploads off at each so many bytes; return how many."""
-    memory = holding(OLD)[0].memory()
+    memory = holding(OLD_PROGRAM)[0].memory()
     count = 0
     while not cut_at(memory, kind, first + count * stride):
         count += 1
@@ -110,20 +113,20 @@ def break_off(kind: str, first: int, stride: int) -> int:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_an_upload_that_is_broken_off(kind: str) -> None:
-    assert break_off(kind, 3, STRIDE) > 450 // STRIDE
+    assert break_off(kind, 3, STRIDE_BYTES) > 450 // STRIDE_BYTES
 
 
 def test_a_program_that_an_upload_has_cost_is_told_no_more() -> None:
     """The robot still says its checksum and its length."""
     robot, session = HostFirmware(KIT), computer()
     robot.wait(200)
-    assert robot.until(session, session.upload(image_of(OLD), saves=False)) == OK
+    assert robot.until(session, session.upload(image_of(OLD_PROGRAM), saves=False)) == OK
     complete_before = robot.complete(session, session.status())
     assert (complete_before.program, complete_before.saved) == (
-        image_of(OLD).checksum,
+        image_of(OLD_PROGRAM).checksum,
         SAVED_MEMORY,
     )
-    assert complete_before.length == len(image_of(OLD).code)
+    assert complete_before.length == len(image_of(OLD_PROGRAM).code)
     assert sent_until(robot, session, 300)
     next_session = computer(2)
     hello = robot.complete(next_session, next_session.hello())
@@ -135,11 +138,15 @@ def test_a_program_that_an_upload_has_cost_is_told_no_more() -> None:
 
 # -- interruptions --------------------------------------------------------------------------------
 
-TYPED = b"SI|LOOP(9);F(0.1,30);B(0.1,30);END_LOOP\n"
+TYPED_LINE = b"SI|LOOP(9);F(0.1,30);B(0.1,30);END_LOOP\n"
 PIECE_BYTES = 9
-SECOND = image_of("SI|" + "B(0.1, 60); SHOW(7); " * 12)
-BEGUN, ALL_BUT_ONE, ALL = "begun", "all but a piece", "all but its COMMIT"
-CUTS = (BEGUN, ALL_BUT_ONE, ALL)
+SECOND_IMAGE = image_of("SI|" + "B(0.1, 60); SHOW(7); " * 12)
+CUT_AFTER_BEGIN, CUT_BEFORE_LAST_PIECE, CUT_BEFORE_COMMIT = (
+    "begun",
+    "all but a piece",
+    "all but its COMMIT",
+)
+CUTS = (CUT_AFTER_BEGIN, CUT_BEFORE_LAST_PIECE, CUT_BEFORE_COMMIT)
 
 
 class Line:
@@ -181,12 +188,14 @@ def pushes(line: Line) -> None:
 
 
 # Requests that need the memory of a program, or end earlier requests.
-BETWEEN: dict[str, Callable[[Line], object]] = {
-    "a line": lambda line: line.hears(TYPED, 150),
-    "a line for the button": lambda line: line.hears(TYPED.replace(b"SI", b"SB"), 150),
+REQUESTS_THAT_END_UPLOAD: dict[str, Callable[[Line], object]] = {
+    "a line": lambda line: line.hears(TYPED_LINE, 150),
+    "a line for the button": lambda line: line.hears(TYPED_LINE.replace(b"SI", b"SB"), 150),
     "a live line": lambda line: line.asks("LIVE", bytes([RUN]) + image_of("SI|B(9, 40)").code),
     "a program": lambda line: line.asks("PROGRAM", bytes([RUN]) + image_of("SI|B(9, 50)").code),
-    "an upload": lambda line: line.asks("BEGIN", bytes([RUN]) + bytes_of(SECOND)[2:CHECKSUM_AT]),
+    "an upload": lambda line: line.asks(
+        "BEGIN", bytes([RUN]) + bytes_of(SECOND_IMAGE)[2:CHECKSUM_OFFSET]
+    ),
     "a start": lambda line: line.asks("START", bytes(1)),
     "an undo": lambda line: line.asks("UNDO"),
     "a breakpoint": lambda line: line.asks("BREAK", bytes(2)),
@@ -200,18 +209,18 @@ BETWEEN: dict[str, Callable[[Line], object]] = {
     "a typed stop": lambda line: line.hears(b"S\n", 200),
 }
 # Requests during which an upload continues.
-BESIDE: dict[str, Callable[[Line], object]] = {
+REQUESTS_DURING_UPLOAD: dict[str, Callable[[Line], object]] = {
     "a ping": lambda line: line.asks("PING"),
     "a status": lambda line: line.asks("STATUS"),
     "an identify": lambda line: line.asks("IDENTIFY"),
     "a wrong line": lambda line: line.hears(b"F(1,\n", 100),
     "a wrong live line": lambda line: line.asks("LIVE", bytes([RUN, 255])),
 }
-KINDS_OF_ROBOTS = {"a mega": HostFirmware, "an uno": SmallRobot}
+ROBOT_KINDS = {"a mega": HostFirmware, "an uno": SmallRobot}
 
 
 def two_programs() -> bytes:
-    robot, session = holding(OLD)
+    robot, session = holding(OLD_PROGRAM)
     send(robot, session, "SB|B(0.1, 40)")
     wait_until_saved(robot, session)
     return robot.memory()
@@ -219,12 +228,12 @@ def two_programs() -> bytes:
 
 def frames_of(image: Image) -> list[tuple[str, bytes]]:
     data = bytes_of(image)
-    body = data[CHECKSUM_AT + 4 :]
+    body = data[CHECKSUM_OFFSET + 4 :]
     return [
-        ("BEGIN", bytes([RUN]) + data[2:CHECKSUM_AT]),
+        ("BEGIN", bytes([RUN]) + data[2:CHECKSUM_OFFSET]),
         *(("DATA", at.to_bytes(2, "little") + body[at : at + PIECE_BYTES])
           for at in range(0, len(body), PIECE_BYTES)),
-        ("COMMIT", data[CHECKSUM_AT : CHECKSUM_AT + 4]),
+        ("COMMIT", data[CHECKSUM_OFFSET : CHECKSUM_OFFSET + 4]),
     ]  # fmt: skip
 
 
@@ -232,8 +241,12 @@ def cut_by(
     kind: str, memory: bytes, cut: str, between: Callable[[Line], object]
 ) -> tuple[Line, list[tuple[str, bytes]]]:
     """Send a part of an upload and then other bytes; return the rest."""
-    line, frames = Line(KINDS_OF_ROBOTS[kind], memory), frames_of(SECOND)
-    count = {BEGUN: 1, ALL_BUT_ONE: len(frames) - 2, ALL: len(frames) - 1}[cut]
+    line, frames = Line(ROBOT_KINDS[kind], memory), frames_of(SECOND_IMAGE)
+    count = {
+        CUT_AFTER_BEGIN: 1,
+        CUT_BEFORE_LAST_PIECE: len(frames) - 2,
+        CUT_BEFORE_COMMIT: len(frames) - 1,
+    }[cut]
     assert {line.asks(*frame) for frame in frames[:count]} == {OK}
     between(line)
     return line, frames[count:]
@@ -244,19 +257,21 @@ def memory() -> bytes:
     return two_programs()
 
 
-@pytest.mark.parametrize("kind", KINDS_OF_ROBOTS)
+@pytest.mark.parametrize("kind", ROBOT_KINDS)
 @pytest.mark.parametrize("cut", CUTS)
-@pytest.mark.parametrize("what", BETWEEN)
+@pytest.mark.parametrize("what", REQUESTS_THAT_END_UPLOAD)
 def test_an_upload_that_something_has_come_between_is_over(
     memory: bytes, what: str, cut: str, kind: str
 ) -> None:
     """The rest is refused, and the robot acts as without it. The stand-in checks that no byte of
     the running program changes.
     """
-    line, rest = cut_by(kind, memory, cut, BETWEEN[what])
-    twin, _ = cut_by(kind, memory, cut, BETWEEN[what])
+    line, rest = cut_by(kind, memory, cut, REQUESTS_THAT_END_UPLOAD[what])
+    twin, _ = cut_by(kind, memory, cut, REQUESTS_THAT_END_UPLOAD[what])
     if what == "an upload":
-        rest = rest[1:] if cut == ALL_BUT_ONE else [("COMMIT", bytes(4))]  # a shorter payload
+        rest = (
+            rest[1:] if cut == CUT_BEFORE_LAST_PIECE else [("COMMIT", bytes(4))]
+        )  # a shorter payload
     refused = [line.asks(*frame) for frame in rest]
     assert OK not in refused, (refused, rest)
     assert {twin.asks("PING") for _ in rest} == {OK}
@@ -266,15 +281,15 @@ def test_an_upload_that_something_has_come_between_is_over(
     assert line.robot.codes() == twin.robot.codes()
 
 
-@pytest.mark.parametrize("kind", KINDS_OF_ROBOTS)
+@pytest.mark.parametrize("kind", ROBOT_KINDS)
 @pytest.mark.parametrize("cut", CUTS)
-@pytest.mark.parametrize("what", BESIDE)
+@pytest.mark.parametrize("what", REQUESTS_DURING_UPLOAD)
 def test_an_upload_goes_on_beside_what_needs_no_memory(
     memory: bytes, what: str, cut: str, kind: str
 ) -> None:
-    line, rest = cut_by(kind, memory, cut, BESIDE[what])
+    line, rest = cut_by(kind, memory, cut, REQUESTS_DURING_UPLOAD[what])
     assert [line.asks(*frame) for frame in rest] == [OK] * len(rest)
-    assert line.robot.codes() == [SECOND.code]
+    assert line.robot.codes() == [SECOND_IMAGE.code]
 
 
 if __name__ == "__main__":

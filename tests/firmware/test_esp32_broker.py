@@ -28,7 +28,7 @@ from tests.support.esp32_wifi import (
 from tests.support.images import image_of
 from tests.support.mosquitto import AtBroker, Mosquitto
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import AWAY, Ends, upload_text, wait_for_outcome
+from tests.support.robot_on_esp32 import AWAY_PROGRAM, Ends, upload_text, wait_for_outcome
 from tests.support.waiting import HANGS_S
 from tests.support.waiting import until as in_time
 from tiniscript.link import errors, wifi
@@ -38,7 +38,7 @@ from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.session import Session
 from tiniscript.link.transports.broker import ROOT, Access, Broker, RobotPresence
 
-AT_ONCE_MS = 300  # longest delay after a connection has ended
+RECONNECT_MS = 300  # longest delay after a connection has ended
 BROKER_KEY = b"broker"
 
 
@@ -64,7 +64,7 @@ class Drive(NamedTuple):
     ends: Ends
 
 
-def driving(broker: Mosquitto, text: str = AWAY, keys: Keys | None = None) -> Drive:
+def driving(broker: Mosquitto, text: str = AWAY_PROGRAM, keys: Keys | None = None) -> Drive:
     keys = keys or Keys()
     robot, _ = at(broker, keys)
     teacher, owner = broker.connect_client(), remote(robot, keys)
@@ -326,7 +326,7 @@ def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) ->
     client = remote(robot, None)
     ends: Ends = [(AtBroker(robot, teacher), client)]
     assert wait_for_outcome(robot, ends, client.ping()) == "OK"
-    for acting in (client.live(image_of("F(1, 9)").code), client.upload(image_of(AWAY)),
+    for acting in (client.live(image_of("F(1, 9)").code), client.upload(image_of(AWAY_PROGRAM)),
                    client.name(b"x")):  # fmt: skip
         assert wait_for_outcome(robot, ends, acting) == "UNOWNED"
     assert not [line for line in robot.did[count_before:] if "MOTORS" in line]
@@ -349,7 +349,7 @@ def test_a_broker_that_is_gone_ends_the_run(brokers: Callable[..., Mosquitto], h
     else:
         in_reach(robot, "", "")
     begun_ms = robot.now_ms
-    limit_ms = DEAD_MAN_MS if how == "stalls" else AT_ONCE_MS
+    limit_ms = DEAD_MAN_MS if how == "stalls" else RECONNECT_MS
     while motors(robot) != "MOTORS 0 0":
         talk(robot, ends, 5)
         assert robot.now_ms < begun_ms + limit_ms

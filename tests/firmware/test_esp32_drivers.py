@@ -12,7 +12,7 @@ from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
 from tests.support.esp32_wifi import make_owned_robot, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import AWAY, Ends, boot, upload_text, wait_for_outcome
+from tests.support.robot_on_esp32 import AWAY_PROGRAM, Ends, boot, upload_text, wait_for_outcome
 from tests.support.robot_on_host import actions_of
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import AUTHORITY_MS, LISTEN_MS
@@ -57,7 +57,7 @@ def test_whose_program_runs_keeps_the_wheel_while_he_is_heard(
 ) -> None:
     robot, page, other = pair(is_owned)
     ends: Ends = [(None, page), (LowEnergy(robot), other)]
-    upload = page.upload(image_of(AWAY), saves=False, is_detached=is_detached)
+    upload = page.upload(image_of(AWAY_PROGRAM), saves=False, is_detached=is_detached)
     assert wait_for_outcome(robot, ends, upload) == "OK"
     for _ in range(5):
         talk(robot, ends, 5000)

@@ -31,18 +31,18 @@ from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import AUTHORITY_MS, LISTEN_MS, STOP_BYTES
 from tiniscript.link.session import Session
 
-SHORT = "SI|F(0.1, 80);SHOW(2);B(0.1, 30)"
-LONG = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
-ASKS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
+SHORT_PROGRAM = "SI|F(0.1, 80);SHOW(2);B(0.1, 30)"
+LONG_PROGRAM = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
+REQUEST_MAKERS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
     "hello": lambda who: who.hello(),
     "ping": lambda who: who.ping(),
     "clear": lambda who: who.clear(),
     "trim?": lambda who: who.trim(),
     "identify": lambda who: who.identify(),
-    "a live line": lambda who: who.live(image_of(SHORT).code),
-    "a program": lambda who: who.upload(image_of(SHORT), saves=False),
-    "a long program": lambda who: who.upload(image_of(LONG), saves=False),
-    "a detached one": lambda who: who.upload(image_of(LONG), saves=False, is_detached=True),
+    "a live line": lambda who: who.live(image_of(SHORT_PROGRAM).code),
+    "a program": lambda who: who.upload(image_of(SHORT_PROGRAM), saves=False),
+    "a long program": lambda who: who.upload(image_of(LONG_PROGRAM), saves=False),
+    "a detached one": lambda who: who.upload(image_of(LONG_PROGRAM), saves=False, is_detached=True),
     "a network": lambda who: who.wifi(),
     "a broker": lambda who: who.broker(),
     "a claim": lambda who: who.claim(0),
@@ -51,10 +51,10 @@ ASKS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
 LINES = (b"SI|F(0.1, 80);SHOW(3)\n", b"F(0.1, 30)\n", b"FOO(1)\n", b"HELP\n", b"SI|LOOP(2)\n",
          b"SI|F(1", b"S\n", b"PING|CHECK_CONNECTION\n", b"SB|B(0.2, 40)\n")  # fmt: skip
 # The state of the program in memory, which is not saved.
-OF_MEMORY = ("program", "length", "slot", "saved")
-MAKES: list[Make | None] = [None, *TRANSPORTS]  # None: the cable
+MEMORY_FIELDS = ("program", "length", "slot", "saved")
+TRANSPORT_MAKERS: list[Make | None] = [None, *TRANSPORTS]  # None: the cable
 NETWORK = 3  # a transport with several slots
-OVER_MS = max(LISTEN_MS, AUTHORITY_MS) + 1200
+LONGEST_WAIT_MS = max(LISTEN_MS, AUTHORITY_MS) + 1200
 
 
 @lru_cache(maxsize=1)
@@ -98,7 +98,7 @@ class Scene:
         """Connect a guest over a radio or the cable, unless the slot is taken."""
         if place != NETWORK and any(guest.place == place for guest in self.guests):
             return None
-        make = MAKES[place]
+        make = TRANSPORT_MAKERS[place]
         guest = Guest(make and make(self.robot), self.new(what), what, place)
         self.guests.append(guest)
         self.places.append(place)
@@ -115,8 +115,8 @@ class Scene:
         self.talk(3)
 
 
-WITHOUT_THIEF = ("owner", "owner", "stranger", "person")
-WHO = (*WITHOUT_THIEF, "thief")
+HONEST_GUESTS = ("owner", "owner", "stranger", "person")
+GUESTS = (*HONEST_GUESTS, "thief")
 
 
 def a_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
@@ -127,7 +127,7 @@ def a_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
     """
     what = rng.randrange(8)
     if what == 0 or not scene.guests:
-        scene.connect_guest(rng.randrange(is_soon, 4), rng.choice(WHO))
+        scene.connect_guest(rng.randrange(is_soon, 4), rng.choice(GUESTS))
         return
     guest = rng.choice(scene.guests)
     if what == 1:
@@ -143,7 +143,7 @@ def a_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
     elif isinstance(guest.who, Session):
         but = {"identify"} if is_soon else set()
         but |= {"a claim"} if guest.what == "stranger" else set()
-        ASKS[rng.choice([ask for ask in ASKS if ask not in but])](guest.who)
+        REQUEST_MAKERS[rng.choice([ask for ask in REQUEST_MAKERS if ask not in but])](guest.who)
         scene.talk(rng.choice((1, 5, 30, 300)))
 
 
@@ -155,19 +155,19 @@ def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
     scene.nonce = 100
     guests: list[Guest] = []
     for place in {first: 0, rng.randrange(4): 0}:
-        guest = scene.connect_guest(place, rng.choice(WITHOUT_THIEF))
+        guest = scene.connect_guest(place, rng.choice(HONEST_GUESTS))
         assert guest
         guests.append(guest)
     for _ in range(rng.choice((2, 4))):
         begun_ms, who = robot.now_ms, rng.choice(guests).who
         name, request = "", None
         if isinstance(who, Session):
-            name = rng.choice([question for question in ASKS if question != "a claim"])
-            request = ASKS[name](who)
+            name = rng.choice([question for question in REQUEST_MAKERS if question != "a claim"])
+            request = REQUEST_MAKERS[name](who)
         elif isinstance(who, Bytes):
             who.to_send = rng.choice(LINES)
         scene.talk(rng.choice((100, 400, 1500)))
-        states.append((name, answer_without_counts(request, *OF_MEMORY)))
+        states.append((name, answer_without_counts(request, *MEMORY_FIELDS)))
         for _, client, *_ in guests:
             if isinstance(client, Session):
                 states.append([without_counts(event) for event in client.events()])
@@ -182,9 +182,9 @@ def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
 def check(seed: int) -> str:
     rng = random.Random(seed)
     scene = Scene(at_school()[0])
-    wait_ms = rng.choice((3, 30, 300, OVER_MS))
+    wait_ms = rng.choice((3, 30, 300, LONGEST_WAIT_MS))
     for _ in range(rng.choice((2, 4, 8, 16))):
-        a_step(scene, rng, wait_ms < OVER_MS)
+        a_step(scene, rng, wait_ms < LONGEST_WAIT_MS)
     actions = scene.robot.did[:]
     scene.talk(1, 2)
     while scene.guests:
@@ -199,7 +199,7 @@ def check(seed: int) -> str:
     assert states_of_both[0] == states_of_both[1], (
         f"{actions}\n{wait_ms}\n{first_difference(*states_of_both)}"
     )
-    return "at once" if wait_ms < OVER_MS else "later"
+    return "at once" if wait_ms < LONGEST_WAIT_MS else "later"
 
 
 @pytest.mark.sampled("part")

@@ -25,7 +25,14 @@ from tests.support.esp32_radio import (
 from tests.support.esp32_wifi import far_owner, make_owned_robot, remote, remote_with_wrong_key
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import AWAY, TRANSPORTS, Ends, Make, upload_text, wait_for_outcome
+from tests.support.robot_on_esp32 import (
+    AWAY_PROGRAM,
+    TRANSPORTS,
+    Ends,
+    Make,
+    upload_text,
+    wait_for_outcome,
+)
 from tests.support.robot_on_host import actions_of
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
@@ -60,7 +67,7 @@ def says(data: bytes) -> Callable[[Esp32Robot, End, Keys], None]:
     return it
 
 
-WRONGS = {
+DISTURBANCES = {
     "wrong keys": shows_wrong_keys,
     "an upload": begins_an_upload,
     "a claim": claims,
@@ -77,13 +84,13 @@ def owners_time(robot: Esp32Robot, make: Make, keys: Keys) -> int:
     owner = remote(robot, keys, 8)
     began_ms = robot.now_ms
     ends: Ends = [(make(robot), owner)]
-    assert upload_text(robot, ends, owner, AWAY) == "OK"
+    assert upload_text(robot, ends, owner, AWAY_PROGRAM) == "OK"
     return robot.now_ms - began_ms
 
 
 @pytest.mark.sampled("make", "wrong", keep=3)
 @pytest.mark.parametrize("make", TRANSPORTS)
-@pytest.mark.parametrize("wrong", WRONGS)
+@pytest.mark.parametrize("wrong", DISTURBANCES)
 def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -> None:
     def place() -> tuple[Esp32Robot, Keys]:
         keys = Keys()
@@ -101,7 +108,7 @@ def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -
     robot, keys = place()
     for _ in range(3):
         end = make(robot)
-        WRONGS[wrong](robot, end, keys)
+        DISTURBANCES[wrong](robot, end, keys)
         end.leave()
         talk(robot, [], 5)
     assert owners_time(robot, make, keys) <= usual_ms + 30  # a stop is released first
@@ -144,7 +151,7 @@ CUT_STOPS = [
 def test_what_two_clients_say_is_no_stop_of_both(make: Make, pause_ms: int) -> None:
     robot, end, owner = far_owner(Keys())
     ends: Ends = [(end, owner)]
-    assert upload_text(robot, ends, owner, AWAY) == "OK"
+    assert upload_text(robot, ends, owner, AWAY_PROGRAM) == "OK"
     for parts in CUT_STOPS:
         for part in parts:
             talk(robot, [*ends, (other := make(robot), Bytes(part))], 20)
@@ -157,7 +164,7 @@ def test_what_two_clients_say_is_no_stop_of_both(make: Make, pause_ms: int) -> N
 
 # -- data sent to them ----------------------------------------------------------------------------
 
-STATUS, ASKED_PING = BY_NAME["STATUS"].number, 77
+STATUS, PING_SEQ = BY_NAME["STATUS"].number, 77
 
 
 @pytest.mark.sampled("most")
@@ -176,12 +183,12 @@ def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, reques
         end.leave()
         talk(robot, [], 3)
         takes(robot, 1000)
-        other = Bytes(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, ASKED_PING, 0)))
+        other = Bytes(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, PING_SEQ, 0)))
         talk(robot, [(end := Network(robot), other)], 60)
         end.leave()
         talk(robot, [], 3)
         answers = [decode_frame(data) for data in other.heard.split(b"\0") if data]
-        assert [answer and answer.seq for answer in answers] == [ASKED_PING], moment_ms
+        assert [answer and answer.seq for answer in answers] == [PING_SEQ], moment_ms
         rests += len(first.heard) < len(other.heard)
     assert rests or most == 1000
 
@@ -213,7 +220,7 @@ def test_the_next_client_hears_its_own_answers_once_it_has_subscribed() -> None:
         end.leave()
         talk(robot, [], 5)
         end, who = Late(robot), Bytes()
-        for seq in (number, ASKED_PING):
+        for seq in (number, PING_SEQ):
             end.send(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, seq, 0)))
             talk(robot, [(end, who)], 30)
         assert who.heard == b"", "nobody would hear it"
@@ -221,7 +228,7 @@ def test_the_next_client_hears_its_own_answers_once_it_has_subscribed() -> None:
             end.subscribe(True)
             talk(robot, [(end, who)], 100)
             answers = [decode_frame(data) for data in who.heard.split(b"\0") if data]
-            assert [answer and answer.seq for answer in answers] == [number, ASKED_PING]
+            assert [answer and answer.seq for answer in answers] == [number, PING_SEQ]
 
 
 # -- silent clients -----------------------------------------------------------------------------
@@ -298,8 +305,15 @@ def test_who_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:
         assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-PLACES = 2  # kClients of tcp_clients.cpp
-SAYINGS = (b"", b"X", b"SI|F(60, 80", b"\0\5\7\7", b"\0" + bytes(STOP_BYTES), b"GET / HTTP/1.1\r\n")
+CLIENT_PLACES = 2  # kClients of tcp_clients.cpp
+FIRST_BYTES = (
+    b"",
+    b"X",
+    b"SI|F(60, 80",
+    b"\0\5\7\7",
+    b"\0" + bytes(STOP_BYTES),
+    b"GET / HTTP/1.1\r\n",
+)
 
 
 @pytest.mark.sampled("seed")
@@ -316,7 +330,7 @@ def test_whoever_has_no_place_in_a_network_is_hung_up_on(seed: int) -> None:
     for number in range(15):
         end = Network(robot)
         if rng.random() < 0.6:
-            guests.append((end, Bytes(rng.choice(SAYINGS))))
+            guests.append((end, Bytes(rng.choice(FIRST_BYTES))))
         else:
             owners.append((end, remote(robot, keys if rng.random() < 0.7 else None, 20 + number)))
             guests.append(owners[-1])
@@ -335,7 +349,7 @@ def test_whoever_has_no_place_in_a_network_is_hung_up_on(seed: int) -> None:
             talk(robot, [], 5)
         guests = [guest for guest in guests if not guest[0].has_ended]
         owners = [owner for owner in owners if not owner[0].has_ended]
-        assert len(guests) == radios(robot).sockets - sockets <= PLACES
+        assert len(guests) == radios(robot).sockets - sockets <= CLIENT_PLACES
 
 
 def has_client(robot: Esp32Robot) -> bool:

@@ -25,9 +25,9 @@ from tiniscript.link.session import Session
 from tiniscript.robots.reader import read
 
 STALL = 66  # the fault
-AWAY = "SI|F(60, 80)"
+AWAY_PROGRAM = "SI|F(60, 80)"
 KITS = ("tinibot32", "tinibotc3")
-MORE = """
+DEVICES_TEXT = """
 [[kit.sensors]]
 name = "BUMP"
 kind = "yes/no"
@@ -92,7 +92,7 @@ right_backward = 33
 """
 
 
-def wire_robot(motors: str, more: str = MORE) -> Esp32Robot:
+def wire_robot(motors: str, more: str = DEVICES_TEXT) -> Esp32Robot:
     """Return a robot with these motors, and one device of every driver."""
     text = TEXTS["tinibot32"].partition("# ---- Its body")
     head = re.sub(r"\[board\.motors\].*?(?=\n\[board\.sensors)", motors, text[0], flags=re.S)
@@ -149,7 +149,7 @@ def test_a_program_drives_and_sounds_and_a_panic_turns_the_motors_off(
         robot.talk(session, 200)
         assert actions_of(robot)[-1] == "TONE 0"
         assert robot.output(buzzer) == 0, hertz
-    send(robot, session, AWAY)
+    send(robot, session, AWAY_PROGRAM)
     robot.wait(50)
     assert actions_of(robot)[-1] == "MOTORS 80 80"
     robot.stick_ledc()
@@ -206,7 +206,7 @@ def test_a_stop_needs_nothing_of_ledc(name: str) -> None:
     """All motor pins are low, and LEDC's channels still run: no pin is joined to them."""
     robot = switched_on(Esp32Robot(robots.load(name)))
     session = computer()
-    send(robot, session, AWAY)
+    send(robot, session, AWAY_PROGRAM)
     robot.talk(session, 100)
     assert actions_of(robot) == ["MOTORS 80 80"]
     robot.stick_ledc()
@@ -225,7 +225,7 @@ def test_a_bluetooth_module_that_nobody_is_connected_to_ends_an_attached_run() -
     robot.digital(state, True)
     switched_on(robot)
     session = computer()
-    send(robot, session, AWAY)
+    send(robot, session, AWAY_PROGRAM)
     robot.talk(session, 100)
     robot.digital(state, False)
     robot.talk(session, 500)
@@ -237,7 +237,7 @@ def test_a_bluetooth_module_that_nobody_is_connected_to_ends_an_attached_run() -
     "motors", [SERVOS, TWO_WIRE, ONE_DIRECTION], ids=["servos", "two_wire", "pwm_dir"]
 )
 def test_other_motors(motors: str) -> None:
-    robot = wire_robot(motors, MORE.replace("pin = 13", "pin = 14"))
+    robot = wire_robot(motors, DEVICES_TEXT.replace("pin = 13", "pin = 14"))
     run(robot, "SI|M(-40, 60);W(0.1);F(1, 80)")
     robot.wait(300)
     assert [line for line in actions_of(robot) if line.startswith("MOTORS")] == [
@@ -302,7 +302,7 @@ def test_an_echo_that_comes_while_a_page_is_erased_is_asked_for_again() -> None:
 def test_nvs_is_written_only_while_the_motors_stand() -> None:
     """A write may stop the chip while a page is erased: a stop would come late."""
     robot, session = switched_on(Esp32Robot()), computer()
-    send(robot, session, AWAY)
+    send(robot, session, AWAY_PROGRAM)
     writes_before = robot.read_kept().writes
     robot.talk(session, 1000)
     assert robot.read_kept().writes == writes_before
@@ -336,7 +336,7 @@ def test_a_full_nvs_is_said_and_the_program_before_stays(room: int) -> None:
 # -- failures
 
 
-def driving(text: str = AWAY) -> Esp32Robot:
+def driving(text: str = AWAY_PROGRAM) -> Esp32Robot:
     robot, session = switched_on(Esp32Robot()), computer()
     send(robot, session, text)
     robot.talk(session, 100)

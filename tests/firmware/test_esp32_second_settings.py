@@ -48,7 +48,7 @@ OTHER = wifi.BrokerSettings(bytes((10, 0, 0, 9)), 8883, "patio", b"robots-of-ana
                             b"a-longer.name", wifi.Tls(bytes(range(200)), 20261121))  # fmt: skip
 LEASE_MS, SEARCH_MS = 40_000, 4000
 TRY_MS = 15_000  # kJoinAgainMs
-AGAIN_MS = 4000  # between two tries at a broker, at most
+RETRY_MS = 4000  # between two tries at a broker, at most
 
 
 # -- networks -----------------------------------------------------------------------------------
@@ -229,7 +229,7 @@ def test_who_is_let_in_at_last_was_not_refused(reason: int) -> None:
 # -- data in parts ------------------------------------------------------------------------------
 
 
-ASKED: dict[str, Callable[[Session], PendingRequest[Any]]] = {
+REQUEST_MAKERS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
     "a network": lambda owner: owner.join(SCHOOL),
     "a hotspot": lambda owner: owner.join(HOTSPOT),
     "a broker": lambda owner: owner.use_broker(BROKER),
@@ -247,13 +247,13 @@ def kept_settings(robot: Esp32Robot) -> tuple[bytes | None, bytes | None]:
 def took_ms(robot: Esp32Robot, owner: Session, what: str) -> int:
     """Save a setting; return the time that takes."""
     began_ms = robot.now_ms
-    assert wait_for_outcome(robot, [(None, owner)], ASKED[what](owner)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], REQUEST_MAKERS[what](owner)) == "OK"
     return robot.now_ms - began_ms
 
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(10))
-@pytest.mark.parametrize("last", ASKED)
+@pytest.mark.parametrize("last", REQUEST_MAKERS)
 def test_of_what_came_in_part_nothing_is_in_what_comes_whole(last: str, seed: int) -> None:
     """The sender may disconnect at any moment before the last part."""
     rng = random.Random(seed)
@@ -266,13 +266,15 @@ def test_of_what_came_in_part_nothing_is_in_what_comes_whole(last: str, seed: in
         talk(robot, [], AUTHORITY_MS + 100)
         first = remote(robot, keys, 20 + nonce)
         assert wait_for_outcome(robot, [(None, first)], first.wifi()) == "OK"
-        request = ASKED[rng.choice([last, "a network", "a broker", "a broker with TLS"])](first)
+        request = REQUEST_MAKERS[rng.choice([last, "a network", "a broker", "a broker with TLS"])](
+            first
+        )
         talk(robot, [(None, first)], rng.randint(1, usual_ms))
         if request.outcome is not None or kept_settings(robot) != (None, None):
             return  # the data arrived complete
     talk(robot, [], AUTHORITY_MS + 100)
     owner = remote(robot, keys, 50)
-    assert wait_for_outcome(robot, [(None, owner)], ASKED[last](owner)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], REQUEST_MAKERS[last](owner)) == "OK"
     assert kept_settings(robot) == fresh
 
 
@@ -342,7 +344,7 @@ def test_no_setting_is_written_while_the_robot_drives(what: str) -> None:
 # -- a broker's connection ----------------------------------------------------------------------
 
 
-ACCEPTED, SUBSCRIBED, PINGED = b"\x20\2\0\0", b"\x90\4\0\1\0\0", b"\xd0\0"
+CONNECT_ANSWER, SUBSCRIBE_ANSWER, PING_ANSWER = b"\x20\2\0\0", b"\x90\4\0\1\0\0", b"\xd0\0"
 MESSAGE = b"\x30" + bytes((2 + len(b"tiniscript/aula/stop") + 5, 0, len(b"tiniscript/aula/stop")))
 MESSAGE += b"tiniscript/aula/stop" + b"hello"
 CONNECT, SUBSCRIBE, PING = 1, 8, 12
@@ -394,7 +396,11 @@ class CutBroker:
         return self.heard[1]
 
     def _answer(self, kind: int) -> None:
-        answers = {CONNECT: ACCEPTED, SUBSCRIBE: SUBSCRIBED + MESSAGE * 3, PING: PINGED}
+        answers = {
+            CONNECT: CONNECT_ANSWER,
+            SUBSCRIBE: SUBSCRIBE_ANSWER + MESSAGE * 3,
+            PING: PING_ANSWER,
+        }
         data = answers.get(kind, b"")
         if self.client is None or not data:
             return
@@ -440,7 +446,7 @@ def comes_back(robot: Esp32Robot, owner: Session, broker: CutBroker, limit_ms: i
     return False
 
 
-LONGEST = len(ACCEPTED + SUBSCRIBED + MESSAGE * 3 + PINGED * 2)
+LONGEST = len(CONNECT_ANSWER + SUBSCRIBE_ANSWER + MESSAGE * 3 + PING_ANSWER * 2)
 
 
 @pytest.mark.parametrize("rest", [b"", b"\xff" * 9, b"\x30\xff\xff\xff\xff\xff"])
@@ -453,11 +459,11 @@ def test_a_connection_that_is_cut_anywhere_is_made_again(
     robot, owner = join_network(Keys())
     settings = wifi.BrokerSettings(bytes((127, 0, 0, 1)), cut_broker.port, "aula")
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
-    assert comes_back(robot, owner, cut_broker, AGAIN_MS)
+    assert comes_back(robot, owner, cut_broker, RETRY_MS)
     for count, cut_after in enumerate(range(1 + part, LONGEST + 1, 6), 1):
         cut_broker.part()
         cut_broker.cut_after, cut_broker.rest = cut_after, rest
-        limit_ms = 3 * AGAIN_MS + 6000
+        limit_ms = 3 * RETRY_MS + 6000
         assert comes_back(robot, owner, cut_broker, limit_ms), cut_after
         assert cut_broker.cuts == count
 

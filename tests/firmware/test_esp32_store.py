@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines.esp32 import STAND_INS, flags_of
-from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, compile_once
+from tests.machines.host import BUILD_CACHE, FLAGS, SOURCES, WARNINGS, compile_once
 
 STORE = SOURCES / "src" / "store" / "store.cpp"
 NVS = SOURCES / "src" / "boards" / "esp32" / "nvs.cpp"
@@ -43,7 +43,7 @@ def program(store: Path = STORE) -> Path:
         str(
             compile_once(
                 "g++",
-                BUILDS,
+                BUILD_CACHE,
                 ".o",
                 flags,
                 [*texts, str(path).encode(), path.read_bytes()],
@@ -52,7 +52,7 @@ def program(store: Path = STORE) -> Path:
         )
         for path in (store, *OTHERS)
     ]
-    return compile_once("g++", BUILDS, "", flags, [name.encode() for name in objects], objects)
+    return compile_once("g++", BUILD_CACHE, "", flags, [name.encode() for name in objects], objects)
 
 
 def run(

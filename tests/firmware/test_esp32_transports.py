@@ -21,7 +21,7 @@ from tests.support.esp32_radio import (
 from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import (
-    AWAY,
+    AWAY_PROGRAM,
     RADIOS,
     Ends,
     Make,
@@ -82,7 +82,7 @@ def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
         assert wait_for_outcome(robot, ends, request) == "OK"
     refused_requests = (
         other.live(image_of("F(1, 10)").code), other.start(), other.name(b"mine"),
-        other.upload(image_of(AWAY)), other.undo(), other.trim(),
+        other.upload(image_of(AWAY_PROGRAM)), other.undo(), other.trim(),
     )  # fmt: skip
     for refused_request in refused_requests:
         assert wait_for_outcome(robot, ends, refused_request) == "OTHER_DRIVER"
@@ -101,13 +101,13 @@ def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
 ENDS: dict[str, tuple[str, str]] = {  # the program, and the events for everyone
     "by itself": ("SI|F(0.2, 80)", "DONE"),
     "its fault": ("SI|X = 0;F(0.2, 80);SHOW(1 / X)", "FAULT"),
-    "its silent client": (AWAY, "FAULT"),
-    "its client that leaves": (AWAY, "STOPPED"),
-    "its client's zeros": (AWAY, "STOPPED"),
-    "another one's zeros": (AWAY, "STOPPED"),
-    "a message of another one": (AWAY, "STOPPED"),
-    "a line of another one": (AWAY, "STOPPED"),
-    "the button": (AWAY, "STOPPED"),
+    "its silent client": (AWAY_PROGRAM, "FAULT"),
+    "its client that leaves": (AWAY_PROGRAM, "STOPPED"),
+    "its client's zeros": (AWAY_PROGRAM, "STOPPED"),
+    "another one's zeros": (AWAY_PROGRAM, "STOPPED"),
+    "a message of another one": (AWAY_PROGRAM, "STOPPED"),
+    "a line of another one": (AWAY_PROGRAM, "STOPPED"),
+    "the button": (AWAY_PROGRAM, "STOPPED"),
 }
 SAID = {
     "its client's zeros": bytes(4),
@@ -320,7 +320,7 @@ def test_whoever_comes_again_begins_anew() -> None:
         client = session(k + 1, robot)
         end = LowEnergy(robot)
         ends: Ends = [(end, client)]
-        assert upload_text(robot, ends, client, AWAY) == "OK"
+        assert upload_text(robot, ends, client, AWAY_PROGRAM) == "OK"
         end.send(b"\5\7\7")  # the client disconnects in the middle of a frame
         end.leave()
         talk(robot, [], 5)

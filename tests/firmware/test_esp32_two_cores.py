@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines.esp32 import STAND_INS, TLS, flags_of
-from tests.machines.host import BUILDS, SOURCES, compile_once
+from tests.machines.host import BUILD_CACHE, SOURCES, compile_once
 
 CLANG = "clang++-22"
 pytestmark = pytest.mark.skipif(
@@ -39,9 +39,9 @@ def program(sources: Path = SOURCES) -> Path:
     objects = []
     for path in code:
         texts = [*headers, path.name.encode(), path.read_bytes()]
-        objects.append(str(compile_once(CLANG, BUILDS, ".o", FLAGS, texts, ["-c", str(path)])))
+        objects.append(str(compile_once(CLANG, BUILD_CACHE, ".o", FLAGS, texts, ["-c", str(path)])))
     return compile_once(
-        CLANG, BUILDS, "", FLAGS, [name.encode() for name in objects], [*objects, *TLS]
+        CLANG, BUILD_CACHE, "", FLAGS, [name.encode() for name in objects], [*objects, *TLS]
     )
 
 

@@ -17,7 +17,7 @@ from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import RADIOS, Ends, Make, boot, upload_text, wait_for_outcome
 from tests.support.robot_on_host import actions_of
-from tests.support.stop_spellings import ALL, HELD_MS, SILENCE_MS, spellings_after
+from tests.support.stop_spellings import ALL_PREFIXES, HELD_MS, SILENCE_MS, spellings_after
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.session import Session
@@ -55,7 +55,7 @@ def stops(robot: Esp32Robot, end: End | None, ends: Ends, data: bytes, what: str
 def stops_after_every_prefix(
     robot: Esp32Robot, driver: Session, driver_end: End | None, end: End | None
 ) -> None:
-    for k, (name, prefix) in enumerate(ALL.items()):
+    for k, (name, prefix) in enumerate(ALL_PREFIXES.items()):
         spellings = spellings_after(name)
         for spelling in (spellings[k % len(spellings)], spellings[-1 - k % len(spellings)]):
             ends = drives(robot, driver, driver_end)
@@ -240,7 +240,7 @@ def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
     robot = boot()
     driver = session(1, robot)
     count = 0
-    for k, (name, prefix) in enumerate(ALL.items()):
+    for k, (name, prefix) in enumerate(ALL_PREFIXES.items()):
         spellings = spellings_after(name)
         for spelling in (spellings[k % len(spellings)], spellings[-1 - k % len(spellings)]):
             stopped = []
@@ -257,7 +257,7 @@ def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
                 talk(robot, ends, LATE_MS)
             assert stopped[1] or not stopped[0], f"{name} {spelling!r}"
             count += stopped[0]
-    assert count > len(ALL)
+    assert count > len(ALL_PREFIXES)
 
 
 @pytest.mark.parametrize("make", RADIOS)

@@ -9,7 +9,7 @@ from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
 from tests.support.esp32_wifi import make_owned_robot, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import AWAY, Ends, upload_text, wait_for_outcome
+from tests.support.robot_on_esp32 import AWAY_PROGRAM, Ends, upload_text, wait_for_outcome
 from tests.support.robot_on_host import actions_of
 from tiniscript.link.messages import SAVED_STATES, STOP_BYTES
 from tiniscript.link.session import Session
@@ -45,7 +45,8 @@ def test_strangers_do_not_drive_a_claimed_robot(fault: int) -> None:
     ends: Ends = [(None, stranger)]
     assert read_saved_state(robot, stranger) == "UNREADABLE"
     for request in (
-        stranger.upload(image_of(AWAY)), stranger.live(image_of("F(1, 10)").code), stranger.start(),
+        stranger.upload(image_of(AWAY_PROGRAM)), stranger.live(image_of("F(1, 10)").code),
+        stranger.start(),
         stranger.name(b"mine"), stranger.fetch(), stranger.undo(),
     ):  # fmt: skip
         assert wait_for_outcome(robot, ends, request) == "NOT_OWNER"

@@ -41,7 +41,7 @@ from tests.support.esp32_wifi import (
 )
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import AWAY, Ends, boot, upload_text, wait_for_outcome
+from tests.support.robot_on_esp32 import AWAY_PROGRAM, Ends, boot, upload_text, wait_for_outcome
 from tests.support.robot_on_host import actions_of
 from tiniscript.link import wifi
 from tiniscript.link.authority import RobotKey
@@ -263,7 +263,8 @@ def test_a_robot_that_was_given_up_does_not_move_over_wifi() -> None:
     for request in (client.hello(), client.ping(), client.status(), client.identify()):
         assert wait_for_outcome(robot, ends, request) == "OK"
     for acting in (
-        client.live(image_of("F(1, 9)").code), client.upload(image_of(AWAY)), client.fetch(),
+        client.live(image_of("F(1, 9)").code), client.upload(image_of(AWAY_PROGRAM)),
+        client.fetch(),
         client.name(b"x"), client.undo(), client.clear(),
     ):  # fmt: skip
         assert wait_for_outcome(robot, ends, acting) == "UNOWNED"

@@ -35,37 +35,37 @@ from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 Asks = Callable[[Session, random.Random], PendingRequest[Any]]
-PRESSED, RELEASED, STALLED, UNPLUGGED, SURE = 1, 2, 4, 8, 32
-LONG = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
-SHORT = "SI|F(0.1, 80);SHOW(2);B(0.1, 30)"
-TONE = "BEEP(0.9, 440);W(0.1)"
+BUTTON_PRESSED, BUTTON_RELEASED, LINE_STALLED, CABLE_UNPLUGGED, BUTTON_HELD = 1, 2, 4, 8, 32
+LONG_PROGRAM = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
+SHORT_PROGRAM = "SI|F(0.1, 80);SHOW(2);B(0.1, 30)"
+TONE_PROGRAM = "BEEP(0.9, 440);W(0.1)"
 TRIMS = ((0, 0, 0), (1, 0, 0), (0, 30, 0), (6, -20, 25), (9, 0, 0))
-NO_ZERO = b"// Lines end with Enter, not with 0\r\n"
-LOST = b"// The old program is lost.\r\n"
-UNHEARD_MS = 4200  # time after which no client is heard
-AGAIN_MS = 105  # time between two requests to a robot that is not ready, and the time of writing
-RUNS_MS = 700
-BEGUN_MS = 60_000  # uptime of the computer
-IDENTIFIES_MS = 3300
-FORGETS_MS = 65_000  # time after which line ends are no longer assumed
+NO_ZERO_LINE = b"// Lines end with Enter, not with 0\r\n"
+LOST_PROGRAM_LINE = b"// The old program is lost.\r\n"
+SILENCE_MS = 4200  # time after which no client is heard
+RETRY_MS = 105  # time between two requests to a robot that is not ready, and the time of writing
+RUN_MS = 700
+START_UPTIME_MS = 60_000  # uptime of the computer
+IDENTIFY_MS = 3300
+LINE_END_MEMORY_MS = 65_000  # time after which line ends are no longer assumed
 
 
 def starts(rng: random.Random) -> str:
     """Return a program that begins at once."""
-    return "SI|" + rng.choice((SHORT[3:], LONG[3:], draw_program(rng)))
+    return "SI|" + rng.choice((SHORT_PROGRAM[3:], LONG_PROGRAM[3:], draw_program(rng)))
 
 
 def sensible(rng: random.Random) -> str:
     """Return a program of the size of a line, with no readings."""
     return "SI|" + without_readings(
-        rng.choice((SHORT[3:], "BEEP(0.001, 31);M(20, 30);W(0.2)", TONE))
+        rng.choice((SHORT_PROGRAM[3:], "BEEP(0.001, 31);M(20, 30);W(0.2)", TONE_PROGRAM))
     )
 
 
 # -- requests and typed text --------------------------------------------------------------------
 
 # Steps that leave the robot's memory unchanged.
-ASKS: dict[str, Asks] = {
+HARMLESS_REQUESTS: dict[str, Asks] = {
     "hello": lambda session, rng: session.hello(),
     "ping": lambda session, rng: session.ping(),
     "status": lambda session, rng: session.status(),
@@ -73,15 +73,15 @@ ASKS: dict[str, Asks] = {
     "trim?": lambda session, rng: session.trim(),
     "a live line": lambda session, rng: session.live(image_of(sensible(rng)).code),
     "a program": lambda session, rng: session.upload(image_of(sensible(rng), KIT), saves=False),
-    "a long program": lambda session, rng: session.upload(image_of(LONG, KIT), saves=False),
+    "a long program": lambda session, rng: session.upload(image_of(LONG_PROGRAM, KIT), saves=False),
     "a program for the button": lambda session, rng: session.upload(
-        image_of("SB|" + SHORT[3:], KIT), runs=False, saves=False
+        image_of("SB|" + SHORT_PROGRAM[3:], KIT), runs=False, saves=False
     ),
     "a program that goes on alone": lambda session, rng: session.upload(
         image_of(sensible(rng), KIT), saves=False, is_detached=True
     ),
 }
-MORE: dict[str, Asks] = {
+CHANGING_REQUESTS: dict[str, Asks] = {
     "identify": lambda session, rng: session.identify(),
     "any program": lambda session, rng: session.upload(image_of(starts(rng), KIT), saves=False),
     "a saved program": lambda session, rng: session.upload(image_of(starts(rng), KIT)),
@@ -93,12 +93,12 @@ MORE: dict[str, Asks] = {
     "trim": lambda session, rng: session.trim(bytes(k % 256 for k in rng.choice(TRIMS))),
 }
 # Results for the program that a robot holds, which may differ from the saved one.
-HELD: dict[str, Asks] = {
+PROGRAM_REQUESTS: dict[str, Asks] = {
     "start": lambda session, rng: session.start(),
     "fetch": lambda session, rng: session.fetch(),
 }
-WHO = ("owner", "owner", "teacher", "stranger", "thief")
-OWNERS: dict[str, Asks] = {
+CLIENT_KINDS = ("owner", "owner", "teacher", "stranger", "thief")
+OWNER_REQUESTS: dict[str, Asks] = {
     "a teacher's stop": lambda session, rng: session.hold_back(),
     "text": lambda session, rng: session.allow_text(rng.random() < 0.5),
     "a claim": lambda session, rng: session.claim(rng.choice((KEY_OWNER, KEY_TEACHER))),
@@ -110,15 +110,16 @@ LINES = (
     "SI|X = 1.234567", "SI|IF(TRUE)", "SI|LOOP(2);W(0.01)", "SI|DEF A", "END_DEF", "FOO(1)",
     "FOO(2)", "SI|" + "BEEP(0.001, 97);" * 9,
 )  # fmt: skip
-ENDS = ("\n", "\n", "\r\n", "")
+LINE_ENDS = ("\n", "\n", "\r\n", "")
 TEXT = tuple(piece for piece in PIECES if b"\0" not in piece)
 # After these, another line with its SETUP word is read at once, as usual.
-HARMLESS = (b" ", b"\t", b";", b"\xef\xbb\xbf", b"AT", b"AT+NAMEx", b"OK+CONN", b"+CONNECTED", b"F",
-            b"x", b"1", b"// note", b"~1234ABCD", b"\x1b[A", b"\x1b", b"\x7f", b"\xff",
-            b"\xc3", b"x" * 300, b"FOO(1)", b"SI|FOO()", b"SI|F(1,500)", b"SB|9",
-            b"END_LOOP", b"HELP", b"SI|X = 3", b"SI|X = 1;SHOW(1.5)", b"PING|CHECK_CONNECTION",
-            b"SI|X = TRUE", b"SI|CM = 1", b"SB|BEEP(0.001, 97)", b"SI|F(1 80)")  # fmt: skip
-WITH_SETUP = tuple(line for line in LINES if "|" in line)
+HARMLESS_BYTES = (b" ", b"\t", b";", b"\xef\xbb\xbf", b"AT", b"AT+NAMEx", b"OK+CONN", b"+CONNECTED",
+                  b"F", b"x", b"1", b"// note", b"~1234ABCD", b"\x1b[A", b"\x1b", b"\x7f", b"\xff",
+                  b"\xc3", b"x" * 300, b"FOO(1)", b"SI|FOO()", b"SI|F(1,500)", b"SB|9",
+                  b"END_LOOP", b"HELP", b"SI|X = 3", b"SI|X = 1;SHOW(1.5)",
+                  b"PING|CHECK_CONNECTION", b"SI|X = TRUE", b"SI|CM = 1",
+                  b"SB|BEEP(0.001, 97)", b"SI|F(1 80)")  # fmt: skip
+LINES_WITH_SETUP = tuple(line for line in LINES if "|" in line)
 STOPS = (bytes(4), b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0)), b"\0S\n", b"S\n")
 TYPED_STOP = b"\nSI|W(9)\nS\n"  # ends an open block, inside which S would be an instruction
 
@@ -137,8 +138,8 @@ class Scene:
         clock_ms: int,
         rings: KeyRings,
     ) -> None:
-        self.robot = kind(KIT, memory, write_ms=write_ms, clock_ms=clock_ms - BEGUN_MS)
-        self.robot.now_ms = BEGUN_MS
+        self.robot = kind(KIT, memory, write_ms=write_ms, clock_ms=clock_ms - START_UPTIME_MS)
+        self.robot.now_ms = START_UPTIME_MS
         self.robot.sense(*READINGS)
         self.robot.wait(300)
         self.nonce = 0
@@ -162,8 +163,8 @@ class Scene:
         rows = (line.split(" ", 1) for line in self.robot.did)
         self.observed.append((what, [(int(ms) - begun_ms, event) for ms, event in rows]))
         lines = re.findall(rb"// [^\r\n]*\r\n", data)
-        lines = [line for line in lines if line != NO_ZERO]  # this line may be late
-        self.observed += [line for line in lines if self.is_saved or line != LOST]
+        lines = [line for line in lines if line != NO_ZERO_LINE]  # this line may be late
+        self.observed += [line for line in lines if self.is_saved or line != LOST_PROGRAM_LINE]
         heard = (event for event in self.session.events() if not isinstance(event, TextEvent))
         self.observed += [without_counts(event) for event in heard]
         if self.is_saved:
@@ -193,10 +194,10 @@ class Scene:
 
     def press(self, milliseconds: int) -> None:
         begun_ms = self.robot.now_ms
-        self.robot.talk(self.session, 1, PRESSED)
+        self.robot.talk(self.session, 1, BUTTON_PRESSED)
         self.robot.talk(self.session, milliseconds)
-        self.robot.talk(self.session, 1, RELEASED)
-        self.robot.talk(self.session, RUNS_MS)
+        self.robot.talk(self.session, 1, BUTTON_RELEASED)
+        self.robot.talk(self.session, RUN_MS)
         self.note("a press", begun_ms)
 
 
@@ -232,11 +233,11 @@ def a_line(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
         text = rng.choice(LINES)
         if rng.random() < 0.2:
             text = text[: rng.randrange(len(text) + 1)]
-        scene.say((text + rng.choice(ENDS)).encode(), rng.choice((0, 20, 300, 1100, 2500)))
+        scene.say((text + rng.choice(LINE_ENDS)).encode(), rng.choice((0, 20, 300, 1100, 2500)))
 
 
 def a_whole_line(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
-    data = b"".join(rng.choices(HARMLESS, k=rng.choice((1, 1, 2, 3))))
+    data = b"".join(rng.choices(HARMLESS_BYTES, k=rng.choice((1, 1, 2, 3))))
     scene.say(data + rng.choice((b"\n", b"\r", b"\r\n")), 20)
     scene.say(rng.choice((b"", b"\0")) + b"//\n", 300)  # no frame has begun
 
@@ -256,10 +257,10 @@ def noise(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
 def the_button(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     """Press or release the button."""
     scene.is_down = not scene.is_down
-    scene.robot.talk(scene.session, 1, PRESSED if scene.is_down else RELEASED)
+    scene.robot.talk(scene.session, 1, BUTTON_PRESSED if scene.is_down else BUTTON_RELEASED)
     if scene.is_down and rng.random() < 0.5:
         scene.robot.talk(scene.session, 35)
-        scene.robot.talk(scene.session, 1, SURE)
+        scene.robot.talk(scene.session, 1, BUTTON_HELD)
     scene.robot.talk(scene.session, rng.choice((0, 40, 300, 1200)))
 
 
@@ -267,7 +268,7 @@ def the_supply(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     """Lower the supply for a while, in which something may be saved."""
     scene.robot.supply(True)
     for _ in range(rng.choice((1, 2))):
-        a_request(scene, rng, MORE)
+        a_request(scene, rng, CHANGING_REQUESTS)
         scene.robot.talk(scene.session, rng.choice((0, 700)))
     if rng.random() < 0.5:
         scene.robot.supply(False)
@@ -277,17 +278,17 @@ def the_rest(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     """A stall, a cable, a stop, silence."""
     what = rng.randrange(4)
     if what < 2:
-        scene.robot.step(flags=(STALLED, UNPLUGGED)[what])
+        scene.robot.step(flags=(LINE_STALLED, CABLE_UNPLUGGED)[what])
     elif what == 2:
         scene.session.stop(scene.robot.now_ms)
         scene.robot.talk(scene.session, rng.choice((1, 5, 100)))
     else:
-        scene.robot.wait(rng.choice((30, 1100, UNHEARD_MS)))
+        scene.robot.wait(rng.choice((30, 1100, SILENCE_MS)))
 
 
 def an_owner_s_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     """A client connects with a key, a wrong one, or none."""
-    scene.next_session(rng.choice(WHO))
+    scene.next_session(rng.choice(CLIENT_KINDS))
     for _ in range(rng.choice((1, 1, 2, 4))):
         name = rng.choice([*asks])
         scene.ask(name, asks[name], rng, rng.choice((1, 4, 15, 50, 2000)))
@@ -301,7 +302,11 @@ def a_long_press(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> Non
         session.claim(rng.choice((KEY_OWNER, KEY_TEACHER)))
         robot.talk(session, rng.choice((1, 20, 400)))
     down_ms = rng.choice((700, 1500, 2100))
-    for milliseconds, flags in ((30, PRESSED), (down_ms, SURE), (40, RELEASED)):
+    for milliseconds, flags in (
+        (30, BUTTON_PRESSED),
+        (down_ms, BUTTON_HELD),
+        (40, BUTTON_RELEASED),
+    ):
         robot.talk(session, 1, flags)
         robot.talk(session, milliseconds)
 
@@ -314,16 +319,18 @@ class Before(NamedTuple):
     saves: bool
 
 
-BEFORE = {
+PREVIOUS_HISTORIES = {
     "anything": Before(
         (a_request, a_request, half_a_request, a_line, noise, the_button, the_supply, the_rest),
-        {**ASKS, **MORE, **HELD}, True),
-    "requests": Before((a_request, half_a_request, noise, the_button, the_rest), ASKS, False),
+        {**HARMLESS_REQUESTS, **CHANGING_REQUESTS, **PROGRAM_REQUESTS}, True),
+    "requests": Before((a_request, half_a_request, noise, the_button, the_rest), HARMLESS_REQUESTS,
+                       False),
     "whole lines": Before((a_whole_line,), {}, False),
     "lines": Before((a_line, a_line, a_line, pieces, the_button), {}, False),
     "owners": Before(
         (an_owner_s_request, an_owner_s_request, a_line, a_long_press, the_button, the_rest),
-        {**ASKS, **MORE, **OWNERS, "fetch": HELD["fetch"]}, True),
+        {**HARMLESS_REQUESTS, **CHANGING_REQUESTS, **OWNER_REQUESTS,
+         "fetch": PROGRAM_REQUESTS["fetch"]}, True),
 }  # fmt: skip
 
 
@@ -333,23 +340,23 @@ def settle(scene: Scene, saves: bool, rng: random.Random) -> bytes:
     if scene.rings:  # releasing the button ends the teacher's rights, and text drives no more
         robot.wait(AUTHORITY_MS)
         robot.push()
-        sessions = map(scene.next_session, WHO)  # any of them may have claimed it
+        sessions = map(scene.next_session, CLIENT_KINDS)  # any of them may have claimed it
         assert any(robot.until(each, each.allow_text(False), 60_000) == OK for each in sessions)
     robot.supply(False)
     if scene.is_down:
-        robot.step(flags=RELEASED)
+        robot.step(flags=BUTTON_RELEASED)
         scene.is_down = False
     if saves:
         robot.wait(2, bytes(4))
-        robot.wait(IDENTIFIES_MS)
+        robot.wait(IDENTIFY_MS)
     memory = robot.memory()
-    while saves and robot.now_ms < BEGUN_MS + 200_000:
+    while saves and robot.now_ms < START_UPTIME_MS + 200_000:
         robot.wait(800)
         if robot.memory() == memory:
             break
         memory = robot.memory()
     if robot.is_latched:  # its effects end before the next program
-        robot.step(flags=rng.choice((0, STALLED, UNPLUGGED)))
+        robot.step(flags=rng.choice((0, LINE_STALLED, CABLE_UNPLUGGED)))
     return memory
 
 
@@ -376,13 +383,13 @@ def drawn_behind(rng: random.Random, text_before: str) -> Behind:
     is_typed = "lines" in text_before or (text_before == "anything" and rng.random() < 0.5)
     if text_before == "whole lines":
         return Behind(b"", 0, False, rng.choice((1, 2, 4)), True, True)
-    waits: tuple[int, ...] = (30, 60, 300, 1100, UNHEARD_MS)
+    waits: tuple[int, ...] = (30, 60, 300, 1100, SILENCE_MS)
     if text_before == "lines" and rng.random() < 0.6:
         return Behind(TYPED_STOP, rng.choice((1, 100, 200, 700, 1300)), False, 3, True)
     if text_before == "lines":
         waits = (1100, 1100, 1300, 2500)
     elif is_typed:
-        waits = (UNHEARD_MS, 6000, FORGETS_MS)
+        waits = (SILENCE_MS, 6000, LINE_END_MEMORY_MS)
     # In an open block S is an instruction of it. After frames it waits, as it may be one of them.
     stops = STOPS if text_before == "anything" else STOPS[:2]
     is_cut = text_before != "lines" and rng.random() < 0.6
@@ -396,14 +403,14 @@ def stop_both(scene: Scene, how: Behind) -> None:
     if how.is_cut:
         scene.nonce = 500
         session = scene.next_session()
-        session.upload(image_of(LONG, KIT))
+        session.upload(image_of(LONG_PROGRAM, KIT))
         robot.talk(session, 12)
     if not how.is_going_on:
         robot.wait(2, how.stop)
         robot.wait(how.wait_ms)
     elif not scene.observed:
         robot.wait(300, b"//\n")
-    if how.is_typed and how.stop not in (b"", TYPED_STOP) and how.wait_ms < FORGETS_MS:
+    if how.is_typed and how.stop not in (b"", TYPED_STOP) and how.wait_ms < LINE_END_MEMORY_MS:
         robot.wait(1200, b"\n")  # shows the robot that lines end with \n
     robot.did.clear()
     scene.observed.clear()
@@ -413,23 +420,30 @@ def stop_both(scene: Scene, how: Behind) -> None:
 
 def all_seen(scene: Scene, how: Behind, rng: random.Random) -> list[object]:
     """Ask for things; return all that can be seen."""
-    asks = {**ASKS, **MORE, **(HELD if how.is_cut else {}), **(OWNERS if scene.rings else {})}
+    asks = {
+        **HARMLESS_REQUESTS,
+        **CHANGING_REQUESTS,
+        **(PROGRAM_REQUESTS if how.is_cut else {}),
+        **(OWNER_REQUESTS if scene.rings else {}),
+    }
     if not how.is_cut:
         for name in ("undo", "status", "hello"):
             del asks[name]
     for count in range(how.steps):
         if how.is_typed:
-            text = rng.choice(WITH_SETUP if how.is_going_on and count == 0 else LINES)
-            scene.say((text + rng.choice(ENDS)).encode(), rng.choice((0, 30, RUNS_MS, 2600, 5200)))
+            text = rng.choice(LINES_WITH_SETUP if how.is_going_on and count == 0 else LINES)
+            scene.say(
+                (text + rng.choice(LINE_ENDS)).encode(), rng.choice((0, 30, RUN_MS, 2600, 5200))
+            )
         elif how.is_cut and rng.random() < 0.2:
             scene.press(rng.choice((40, 300)))
         else:
             name = rng.choice([*asks])
             if scene.rings and rng.random() < 0.5:
-                scene.next_session(rng.choice(WHO))
+                scene.next_session(rng.choice(CLIENT_KINDS))
                 scene.robot.until(scene.session, scene.session.hello())
             scene.ask(name, asks[name], rng)
-            scene.talk(RUNS_MS)
+            scene.talk(RUN_MS)
     return [*scene.observed, *in_the_end(scene, how)]
 
 
@@ -437,7 +451,7 @@ def in_the_end(scene: Scene, how: Behind) -> list[object]:
     """Stop the robot; return its identity, and its stored data."""
     robot, session = scene.robot, scene.next_session()
     robot.supply(False)
-    robot.wait(UNHEARD_MS, bytes(4))
+    robot.wait(SILENCE_MS, bytes(4))
     robot.until(session, session.hello())
     assert session.robot
     values = session.robot.values
@@ -488,9 +502,11 @@ def check(seed: int, kind: str, text_before: str) -> int:
     )
     scene = Scene(KINDS[kind], first, write_ms, clock(rng), rings)
     for _ in range(rng.choice((1, 2, 4, 8))):
-        rng.choice(BEFORE[text_before].steps)(scene, rng, BEFORE[text_before].asks)
+        rng.choice(PREVIOUS_HISTORIES[text_before].steps)(
+            scene, rng, PREVIOUS_HISTORIES[text_before].asks
+        )
     scene.talk(0)
-    saves = BEFORE[text_before].saves or scene.has_faulted
+    saves = PREVIOUS_HISTORIES[text_before].saves or scene.has_faulted
     memory = settle(scene, saves, rng)
     assert saves or memory == new_memory()
     history = scene.observed[:]
@@ -502,7 +518,7 @@ def check(seed: int, kind: str, text_before: str) -> int:
         stop_both(one_scene, how)
         states_of_both.append(all_seen(one_scene, how, random.Random(drawn_alike)))
     # If a cut program is still being saved, a request is repeated until that is over.
-    assert are_alike(states_of_both[0], states_of_both[1], AGAIN_MS if how.is_cut else 0), (
+    assert are_alike(states_of_both[0], states_of_both[1], RETRY_MS if how.is_cut else 0), (
         f"{history}\n{how}\n{first_difference(*states_of_both)}"
     )
     return len(states_of_both[0])
@@ -525,7 +541,7 @@ KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallR
 @pytest.mark.sampled("kind", "part")
 @pytest.mark.parametrize("part", range(10))
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("text_before", BEFORE)
+@pytest.mark.parametrize("text_before", PREVIOUS_HISTORIES)
 def test_a_robot_is_as_its_twin(text_before: str, kind: str, part: int) -> None:
     counts = [check(seed, kind, text_before) for seed in range(part * 10, part * 10 + 10)]
     assert sum(counts) > 20 and min(counts) > 0, counts
@@ -533,7 +549,7 @@ def test_a_robot_is_as_its_twin(text_before: str, kind: str, part: int) -> None:
 
 def check_all(seed: int) -> None:
     for kind in KINDS:
-        for text_before in BEFORE:
+        for text_before in PREVIOUS_HISTORIES:
             check(seed, kind, text_before)
 
 

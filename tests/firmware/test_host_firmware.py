@@ -13,9 +13,9 @@ import pytest
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tests.support.robot_on_host import (
-    AWAY,
+    AWAY_PROGRAM,
     KIT,
-    LONG,
+    LONG_PROGRAM,
     actions_of,
     broken_upload,
     computer,
@@ -33,7 +33,7 @@ from tiniscript.link.session import Session
 def driving(milliseconds: int) -> tuple[HostFirmware, Session]:
     """Return a robot that has driven for this long, and is still driving."""
     robot, session = switched_on(), computer()
-    send(robot, session, AWAY)
+    send(robot, session, AWAY_PROGRAM)
     robot.talk(session, milliseconds)
     return robot, session
 
@@ -104,7 +104,7 @@ def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:
     """Its first edge came before the start, as after a spike on the wire."""
     robot, session = switched_on(), computer()
     robot.step(flags=1)
-    send(robot, session, AWAY)
+    send(robot, session, AWAY_PROGRAM)
     robot.step(flags=32)
     assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     robot.step(flags=2)
@@ -159,7 +159,7 @@ def test_a_fault_at_once_names_the_program(is_live: bool) -> None:
     assert state.program == (0 if is_live else image.checksum)
 
 
-@pytest.mark.parametrize("text", ["SB|F(0.1, 50)", LONG.replace("SI|", "SB|")])
+@pytest.mark.parametrize("text", ["SB|F(0.1, 50)", LONG_PROGRAM.replace("SI|", "SB|")])
 def test_a_robot_tells_which_program_it_holds_before_it_is_saved(text: str) -> None:
     """In one frame, and in several."""
     robot, session = holding()

@@ -31,20 +31,20 @@ from tiniscript.link.messages import (
 )
 
 SEEDS = 12  # seeds of the tests; a campaign runs more
-TURNS = 120
-LARGEST = 63
+TURN_COUNT = 120
+LARGEST_NUMBER = 63
 EVENTS = {number for number in BY_NUMBER if number >= FIRST_EVENT}
 REQUESTS = tuple(message for message in BY_NUMBER.values() if message.number not in EVENTS)
-UNKNOWN = (*RETIRED_NUMBERS, *range(REQUESTS[-1].number + 1, FIRST_EVENT))
+UNKNOWN_NUMBERS = (*RETIRED_NUMBERS, *range(REQUESTS[-1].number + 1, FIRST_EVENT))
 MOST_RETIRED = 20  # bytes of a payload: where the first byte on the wire is small, no line ends
-OK, STALE, BUSY = STATUSES["OK"], STATUSES["STALE"], STATUSES["BUSY"]
-NO_ACT = {STATUSES[name] for name in ("STALE", "BAD_LENGTH", "UNKNOWN_MESSAGE")}
+STATUS_OK, STATUS_STALE, STATUS_BUSY = STATUSES["OK"], STATUSES["STALE"], STATUSES["BUSY"]
+REJECTING_STATUSES = {STATUSES[name] for name in ("STALE", "BAD_LENGTH", "UNKNOWN_MESSAGE")}
 MODES = (0x00, 0x01, 0x10, 0x20, 0x30, 0x50, 0x70, 0x13, 0xFF)
 CODES = (b"", b"\x58", b"\x44\xf0\x50", b"\x68\xb1\x39\x6b\x04", b"\x68\x5a\x32\xce\x6b\x05",
          b"\xff", b"\0", b"\x51\x01" * 27)  # fmt: skip
 LINES = (b"SI|F(5,50)\n", b"SI|LOOP(FOREVER);SHOW(1);END_LOOP\n", b"SB|F(1,2)\r\n", b"S\n", b"~\n",
          b"SI|LOOP(2)\n", b"(" * 250 + b"\n", b"SI|F(1," + b"9" * 30 + b")\n")  # fmt: skip
-ROOM = 389
+ROOM_BYTES = 389
 
 
 class Client:
@@ -83,7 +83,7 @@ class Client:
         self.put(self.zero() + encode_frame(Frame(number, self.seq, sent, payload)))
         [reply] = [frame for frame in self.replies if frame.seq == self.seq]
         assert reply.number == number and reply.is_reply
-        assert reply.payload[0] == OK or len(reply.payload) == 3, reply
+        assert reply.payload[0] == STATUS_OK or len(reply.payload) == 3, reply
         return reply.payload
 
     def ask_by_name(self, name: str, payload: bytes = b"") -> bytes:
@@ -92,17 +92,19 @@ class Client:
     def hello(self) -> None:
         kit = self.rng.choice((KIT.fingerprint, 7)).to_bytes(2, "little")
         nonce = self.rng.choice((5, self.rng.getrandbits(32))).to_bytes(4, "little")
-        assert self.ask_by_name("HELLO", bytes((MAJOR, MINOR, 2, 0)) + kit + nonce)[0] == OK
+        assert self.ask_by_name("HELLO", bytes((MAJOR, MINOR, 2, 0)) + kit + nonce)[0] == STATUS_OK
 
     # -- its actions ------------------------------------------------------------------------------
 
     def request(self) -> None:
         """Any message, of a right or a wrong length, in any epoch."""
         rng = self.rng
-        number = rng.choice((*(message.number for message in REQUESTS[1:]), rng.choice(UNKNOWN), 0))
+        number = rng.choice(
+            (*(message.number for message in REQUESTS[1:]), rng.choice(UNKNOWN_NUMBERS), 0)
+        )
         fields = BY_NUMBER[number].request if number in BY_NUMBER else ()
         least, most = sizes(fields)
-        most = min(most, payload_bytes(LARGEST))
+        most = min(most, payload_bytes(LARGEST_NUMBER))
         payload = rng.randbytes(
             rng.choice((least, most, rng.randrange(most + 1), rng.randrange(57)))
         )
@@ -122,8 +124,8 @@ class Client:
         elif not least <= len(payload) <= most:
             assert status == STATUSES["BAD_LENGTH"]
         elif is_stale and number >= FIRST_ACTING:
-            assert status == STALE
-        if status in NO_ACT and before:
+            assert status == STATUS_STALE
+        if status in REJECTING_STATUSES and before:
             assert not [line for line in self.robot.did if " MOTORS " in line]
 
     def repeat_frame(self) -> None:
@@ -134,7 +136,7 @@ class Client:
         self.replies.clear()
         epoch = self.epoch
         self.put(b"\0" + encode_frame(Frame(BY_NAME[name].number, self.seq, epoch, mode)))
-        if self.epoch == epoch and first[0] != STALE:
+        if self.epoch == epoch and first[0] != STATUS_STALE:
             assert [reply.payload for reply in self.replies] == [first]
 
     def upload(self) -> None:
@@ -147,17 +149,17 @@ class Client:
         mode = bytes([rng.choice((0x00, 0x20, 0x30))])
         reply = self.ask_by_name("BEGIN", mode + image[2:10])
         body, at = image[14:], 0
-        if len(code) > ROOM and reply[0] != STALE:
-            assert reply[0] != OK
-        while reply[0] == OK and at < len(body):
+        if len(code) > ROOM_BYTES and reply[0] != STATUS_STALE:
+            assert reply[0] != STATUS_OK
+        while reply[0] == STATUS_OK and at < len(body):
             if rng.random() < 0.1:
                 rng.choice((self.hello, self.zeros, self.line, self.request))()
             piece = body[at : at + rng.choice((1, 20, 53))]
             reply = self.ask_by_name("DATA", at.to_bytes(2, "little") + piece)
-            if reply[0] == OK:
+            if reply[0] == STATUS_OK:
                 at = int.from_bytes(reply[1:3], "little")
                 assert at <= len(body)
-        if self.ask_by_name("COMMIT", image[10:14])[0] == OK:
+        if self.ask_by_name("COMMIT", image[10:14])[0] == STATUS_OK:
             assert self.fetch_image() == image
             assert code != b"\xff" * 9
 
@@ -166,10 +168,10 @@ class Client:
         image, whole = b"", HEADER_BYTES
         while len(image) < whole:
             reply = self.ask_by_name("FETCH", len(image).to_bytes(2, "little"))
-            if reply[0] == BUSY:
+            if reply[0] == STATUS_BUSY:
                 self.put(b"", 50)
                 continue
-            assert reply[0] == OK
+            assert reply[0] == STATUS_OK
             whole = int.from_bytes(reply[1:3], "little")
             image += reply[3:]
         return image
@@ -212,7 +214,7 @@ class Client:
 def play(seed: int) -> None:
     client = Client(seed)
     client.hello()
-    for _ in range(TURNS):
+    for _ in range(TURN_COUNT):
         client.turn()
     client.check_obeys()
 

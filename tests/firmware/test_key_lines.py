@@ -20,9 +20,9 @@ from tiniscript.link.messages import HOLD_MS
 from tiniscript.link.remote import RemoteState, remote_state_of
 from tiniscript.link.requests import OK
 
-TOLD = "// No program reads keys"
-DRIVES = "SI|F(9,50)"
-UP, A = remote_state_of(["UP"]), remote_state_of(["A"])
+UNREAD_KEYS_LINE = "// No program reads keys"
+DRIVE_PROGRAM = "SI|F(9,50)"
+KEY_UP, KEY_A = remote_state_of(["UP"]), remote_state_of(["A"])
 
 
 def boot(kind: type[HostFirmware] = HostFirmware) -> HostFirmware:
@@ -31,19 +31,20 @@ def boot(kind: type[HostFirmware] = HostFirmware) -> HostFirmware:
     return robot
 
 
-WORDS = (
-    ("KEY_UP", UP), ("KEY_DOWN", remote_state_of(["DOWN"])),
+STATE_BY_LINE = (
+    ("KEY_UP", KEY_UP), ("KEY_DOWN", remote_state_of(["DOWN"])),
     ("KEY_LEFT", remote_state_of(["LEFT"])),
-    ("KEY_RIGHT", remote_state_of(["RIGHT"])), ("KEY_A", A), ("KEY_B", remote_state_of(["B"])),
-    ("key_a", A), ("  Key_A ;", A), ("KEY", RemoteState()), ("PAD 30 -20", RemoteState(0, 30, -20)),
+    ("KEY_RIGHT", remote_state_of(["RIGHT"])), ("KEY_A", KEY_A), ("KEY_B", remote_state_of(["B"])),
+    ("key_a", KEY_A), ("  Key_A ;", KEY_A), ("KEY", RemoteState()),
+    ("PAD 30 -20", RemoteState(0, 30, -20)),
     ("pad  -100   100", RemoteState(0, -100, 100)), ("PAD 0 0", RemoteState()),
 )  # fmt: skip
-ENDS = ("\n", "\r\n", "\r")
-BEFORE = (*ENDS, " \n", "\t\r\n")  # lines of nothing
+LINE_ENDS = ("\n", "\r\n", "\r")
+EMPTY_LINES = (*LINE_ENDS, " \n", "\t\r\n")  # lines of nothing
 
 
 @pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
-@pytest.mark.parametrize(("line", "held_state"), WORDS)
+@pytest.mark.parametrize(("line", "held_state"), STATE_BY_LINE)
 def test_a_line_holds_what_it_says_for_half_a_second(
     line: str, held_state: RemoteState, kind: type[HostFirmware]
 ) -> None:
@@ -69,11 +70,11 @@ def test_any_blanks_around_its_words_and_any_line_ends_make_the_same_line(
         return "".join(rng.choices(" \t", k=rng.choice((least, 1, 2, 30))))
 
     for _ in range(20):
-        for line, held_state in WORDS:
+        for line, held_state in STATE_BY_LINE:
             words = blanks(1).join(line.strip(" ;").split())
             words = "".join(rng.choice((letter.lower(), letter)) for letter in words)
-            end = rng.choice(("", ";", " ;")) + blanks() + rng.choice(ENDS)
-            join_before = "".join(rng.choice(BEFORE) for _ in range(rng.randint(0, 3)))
+            end = rng.choice(("", ";", " ;")) + blanks() + rng.choice(LINE_ENDS)
+            join_before = "".join(rng.choice(EMPTY_LINES) for _ in range(rng.randint(0, 3)))
             text = join_before + blanks() + words + end
             assert type_text(robot, text, 20) == [], repr(text)
             assert robot.remote() == remote_readings(held_state), repr(text)
@@ -96,14 +97,14 @@ def test_any_other_line_is_read_as_before(line: str) -> None:
 
 def test_who_presses_is_told_once_that_no_program_reads_it() -> None:
     robot = boot()
-    assert type_text(robot, "KEY_UP\n", 1500) == [TOLD]
+    assert type_text(robot, "KEY_UP\n", 1500) == [UNREAD_KEYS_LINE]
     assert type_text(robot, "KEY_UP\n" * 3, 1500) == []
-    type_text(robot, DRIVES + "\n", 1500)
+    type_text(robot, DRIVE_PROGRAM + "\n", 1500)
     assert type_text(robot, "KEY_UP\n", 1500) == []
     robot.remote()  # simulates a program that reads keys
     assert type_text(robot, "KEY_UP\n", 1500) == []
     type_text(robot, "S\n", 2500)
-    assert type_text(robot, "KEY_UP\n", 1500) == [TOLD]
+    assert type_text(robot, "KEY_UP\n", 1500) == [UNREAD_KEYS_LINE]
 
 
 def test_a_key_that_is_said_every_300_ms_at_9600_baud_does_not_flicker() -> None:
@@ -113,7 +114,7 @@ def test_a_key_that_is_said_every_300_ms_at_9600_baud_does_not_flicker() -> None
     for _ in range(40):
         for _ in range(28):
             robot.wait(10)
-            assert robot.remote() == remote_readings(UP)
+            assert robot.remote() == remote_readings(KEY_UP)
         robot.latched_while(20, line, is_spread=True)
 
 
@@ -126,7 +127,7 @@ def test_they_end_nothing_start_nothing_and_work_beside_a_live() -> None:
         robot.did.clear()
         for _ in range(4):
             session.receive(robot.wait(20, b"KEY_A\n"), robot.now_ms)
-            assert robot.remote() == remote_readings(A), kind
+            assert robot.remote() == remote_readings(KEY_A), kind
             robot.talk(session, 250)
         assert robot.did == [] and session.is_running
 
@@ -141,7 +142,7 @@ def test_in_an_open_block_the_line_is_the_programs() -> None:
 def test_after_a_stop_they_count_as_silence_and_release_nothing(how: str) -> None:
     """A person who keeps holding a key can type a program a second later."""
     robot = boot()
-    type_text(robot, DRIVES + "\n", 100)
+    type_text(robot, DRIVE_PROGRAM + "\n", 100)
     assert "MOTORS 50 50" in robot.did[-1]
     if how == "text":
         type_text(robot, "S\n", 20)
@@ -182,5 +183,5 @@ def test_a_thousand_lines_in_a_burst() -> None:
     robot.wait(10, b"KEY_B\n" * 1000)
     robot.wait(1000)
     type_text(robot, "KEY_A\n", 20)
-    assert robot.remote() == remote_readings(A)
+    assert robot.remote() == remote_readings(KEY_A)
     assert robot.did == []

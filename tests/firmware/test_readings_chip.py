@@ -33,13 +33,13 @@ pytestmark = pytest.mark.skipif(bool(missing()), reason=missing())
 
 BOARD = "mega"
 RUN_MS = 1500
-CHANGES_MS = 25  # between two changes of the light
+CHANGE_INTERVAL_MS = 25  # between two changes of the light
 LIGHT = ("A0", "A1")
-TOGETHER_MS = 0.05  # pins of one setting
-MOST_APART_MS = 1.5  # one byte, and the main loop's delay until it looks
+SAME_SETTING_MS = 0.05  # pins of one setting
+LARGEST_DELAY_MS = 1.5  # one byte, and the main loop's delay until it looks
 # The times at which a run begins while the computer sends PINGs. It may be all that parts two runs
 # without readings.
-BEGINS_MS = (0, 70, 130, 17, 41, 93, 113, 150, 171, 199)
+START_TIMES_MS = (0, 70, 130, 17, 41, 93, 113, 150, 171, 199)
 
 
 def run_image(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list[Did], int]:
@@ -53,10 +53,10 @@ def run_image(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list
     wired_uno.run(wait_ms)
     assert wired_uno.until(session.start()) == OK
     since, rng = uno.cycle, random.Random(1)
-    for _ in range(RUN_MS // CHANGES_MS):
+    for _ in range(RUN_MS // CHANGE_INTERVAL_MS):
         for pin in LIGHT:
             uno.analog(pin, rng.randrange(1024))
-        wired_uno.run(CHANGES_MS)
+        wired_uno.run(CHANGE_INTERVAL_MS)
     reading_count = sum(event.name == "READING" for event in session.events())
     end = uno.cycle
     session.stop(wired_uno.now_ms)
@@ -65,7 +65,7 @@ def run_image(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list
                       if since < change.cycle < end})  # fmt: skip
     lasting = [(cycle, f"{power(uno, 'left', cycle)} {power(uno, 'right', cycle)}")
                for cycle, after in zip(changes, [*changes[1:], end], strict=False)
-               if after - cycle > TOGETHER_MS * CYCLES_PER_MS]  # fmt: skip
+               if after - cycle > SAME_SETTING_MS * CYCLES_PER_MS]  # fmt: skip
     first = lasting[0][0] if lasting else 0
     return [((cycle - first) / CYCLES_PER_MS, powers) for cycle, powers in lasting], reading_count
 
@@ -85,9 +85,9 @@ def compare(text: str, uno: Uno) -> int:
     image = image_of(text, KIT)
     did, told_count = run_image(image, uno, True, 0)
     nearest_ms = inf
-    for begin_ms in BEGINS_MS:
+    for begin_ms in START_TIMES_MS:
         nearest_ms = min(nearest_ms, apart_ms(run_image(image, uno, False, begin_ms)[0], did))
-        if nearest_ms <= MOST_APART_MS:
+        if nearest_ms <= LARGEST_DELAY_MS:
             return told_count
     raise AssertionError(f"{nearest_ms:.1f} ms from each run without: {text}")
 

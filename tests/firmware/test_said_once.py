@@ -42,14 +42,16 @@ SHOW, FAULT, STOPPED, DONE = (BY_NAME[name].number for name in ("SHOW", "FAULT",
 HELLO, CLEAR, LIVE, PROGRAM, START, STOP = (
     BY_NAME[name].number for name in ("HELLO", "CLEAR", "LIVE", "PROGRAM", "START", "STOP")
 )
-OTHERS = tuple(BY_NAME[name].number for name in ("PING", "STATUS", "TRIM", "IDENTIFY", "ABORT"))
+OTHER_NUMBERS = tuple(
+    BY_NAME[name].number for name in ("PING", "STATUS", "TRIM", "IDENTIFY", "ABORT")
+)
 OK = STATUSES["OK"]
 SEQUENCE, MESSAGE, BUTTON, CABLE, TEXT = range(1, 6)  # sources of a stop
 PRESSED, RELEASED, STALLED, UNPLUGGED = 1, 2, 4, 8
 KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallRobot}
 PACES = (0, 2, 21, 21)  # ticks of a byte: at once, as with 115200 baud, as with 9600
-ANSWERS_MS = 400  # longest answer time on the slowest line, including earlier output
-BUSY_MS = 70  # longest time that earlier output keeps the line busy
+LONGEST_ANSWER_MS = 400  # longest answer time on the slowest line, including earlier output
+LONGEST_OUTPUT_MS = 70  # longest time that earlier output keeps the line busy
 ENDINGS = (";W(0.002)", ";SHOW(1 / (X - X))", ";W(9)", ";F(9, 80)")
 
 
@@ -107,7 +109,7 @@ class Client:
         self.log: list[object] = []
         self.is_new = True
         self.ask(HELLO, self.hello())
-        self.passes(ANSWERS_MS)
+        self.passes(LONGEST_ANSWER_MS)
 
     def pace(self, ticks: int) -> None:
         self.ticks = ticks
@@ -271,7 +273,9 @@ class Client:
     def request(self) -> tuple[int, bytes]:
         """Return a message and its payload."""
         rng = self.rng
-        number = rng.choice((*OTHERS, CLEAR, CLEAR, LIVE, LIVE, LIVE, PROGRAM, START, STOP, HELLO))
+        number = rng.choice(
+            (*OTHER_NUMBERS, CLEAR, CLEAR, LIVE, LIVE, LIVE, PROGRAM, START, STOP, HELLO)
+        )
         if number == HELLO:
             self.nonce += rng.random() < 0.5
             return number, self.hello()
@@ -316,17 +320,17 @@ class Client:
         if flags == PRESSED:
             self.passes(rng.choice((5, 40, 90)))
             self.passes(1, b"", RELEASED)
-        self.passes(ANSWERS_MS if self.waiting else 1)
+        self.passes(LONGEST_ANSWER_MS if self.waiting else 1)
         assert not self.waiting, "no reply"
         self.passes(rng.choice((1, 1, 60, 1100)))
 
     def settle(self) -> None:
-        self.passes(ANSWERS_MS)
+        self.passes(LONGEST_ANSWER_MS)
         assert not [stop for stop in self.stops if stop.must], "a stop that nobody is told of"
         for number, run in enumerate(self.runs, 1):
             # The button may start the next one while the line is busy.
             begins_ms = [later.begun_ms for later in self.runs[number : number + 1]]
-            is_overtaken = begins_ms and begins_ms[0] - run.ended_ms < BUSY_MS
+            is_overtaken = begins_ms and begins_ms[0] - run.ended_ms < LONGEST_OUTPUT_MS
             assert run.ended in (0, *run.reported_ends) or is_overtaken, f"no end of {number}"
             if run.ended == DONE:
                 assert len(run.values) == run.program.shows, number
@@ -370,7 +374,7 @@ def test_an_end_is_told_of_its_own_run_though_another_waits_for_the_line(
         client.pace(21)
         first, pressed_text = (fault, finished_text) if is_fault_first else (finished_text, fault)
         client.ask(PROGRAM, bytes((0,)) + client.code_of(pressed_text, Program(0, 0)))
-        client.passes(ANSWERS_MS)
+        client.passes(LONGEST_ANSWER_MS)
         client.ask(LIVE, bytes((RUN,)) + client.code_of(first, Program(0, 0)))
         client.passes(delay_ms)
         client.passes(1, b"", PRESSED, BUTTON)

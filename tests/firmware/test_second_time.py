@@ -45,9 +45,9 @@ from tiniscript.link.requests import OK
 
 KIT = robots.load("tinibot").kit
 ESP32 = robots.load("tinibot32")
-MARKED = ("BEEP 31 1", "TONE 31")
+MARK_ACTIONS = ("BEEP 31 1", "TONE 31")
 CLOCKS_MS = (0, 2**16 - 900, 2**31 - 900, 2**32 - 900)  # clock values of a robot at its start
-RUNS_MS = 600  # observed time of the second program
+RUN_MS = 600  # observed time of the second program
 STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
 
 
@@ -78,13 +78,19 @@ KINDS: dict[str, Callable[[], HostFirmware]] = {
 }
 
 
-READS, KEPT = bytes((0x92,)), bytes((0x8A,))  # PUSH_READ_2 and PUSH_SENSOR_2
-UNREAD = MARK + "SHOW(DISTANCE);W(0.1)"  # no earlier instruction in the image reads this sensor
+PUSH_READ_2, PUSH_SENSOR_2 = bytes((0x92,)), bytes((0x8A,))  # PUSH_READ_2 and PUSH_SENSOR_2
+UNREAD_SENSOR_PROGRAM = (
+    MARK + "SHOW(DISTANCE);W(0.1)"
+)  # no earlier instruction in the image reads this sensor
 
 
 def image(text: str) -> Image:
     code = image_of(text, KIT).code
-    return unpack(image_for(code.replace(READS, KEPT) if text == UNREAD else code, KIT))
+    return unpack(
+        image_for(
+            code.replace(PUSH_READ_2, PUSH_SENSOR_2) if text == UNREAD_SENSOR_PROGRAM else code, KIT
+        )
+    )
 
 
 # Ways to start a program. ----------------------------------------------------------------------
@@ -118,7 +124,7 @@ def types(scene: Scene, text: str) -> list[str]:
     return type_text(scene.robot, line_of(Source("SI|" + text)) + "\n", 1)
 
 
-STARTS: dict[str, Callable[[Scene, str], list[str]]] = {
+START_ACTIONS: dict[str, Callable[[Scene, str], list[str]]] = {
     action.__name__: action for action in (uploads, saves, pushes, types)
 }
 
@@ -141,7 +147,7 @@ def breaks_off(scene: Scene) -> None:
     scene.next_computer()
 
 
-ENDS: dict[str, Callable[[Scene], object]] = {
+END_ACTIONS: dict[str, Callable[[Scene], object]] = {
     "nothing": lambda scene: None,  # the second writes over it
     "zeros": lambda scene: scene.robot.step(bytes(8)),
     "a message": lambda scene: scene.robot.wait(5, STOP_MESSAGE),
@@ -158,10 +164,12 @@ ENDS: dict[str, Callable[[Scene], object]] = {
 
 
 # After these, the robot is stopped until the second program.
-STOPS = ("zeros", "a message", "a line", "its computer")
+STOPPING_ENDS = ("zeros", "a message", "a line", "its computer")
 
 # Actions during the first program, and when they end: before the second program, or during it.
-BESIDE: dict[str, tuple[Callable[[HostFirmware], object], Callable[[HostFirmware], object]]] = {
+ACTIONS_BESIDE: dict[
+    str, tuple[Callable[[HostFirmware], object], Callable[[HostFirmware], object]]
+] = {
     "nothing": (lambda robot: None, lambda robot: None),
     "the button is down": (lambda robot: robot.step(flags=1), lambda robot: robot.step(flags=2)),
     "a wheel is held": (lambda robot: holds(robot), lambda robot: robot.hold(0)),
@@ -198,13 +206,13 @@ def story(rng: random.Random, starts: str, kind: str) -> Story:
     if kind == "an esp32":  # a sonar's answer depends on the time of its last ping
         second = without_readings(second)
     elif starts != "types" and rng.random() < 0.1:
-        second = UNREAD
-    tale = Story(first, rng.choice([*STARTS]), rng.choice((1, 30, 100, 300, 900)),
-                 rng.choice([*ENDS]), rng.choice((0, 1, 20, 300)), rng.random() < 0.5,
+        second = UNREAD_SENSOR_PROGRAM
+    tale = Story(first, rng.choice([*START_ACTIONS]), rng.choice((1, 30, 100, 300, 900)),
+                 rng.choice([*END_ACTIONS]), rng.choice((0, 1, 20, 300)), rng.random() < 0.5,
                  second, starts)  # fmt: skip
     if kind == "an esp32" or rng.random() < 0.5:
         return tale
-    beside = rng.choice([*BESIDE])
+    beside = rng.choice([*ACTIONS_BESIDE])
     return tale._replace(beside=beside, lasts="button" in beside and rng.random() < 0.5)
 
 
@@ -216,12 +224,12 @@ def run_second(scene: Scene, tale: Story) -> tuple[list[str], list[str]]:
     scene.session.events()
     scene.before = scene.session.run
     robot.did.clear()
-    heard_lines = STARTS[tale.starts](scene, tale.second)
+    heard_lines = START_ACTIONS[tale.starts](scene, tale.second)
     heard_lines += run_and_listen(scene, tale.starts, 40)
     if tale.lasts:
-        BESIDE[tale.beside][1](robot)
-    heard_lines += run_and_listen(scene, tale.starts, RUNS_MS + 260)
-    marks = [k for k, line in enumerate(robot.did) if line.split(" ", 1)[1] in MARKED]
+        ACTIONS_BESIDE[tale.beside][1](robot)
+    heard_lines += run_and_listen(scene, tale.starts, RUN_MS + 260)
+    marks = [k for k, line in enumerate(robot.did) if line.split(" ", 1)[1] in MARK_ACTIONS]
     if not marks:
         return (
             [],
@@ -229,9 +237,7 @@ def run_second(scene: Scene, tale: Story) -> tuple[list[str], list[str]]:
         )  # the line is too long for this robot, or another tone covers the mark
     begin_ms = int(robot.did[marks[-1]].split()[0])
     lines = (line.split(" ", 1) for line in robot.did[marks[-1] :])
-    actions = [
-        f"{int(ms) - begin_ms} {what}" for ms, what in lines if int(ms) <= begin_ms + RUNS_MS
-    ]
+    actions = [f"{int(ms) - begin_ms} {what}" for ms, what in lines if int(ms) <= begin_ms + RUN_MS]
     return actions, heard_lines
 
 
@@ -253,11 +259,11 @@ def after(tale: Story, scene: Scene) -> Scene:
     robot = scene.robot
     if not isinstance(robot, Esp32Robot):
         robot.sense(*FIRST_READINGS)
-    STARTS[tale.begins](scene, tale.first)
+    START_ACTIONS[tale.begins](scene, tale.first)
     run_and_listen(scene, tale.begins, tale.runs_ms)
-    begins, is_over = BESIDE[tale.beside]
+    begins, is_over = ACTIONS_BESIDE[tale.beside]
     begins(robot)
-    ENDS[tale.ends](scene)
+    END_ACTIONS[tale.ends](scene)
     action_count_before = len(robot.did)
     if tale.waits_ms:
         robot.wait(tale.waits_ms)
@@ -267,18 +273,25 @@ def after(tale: Story, scene: Scene) -> Scene:
     motor_lines = [
         line for line in robot.did[action_count_before:] if not line.endswith(" MOTORS 0 0")
     ]
-    assert tale.ends not in STOPS or (robot.is_latched and not motor_lines), f"{tale} {motor_lines}"
+    assert tale.ends not in STOPPING_ENDS or (robot.is_latched and not motor_lines), (
+        f"{tale} {motor_lines}"
+    )
     if tale.is_next:
         scene.next_computer()
     return scene
 
 
 # Events of the first program that are still to come: its end, a failed save, or an open block.
-OF_THE_FIRST = ("MissedEvent", "StartedEvent", "// Started again", "// The old program is lost.")
+FIRST_PROGRAM_EVENTS = (
+    "MissedEvent",
+    "StartedEvent",
+    "// Started again",
+    "// The old program is lost.",
+)
 
 
 def without_the_first(heard_lines: list[str]) -> list[str]:
-    return [line for line in heard_lines if not line.startswith(OF_THE_FIRST)]
+    return [line for line in heard_lines if not line.startswith(FIRST_PROGRAM_EVENTS)]
 
 
 def fitting(rng: random.Random, starts: str, kind: str) -> tuple[Story, list[str], list[str]]:
@@ -309,18 +322,22 @@ def check(seed: int, starts: str, kind: str) -> str:
     return tale.ends
 
 
-SOME = {"a mega": 20, "an uno": 10, "an esp32": 3}  # cases of each start that a commit draws
+CASES_PER_PART = {
+    "a mega": 20,
+    "an uno": 10,
+    "an esp32": 3,
+}  # cases of each start that a commit draws
 PARTS = 20
 
 
 @pytest.mark.sampled("kind", "part")
 @pytest.mark.parametrize("part", range(PARTS))
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("starts", STARTS)
+@pytest.mark.parametrize("starts", START_ACTIONS)
 def test_the_second_program_is_as_on_a_fresh_robot(starts: str, kind: str, part: int) -> None:
     if (kind, starts) == ("an esp32", "pushes"):
         starts = "uploads"  # the button takes longer here; `test_button` covers it
-    many = SOME[kind]
+    many = CASES_PER_PART[kind]
     counts = Counter(check(seed, starts, kind) for seed in range(part * many, (part + 1) * many))
     assert counts["it says why not"] <= many / 2, counts
 
@@ -361,11 +378,11 @@ def test_what_the_button_has_asked_for_begins_once() -> None:
     assert robot.codes() == []
 
 
-@pytest.mark.parametrize("ends", STOPS)
+@pytest.mark.parametrize("ends", STOPPING_ENDS)
 def test_what_the_button_has_asked_for_begins_not_after_a_stop(ends: str) -> None:
     scene, _ = waiting_start()
     scene.robot.step(flags=2)
-    ENDS[ends](scene)
+    END_ACTIONS[ends](scene)
     scene.robot.wait(500)
     assert scene.robot.codes() == [] and scene.robot.is_latched
 
@@ -386,8 +403,8 @@ def test_what_the_button_has_asked_for_begins_not_after_another_program() -> Non
 # -- with discs -------------------------------------------------------------------------------
 
 EDGES = (32_673, 277_333)  # edges on the discs of a tinibot2
-NEAR_EDGES, ROLLS_EDGES = 2.5, 9.0  # the latter from a move whose wheels still roll
-NEAR_MS = 400
+EDGE_TOLERANCE, ROLLING_EDGE_TOLERANCE = 2.5, 9.0  # the latter from a move whose wheels still roll
+TIME_TOLERANCE_MS = 400
 
 
 def with_discs() -> Scene:
@@ -414,12 +431,12 @@ def drive(scene: Scene, starts: str, text: str) -> tuple[list[str], int, float, 
     robot = scene.robot
     robot.did.clear()
     left, right = robot.wheel_edges()
-    STARTS[starts](scene, text)
+    START_ACTIONS[starts](scene, text)
     rows: list[list[str]] = []
     while not rows or rows[-1][1] not in ("FINISHED", "FAULTED"):
         run_and_listen(scene, starts, 100)
         events = [line.split(" ", 1) for line in robot.did]
-        marks = [k for k, row in enumerate(events) if row[1] in MARKED]
+        marks = [k for k, row in enumerate(events) if row[1] in MARK_ACTIONS]
         rows = events[marks[-1] :] if marks else []
         assert robot.now_ms < 120_000, text
     run_and_listen(scene, starts, 700)  # until its wheels stop
@@ -438,7 +455,7 @@ def stands(robot: HostFirmware) -> bool:
 
 def check_ways(seed: int) -> str:
     rng = random.Random(seed)
-    tale = story(rng, rng.choice([*STARTS]), "a mega")
+    tale = story(rng, rng.choice([*START_ACTIONS]), "a mega")
     first = rng.choice((tale.first, ways(rng, 4), task_program(rng, ways=True)[0], "F(60 CM, 60)"))
     tale = tale._replace(
         first=MARK + first,
@@ -451,9 +468,9 @@ def check_ways(seed: int) -> str:
     actions, took_ms, *distances_cm = drive(scene, tale.starts, tale.second)
     want, its_ms, *far = drive(with_discs(), tale.starts, tale.second)
     explanation = f"{tale}\n{actions} {took_ms} {distances_cm}\nnot\n{want} {its_ms} {far}"
-    assert actions == want and abs(took_ms - its_ms) < NEAR_MS * len(want), explanation
+    assert actions == want and abs(took_ms - its_ms) < TIME_TOLERANCE_MS * len(want), explanation
     if is_over:
-        near = NEAR_EDGES if stood else ROLLS_EDGES
+        near = EDGE_TOLERANCE if stood else ROLLING_EDGE_TOLERANCE
         assert all(abs(a - b) < near for a, b in zip(distances_cm, far, strict=True)), explanation
     return "from a run" if not is_over else "from where it stood" if stood else "from a move"
 
@@ -487,7 +504,7 @@ def test_what_a_held_wheel_was_behind_is_not_made_up_for_by_the_next_program(whe
     scene.robot.hold(wheels)
     scene.robot.talk(scene.session, 420)
     scene.robot.hold(0)
-    ENDS["zeros"](scene)
+    END_ACTIONS["zeros"](scene)
     scene.robot.wait(2000)
     scene.next_computer()
     assert most_ahead(scene) < 0.15
@@ -544,7 +561,7 @@ def test_what_goes_on_alone_does_so_after_what_does_not(first: str, is_typed: bo
 
 
 def check_all(seed: int) -> str:
-    for starts in STARTS:
+    for starts in START_ACTIONS:
         check(seed, starts, [*KINDS][seed % len(KINDS)])
     return check_ways(seed)
 

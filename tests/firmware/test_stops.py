@@ -15,7 +15,15 @@ from tests.machines.host_firmware import HostFirmware
 from tests.support.button_states import STATES, Table, keeps_trim, saves
 from tests.support.images import image_of
 from tests.support.pty_robot import drives_now
-from tests.support.robot_on_host import AWAY, KIT, actions_of, computer, live, send, switched_on
+from tests.support.robot_on_host import (
+    AWAY_PROGRAM,
+    KIT,
+    actions_of,
+    computer,
+    live,
+    send,
+    switched_on,
+)
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME
@@ -35,7 +43,7 @@ def run_to_end(
 ) -> None:
     """Run a line to its end, without a computer if that end is a lost link."""
     live(robot, session, text)
-    if text == AWAY:
+    if text == AWAY_PROGRAM:
         robot.wait(milliseconds)
     else:
         robot.talk(session, milliseconds)
@@ -43,31 +51,31 @@ def run_to_end(
 
 
 def leave(robot: HostFirmware, session: Session) -> None:
-    live(robot, session, AWAY)
+    live(robot, session, AWAY_PROGRAM)
     robot.step(flags=8)
 
 
 STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
-BETWEENS: dict[str, Callable[[HostFirmware, Session], object]] = {
+INTERVENING_STOPS: dict[str, Callable[[HostFirmware, Session], object]] = {
     "stopped by zeros": lambda robot, session: robot.step(bytes(4)),
     "stopped by a message": lambda robot, session: robot.wait(20, STOP_MESSAGE),
     "ended": lambda robot, session: run_to_end(robot, session, "SI|F(0.1, 80)", "FINISHED", 300),
     "faulted": lambda robot, session: run_to_end(
         robot, session, "SI|X = 0; SHOW(5 / X)", "FAULTED", 300
     ),
-    "lost": lambda robot, session: run_to_end(robot, session, AWAY, "FAULTED", 1500),
+    "lost": lambda robot, session: run_to_end(robot, session, AWAY_PROGRAM, "FAULTED", 1500),
     "still running": lambda robot, session: live(robot, session, "SI|F(0.3, 80)"),
     "left": leave,
 }
 
 
-@pytest.mark.parametrize("between", BETWEENS)
+@pytest.mark.parametrize("between", INTERVENING_STOPS)
 def test_a_button_that_was_down_meanwhile_starts_nothing(between: str) -> None:
     robot, session = switched_on(), computer()
     waiting(robot, session)
     robot.talk(session, 1, flags=1)
     robot.talk(session, 50)
-    BETWEENS[between](robot, session)
+    INTERVENING_STOPS[between](robot, session)
     robot.did.clear()
     robot.talk(session, 1, flags=2)
     robot.talk(session, 500)

@@ -19,7 +19,7 @@ from tests.support.command import OBSTACLE
 from tests.support.images import image_of
 from tests.support.robot_on_host import (
     KIT,
-    LONG,
+    LONG_PROGRAM,
     actions_of,
     computer,
     outcome,
@@ -504,7 +504,7 @@ def test_an_upload_while_text_arrives(line: str) -> None:
     """It is complete, or refused without replacing the previous program."""
     robot, session = holding()
     bytes_before = fetch_image(robot, session)
-    request = session.upload(image_of(LONG))
+    request = session.upload(image_of(LONG_PROGRAM))
     robot.talk(session, 10)
     for byte in line.encode():
         session.receive(robot.step(bytes((byte,))), robot.now_ms)
@@ -514,7 +514,7 @@ def test_an_upload_while_text_arrives(line: str) -> None:
     robot.talk(session, 6000)
     image = fetch_image(robot, session)
     if outcome == OK:
-        assert image.endswith(image_of(LONG).code)
+        assert image.endswith(image_of(LONG_PROGRAM).code)
     elif not line.startswith("SB"):
         assert image == bytes_before
 
@@ -522,7 +522,7 @@ def test_an_upload_while_text_arrives(line: str) -> None:
 @pytest.mark.parametrize("start", ["SI", "SB"])
 def test_text_while_a_program_is_being_saved(start: str) -> None:
     robot, session = switched_on(), computer()
-    send(robot, session, LONG.replace("SI", "SB"))
+    send(robot, session, LONG_PROGRAM.replace("SI", "SB"))
     robot.wait(300)
     answers = []
     for _ in range(40):
@@ -535,7 +535,7 @@ def test_text_while_a_program_is_being_saved(start: str) -> None:
     robot.wait(12_000)
     restarted_robot = switched_on(robot.memory())
     image = fetch_image(restarted_robot, computer(2))
-    assert image.endswith(image_of(LONG).code)
+    assert image.endswith(image_of(LONG_PROGRAM).code)
 
 
 def test_values_wait_for_room_and_none_is_lost() -> None:
@@ -640,7 +640,7 @@ def test_the_obstacle_program_in_lines(end: str) -> None:
 # -- answers that are cut -------------------------------------------------------------------------
 
 PACE = 21  # ticks of a byte at 9600 baud
-ASKED = ("HELP", "PING|CHECK_CONNECTION", "F(1,500)")
+ANSWERED_LINES = ("HELP", "PING|CHECK_CONNECTION", "F(1,500)")
 CUTS = {
     "zeros": bytes(8),
     "a message": b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0)),
@@ -667,7 +667,7 @@ def answer_to(robot: HostFirmware, line: str) -> bytes:
 
 @pytest.mark.sampled("cut")
 @pytest.mark.parametrize("cut", CUTS)
-@pytest.mark.parametrize("line", ASKED)
+@pytest.mark.parametrize("line", ANSWERED_LINES)
 def test_an_answer_that_was_cut_begins_anew(line: str, cut: str) -> None:
     """The cut may come at any moment of the answer: the rest is not sent, and the next answer is
     that of a fresh robot.

@@ -25,7 +25,7 @@ from tests.support.images import image_of
 from tests.support.platformio import firmware, shared_folder
 from tests.support.robot_on_uno import FORWARD, KIT, NAMES, OBSTACLE_LINES, OFF, states
 from tests.support.stop_spellings import (
-    ALL,
+    ALL_PREFIXES,
     FRAMED,
     HELD_MS,
     MOST_MS,
@@ -125,16 +125,16 @@ def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: boo
 
 
 @pytest.mark.sampled("name", keep=6)
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("name", ALL_PREFIXES)
 def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> None:
     """Half of the spellings are typed at one rate, the others at the other one; the receiver
     alone gets each of them after any prefix in `tests/link`. After the last one the robot is asked
     whether it is latched."""
     uno, baud = driving_at
-    spellings = spellings_after(name)[(list(ALL).index(name) + BAUDS.index(baud)) % 2 :: 2]
+    spellings = spellings_after(name)[(list(ALL_PREFIXES).index(name) + BAUDS.index(baud)) % 2 :: 2]
     for spelling in spellings:
         with uno.try_out():
-            stop_after(uno, baud, ALL[name], spelling)
+            stop_after(uno, baud, ALL_PREFIXES[name], spelling)
             if spelling == spellings[-1]:
                 check_latched(uno)
 
@@ -233,7 +233,7 @@ def off_after_silence(uno: Uno, data: bytes, byte_ms: float) -> float:
 
 # -- when lines count again -----------------------------------------------------------------------
 
-AGAIN = b"SI|F(1,60)\n"
+NEXT_PROGRAM = b"SI|F(1,60)\n"
 EACH_MS = 300
 PAUSE = "// Stopped: wait a second\r\n"
 
@@ -242,7 +242,7 @@ def repeat_until_it_drives(uno: Uno, most_ms: int) -> int:
     """Send a line every EACH_MS; return after how many ms the robot drives, or most_ms."""
     passed_ms = 0
     while passed_ms < most_ms:
-        uno.send(AGAIN)
+        uno.send(NEXT_PROGRAM)
         uno.run_ms(EACH_MS)
         passed_ms += EACH_MS
         if states(uno) == FORWARD:
@@ -365,7 +365,7 @@ def test_code_that_holds_a_typed_stop_runs(uno_at: tuple[Uno, int], way: str) ->
 
 
 def random_prefix(draw: random.Random) -> bytes:
-    parts = [draw.choice(list(ALL.values())) for _ in range(draw.randrange(3))]
+    parts = [draw.choice(list(ALL_PREFIXES.values())) for _ in range(draw.randrange(3))]
     odd = bytes(draw.choice(b"\0\x01S\n s;T\r\x1b[OPp\t5(") for _ in range(draw.randrange(20)))
     parts += [odd, draw.randbytes(draw.randrange(30))]
     draw.shuffle(parts)

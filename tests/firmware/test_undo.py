@@ -27,7 +27,7 @@ from tests.support.kept_programs import (
 )
 from tests.support.robot_on_host import (
     KIT,
-    LONG,
+    LONG_PROGRAM,
     actions_of,
     broken_upload,
     computer,
@@ -44,11 +44,11 @@ from tiniscript.link.messages import SAVED_STORED, STATUSES
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
-A, B, C = "SB|F(0.1, 50)", LONG.replace("SI", "SB"), "SI|F(0.1, 70)"
+PROGRAM_A, PROGRAM_B, PROGRAM_C = "SB|F(0.1, 50)", LONG_PROGRAM.replace("SI", "SB"), "SI|F(0.1, 70)"
 NO_PREVIOUS = STATUSES["NO_PREVIOUS"]
 
 
-def with_two(first: str = A, second: str = B) -> tuple[HostFirmware, Session]:
+def with_two(first: str = PROGRAM_A, second: str = PROGRAM_B) -> tuple[HostFirmware, Session]:
     """Return a robot that holds the second program, and has saved the first one before."""
     robot, session = switched_on(), computer()
     for text in (first, second):
@@ -71,21 +71,21 @@ def with_byte(text: str, at: int, value: int) -> bytes:
 
 
 # One of the bytes that it needs.
-OF_ANOTHER_KIT = with_checksum(with_byte("SI|SHOW(DISTANCE)", 6, 0x11))
-THAT_NO_VERIFIER_TAKES = with_checksum(with_byte(A, -1, 0xFE))
-CANNOT_RUN = {
+OTHER_KIT_IMAGE = with_checksum(with_byte("SI|SHOW(DISTANCE)", 6, 0x11))
+INVALID_IMAGE = with_checksum(with_byte(PROGRAM_A, -1, 0xFE))
+UNRUNNABLE_IMAGES = {
     "version": LATER_VERSION,
-    "kit": OF_ANOTHER_KIT,
-    "minor": with_checksum(with_byte(A, 3, ISA_MINOR + 1)),
-    "verifier": THAT_NO_VERIFIER_TAKES,
-    "damaged": with_byte(A, -1, bytes_of(A)[-1] ^ 1),
+    "kit": OTHER_KIT_IMAGE,
+    "minor": with_checksum(with_byte(PROGRAM_A, 3, ISA_MINOR + 1)),
+    "verifier": INVALID_IMAGE,
+    "damaged": with_byte(PROGRAM_A, -1, bytes_of(PROGRAM_A)[-1] ^ 1),
 }
 
 
-@pytest.mark.parametrize("image", CANNOT_RUN.values(), ids=CANNOT_RUN)
+@pytest.mark.parametrize("image", UNRUNNABLE_IMAGES.values(), ids=UNRUNNABLE_IMAGES)
 @pytest.mark.parametrize("is_first", [True, False])
 def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> None:
-    good = bytes_of(A)
+    good = bytes_of(PROGRAM_A)
     places = (FIRST, SECOND) if is_first else (SECOND, FIRST)
     robot = HostFirmware(KIT, eeprom_with((places[0], 7, good), (places[1], 6, image)))
     session = computer()
@@ -99,19 +99,19 @@ def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> 
     assert "MOTORS 50 50" in actions_of(robot)
     assert program_after_power_off(robot) == good
     # The next program is stored next to the one that can run.
-    send(robot, session, C)
+    send(robot, session, PROGRAM_C)
     wait_until_saved(robot, session)
     assert undo(robot, session) == OK
     assert fetch_image(robot, session) == good
 
 
-@pytest.mark.parametrize("image", [OF_ANOTHER_KIT, THAT_NO_VERIFIER_TAKES], ids=["kit", "verifier"])
+@pytest.mark.parametrize("image", [OTHER_KIT_IMAGE, INVALID_IMAGE], ids=["kit", "verifier"])
 @pytest.mark.parametrize("has_good", [True, False])
 def test_a_robot_begins_with_the_newest_program_that_it_can_run(
     image: bytes, has_good: bool
 ) -> None:
     """Its checksum is right, so that only the verifier or the kit says no."""
-    good = bytes_of(A)
+    good = bytes_of(PROGRAM_A)
     before = [(SECOND, 6, good)] if has_good else []
     robot, session = HostFirmware(KIT, eeprom_with(*before, (FIRST, 7, image))), computer()
     robot.wait(400)
@@ -120,9 +120,9 @@ def test_a_robot_begins_with_the_newest_program_that_it_can_run(
     robot.push()
     robot.talk(session, 400)
     assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"] * has_good
-    send(robot, session, C, runs=False)
+    send(robot, session, PROGRAM_C, runs=False)
     wait_until_saved(robot, session)
-    assert program_after_power_off(robot) == bytes_of(C)
+    assert program_after_power_off(robot) == bytes_of(PROGRAM_C)
 
 
 # -- programs in RAM only --------------------------------------------------------------------------
@@ -130,24 +130,24 @@ def test_a_robot_begins_with_the_newest_program_that_it_can_run(
 
 def test_a_program_that_is_not_saved_makes_way_for_the_saved_one() -> None:
     robot, session = with_two()
-    send(robot, session, C, saves=False)
+    send(robot, session, PROGRAM_C, saves=False)
     robot.talk(session, 500)
     memory = robot.memory()
     assert robot.complete(session, session.undo()).saved == SAVED_STORED
-    assert fetch_image(robot, session) == bytes_of(B)
+    assert fetch_image(robot, session) == bytes_of(PROGRAM_B)
     robot.talk(session, 500)
     assert robot.memory() == memory, "nothing is written"
     assert undo(robot, session) == OK
-    assert fetch_image(robot, session) == bytes_of(A)
+    assert fetch_image(robot, session) == bytes_of(PROGRAM_A)
 
 
 def test_a_program_that_is_not_saved_stays_where_nothing_is() -> None:
     robot, session = switched_on(), computer()
     assert undo(robot, session) == NO_PREVIOUS
     assert read_saved_state(robot, session) == "NOTHING"
-    send(robot, session, A, saves=False)
+    send(robot, session, PROGRAM_A, saves=False)
     assert undo(robot, session) == NO_PREVIOUS
-    assert fetch_image(robot, session) == bytes_of(A)
+    assert fetch_image(robot, session) == bytes_of(PROGRAM_A)
     robot.push()
     robot.talk(session, 400)
     assert "MOTORS 50 50" in actions_of(robot)
@@ -156,14 +156,21 @@ def test_a_program_that_is_not_saved_stays_where_nothing_is() -> None:
 # -- in the middle of something -------------------------------------------------------------------
 
 
-NAMED, SAVED_ONE, TRIED, CUT = "a name", "a saved program", "a tried program", "a cut upload"
-ASKED = [
-    steps for count in (1, 2, 3) for steps in product((NAMED, SAVED_ONE, TRIED, CUT), repeat=count)
+NAME_CHANGE, SAVED_PROGRAM, TRIED_PROGRAM, CUT_UPLOAD = (
+    "a name",
+    "a saved program",
+    "a tried program",
+    "a cut upload",
+)
+STEP_SEQUENCES = [
+    steps
+    for count in (1, 2, 3)
+    for steps in product((NAME_CHANGE, SAVED_PROGRAM, TRIED_PROGRAM, CUT_UPLOAD), repeat=count)
 ]
 
 
 @pytest.mark.sampled("steps", keep=20)
-@pytest.mark.parametrize("steps", ASKED, ids=", ".join)
+@pytest.mark.parametrize("steps", STEP_SEQUENCES, ids=", ".join)
 def test_what_a_low_supply_has_kept_waiting_is_done_as_it_was_asked_for_last(
     steps: tuple[str, ...],
 ) -> None:
@@ -173,26 +180,26 @@ def test_what_a_low_supply_has_kept_waiting_is_done_as_it_was_asked_for_last(
     waits, is_tried, name = "", False, ""
     for count, step in enumerate(steps):
         text = f"SI|SHOW({count}); " + "W(0); " * 20
-        if step == NAMED:
+        if step == NAME_CHANGE:
             name = f"name {count}"
             assert robot.until(session, session.name(name.encode())) == STATUSES["LOW_SUPPLY"]
-        elif step == CUT:
+        elif step == CUT_UPLOAD:
             broken_upload(robot, session)
             session = computer(90 + count)
         else:
-            send(robot, session, text, saves=step == SAVED_ONE)
+            send(robot, session, text, saves=step == SAVED_PROGRAM)
             robot.talk(session, 800)  # makes it wait for the supply
-        if step != NAMED:
-            waits, is_tried = text if step == SAVED_ONE else "", step == TRIED
+        if step != NAME_CHANGE:
+            waits, is_tried = text if step == SAVED_PROGRAM else "", step == TRIED_PROGRAM
     robot.supply(is_low=False)
     robot.talk(session, 5000)
     assert read_saved_state(robot, session) == ("MEMORY" if is_tried else "STORED")
-    assert program_after_power_off(robot) == bytes_of(waits or B)
+    assert program_after_power_off(robot) == bytes_of(waits or PROGRAM_B)
     assert name_after_power_off(robot) == name
-    if waits or SAVED_ONE not in steps:  # otherwise the abandoned program has replaced A
+    if waits or SAVED_PROGRAM not in steps:  # otherwise the abandoned program has replaced A
         restarted_robot, session = switched_on(robot.memory()), computer(80)
         assert undo(restarted_robot, session) == OK
-        assert fetch_image(restarted_robot, session) == bytes_of(B if waits else A)
+        assert fetch_image(restarted_robot, session) == bytes_of(PROGRAM_B if waits else PROGRAM_A)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
@@ -200,17 +207,17 @@ def test_with_a_low_supply_nothing_is_touched_and_nothing_is_lost(count: int) ->
     robot, session = with_two()
     robot.supply(is_low=True)
     memory = robot.memory()
-    for text in (A, B, A)[:count]:
+    for text in (PROGRAM_A, PROGRAM_B, PROGRAM_A)[:count]:
         assert undo(robot, session) == OK
         robot.talk(session, 1500)
         assert fetch_image(robot, session) == bytes_of(text)
         assert robot.memory() == memory
-        assert program_after_power_off(robot) == bytes_of(B)
-    assert read_saved_state(robot, session) == ("STORED" if text == B else "LOW_SUPPLY")
+        assert program_after_power_off(robot) == bytes_of(PROGRAM_B)
+    assert read_saved_state(robot, session) == ("STORED" if text == PROGRAM_B else "LOW_SUPPLY")
     robot.supply(is_low=False)
     robot.talk(session, 1500)
     assert read_saved_state(robot, session) == "STORED"
-    for now in (text, B if text == A else A):
+    for now in (text, PROGRAM_B if text == PROGRAM_A else PROGRAM_A):
         assert fetch_image(robot, session) == bytes_of(now)
         assert program_after_power_off(robot) == bytes_of(now)
         if now == text:
@@ -220,7 +227,7 @@ def test_with_a_low_supply_nothing_is_touched_and_nothing_is_lost(count: int) ->
 
 def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
     """The restore waits until the motors are off before its first byte."""
-    robot, session = with_two(DRIVES, A)
+    robot, session = with_two(DRIVES, PROGRAM_A)
     memory = robot.memory()
     assert undo(robot, session) == OK
     assert robot.until(session, session.start()) == OK
@@ -246,10 +253,10 @@ def test_pulled_out_at_any_moment_it_has_one_of_the_two(cut_ms: int) -> None:
         programs.append(fetch_image(restarted_robot, other))
         memory = restarted_robot.memory()
     assert programs[0] == programs[1]
-    assert programs[0] in (bytes_of(A), bytes_of(B))
+    assert programs[0] in (bytes_of(PROGRAM_A), bytes_of(PROGRAM_B))
     is_answered = request.outcome is not None
     robot.talk(session, 1000)
-    assert program_after_power_off(robot) == bytes_of(A)
+    assert program_after_power_off(robot) == bytes_of(PROGRAM_A)
     assert is_answered or cut_ms < 100
 
 
@@ -262,14 +269,14 @@ def test_a_request_that_comes_twice_is_done_once() -> None:
     assert request.outcome is None
     programs = {answer.payload[:5] for answer in answers if answer}
     assert None not in answers
-    assert programs == {bytes([OK]) + image_of(A).checksum.to_bytes(4, "little")}
-    assert fetch_image(robot, computer(9)) == bytes_of(A)
+    assert programs == {bytes([OK]) + image_of(PROGRAM_A).checksum.to_bytes(4, "little")}
+    assert fetch_image(robot, computer(9)) == bytes_of(PROGRAM_A)
 
 
 def test_any_order_of_programs_undos_and_power_offs() -> None:
     """The model has two variables: the current program and the previous one."""
     draw = random.Random(11)
-    texts = [f"SB|F(0.1, {power})" for power in range(40, 46)] + [B]
+    texts = [f"SB|F(0.1, {power})" for power in range(40, 46)] + [PROGRAM_B]
     robot, session = switched_on(), computer()
     now, text_before = "", ""
     for step in range(120):
@@ -294,8 +301,8 @@ def test_any_order_of_programs_undos_and_power_offs() -> None:
 # -- in every state of the firmware ---------------------------------------------------------------
 
 
-EARLIER = 21  # the power of the program that was saved first
-IN_MEMORY = {
+EARLIER_POWER = 21  # the power of the program that was saved first
+STATES_IN_MEMORY = {
     "holds a program in memory only", "holds a program that was typed",
     "is running a program in memory",
 }  # fmt: skip
@@ -306,7 +313,7 @@ def robot_in_state(state: str, has_draft: bool = True) -> tuple[Table, Session]:
     """Return a robot in a state, and the client that asks: the connected one, or another one."""
     table = Table(has_draft)
     table.robot.wait(200)
-    table.upload_program(EARLIER)
+    table.upload_program(EARLIER_POWER)
     STATES[state](table)
     if table.talks is not None:
         return table, table.talks
@@ -336,7 +343,7 @@ def back_in(state: str) -> int:
         return 0  # EARLIER is the only one
     if state == "is bringing back the previous program":
         return OTHER
-    return SAVED if state in IN_MEMORY else EARLIER
+    return SAVED if state in STATES_IN_MEMORY else EARLIER_POWER
 
 
 @pytest.mark.sampled("has_draft")
@@ -350,7 +357,7 @@ def test_undo_in_every_state(state: str, has_draft: bool) -> None:
     robot.did.clear()
     status = undo(robot, session)
     assert status == (OK if previous else NO_PREVIOUS)
-    now = program_of(previous or EARLIER)
+    now = program_of(previous or EARLIER_POWER)
     assert fetch_image(robot, session) == now
     assert robot.is_latched, "what runs ends"
     robot.talk(session, 1500)
@@ -385,7 +392,7 @@ def test_two_at_once_are_two(state: str) -> None:
 def test_a_plug_that_is_pulled_leaves_a_program_that_was_there(state: str, cut_ms: int) -> None:
     table, session = robot_in_state(state)
     robot = table.robot
-    programs_there = {after_power_off(table), program_of(EARLIER), program_of(SAVED)}
+    programs_there = {after_power_off(table), program_of(EARLIER_POWER), program_of(SAVED)}
     programs_there |= (
         {program_of(OTHER)} if state == "is bringing back the previous program" else set()
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from tests.machines.wired import Wired
 from tests.support.robot_on_uno import (
-    AWAY,
+    AWAY_PROGRAM,
     BAUD,
     FORWARD,
     MOTORS,
@@ -28,7 +28,7 @@ from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 PHASES = 160  # the fastest turn of the main loop takes some 110 cycles
-BUSY = "{ cli(); __builtin_avr_delay_cycles(170000); sei(); }"  # over 10 ms
+BUSY_CODE = "{ cli(); __builtin_avr_delay_cycles(170000); sei(); }"  # over 10 ms
 
 
 def read_counters(wired_uno: Wired) -> tuple[int, ...]:
@@ -56,7 +56,7 @@ def test_a_byte_without_its_stop_bit_damages_a_message(uno: Uno) -> None:
 
 def test_bytes_that_nobody_fetches_damage_a_message(tmp_path: Path) -> None:
     """Interrupts are off for 10 ms, which no part of the firmware does."""
-    elf = build_hanging_firmware(tmp_path, BUSY)
+    elf = build_hanging_firmware(tmp_path, BUSY_CODE)
     with Uno(elf, names=NAMES, baud=BAUD) as uno:
         uno.run_ms(300)
         wired_uno = computer(uno)
@@ -72,7 +72,7 @@ def test_bytes_that_nobody_fetches_damage_a_message(tmp_path: Path) -> None:
 def driving(uno: Uno) -> Wired:
     """Run a program that needs no computer."""
     wired_uno = computer(uno)
-    send(wired_uno, AWAY, is_detached=True)
+    send(wired_uno, AWAY_PROGRAM, is_detached=True)
     uno.run_ms(1500)
     assert states(uno) == FORWARD
     return wired_uno
@@ -106,7 +106,7 @@ def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(uno: Uno) 
     uno.run_ms(100)
     assert states(uno) == OFF
     wired_uno.run(100)
-    send(wired_uno, AWAY)
+    send(wired_uno, AWAY_PROGRAM)
     assert states(uno) == FORWARD
     assert read_counters(wired_uno)[2] == 1
     uno.send(bytes(4))

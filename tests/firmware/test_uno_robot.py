@@ -10,7 +10,7 @@ from tests.machines.wired import Wired
 from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_uno import (
-    AWAY,
+    AWAY_PROGRAM,
     BAUD,
     FORWARD,
     KIT,
@@ -155,7 +155,7 @@ def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: 
     """Glitches, single or repeated, do not count: the level must last for 50 ms."""
     uno.drive("radio", True)
     wired_uno = computer(uno)
-    send(wired_uno, AWAY)
+    send(wired_uno, AWAY_PROGRAM)
     low_for(uno, 49)
     wired_uno.run(150)
     assert states(uno) == FORWARD
@@ -189,7 +189,7 @@ def test_a_radio_that_is_not_there_ends_nothing_and_a_second_of_silence_does(uno
     """The pin is unconnected, or belongs to a radio without a client."""
     assert uno.pins["radio"].state == "pullup"
     wired_uno = computer(uno)
-    send(wired_uno, AWAY)
+    send(wired_uno, AWAY_PROGRAM)
     wired_uno.run(300)
     assert states(uno) == FORWARD
     uno.press("button")
@@ -197,7 +197,7 @@ def test_a_radio_that_is_not_there_ends_nothing_and_a_second_of_silence_does(uno
     uno.drive("radio", False)
     wired_uno.run(100)
     assert wired_uno.until(wired_uno.session.clear()) == OK
-    send(wired_uno, AWAY)
+    send(wired_uno, AWAY_PROGRAM)
     wired_uno.run(300)
     assert states(uno) == FORWARD
     last = max(byte.cycle for byte in uno.received_bytes)
@@ -211,9 +211,9 @@ def test_a_run_without_a_dead_man_timer_needs_nobody(uno: Uno, starts: str) -> N
     uno.drive("radio", True)
     wired_uno = computer(uno)
     if starts == "detached":
-        send(wired_uno, AWAY, is_detached=True)
+        send(wired_uno, AWAY_PROGRAM, is_detached=True)
     else:
-        send(wired_uno, AWAY.replace("SI", "SB"))
+        send(wired_uno, AWAY_PROGRAM.replace("SI", "SB"))
         wired_uno.run(100)
         uno.press("button")
         uno.run_ms(150)

@@ -8,7 +8,16 @@ import pytest
 
 from tests.machines.wired import Wired
 from tests.support.images import image_of
-from tests.support.robot_on_uno import AWAY, BAUD, FORWARD, NAMES, OFF, computer, send, states
+from tests.support.robot_on_uno import (
+    AWAY_PROGRAM,
+    BAUD,
+    FORWARD,
+    NAMES,
+    OFF,
+    computer,
+    send,
+    states,
+)
 from tests.support.uno_watchdog import (
     HANGS,
     HANGS_ALONE,
@@ -24,7 +33,7 @@ from tiniscript.link.trim import Pace, Trim, trim_from_reply
 from tools.uno import CYCLES_PER_MS, Uno
 
 LATER = "SI|W(0.1); F(70, 80)"
-MOVE_AT = {AWAY: 2, LATER: 4}  # the offset of the move, after its values
+MOVE_AT = {AWAY_PROGRAM: 2, LATER: 4}  # the offset of the move, after its values
 PACED = Trim(is_exchanged=True, least=3, pace=Pace(10, 20, 30, 40))
 
 
@@ -53,7 +62,7 @@ def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: 
         uno.run_ms(300)
         wired_uno = computer(uno)
         assert wired_uno.complete(wired_uno.session.trim(PACED.data()))
-        for number, text in enumerate((AWAY, LATER)):
+        for number, text in enumerate((AWAY_PROGRAM, LATER)):
             wired_uno = computer(uno, 2 + 2 * number)
             send(wired_uno, text)
             wired_uno.run(400)
@@ -90,7 +99,7 @@ def test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program(tmp_pat
     pauses = "for (uint8_t k = 0; k < 112; k++) {\n __builtin_avr_delay_cycles(16000);\n }"
     with Uno(build_hanging_firmware(tmp_path, pauses), names=NAMES, baud=BAUD) as uno:
         uno.run_ms(300)
-        send(computer(uno), AWAY)
+        send(computer(uno), AWAY_PROGRAM)
         uno.drive("button", False)
         uno.run_ms(400)
         uno.drive("button", None)
@@ -99,7 +108,7 @@ def test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program(tmp_pat
         wired_uno = computer(uno, 2)
         hello_reply = hello_of(wired_uno)
         assert (hello_reply.reset, hello_reply.fault) == (1, STALL)
-        send(wired_uno, AWAY)
+        send(wired_uno, AWAY_PROGRAM)
         wired_uno.run(300)
         assert states(uno) == FORWARD
 
@@ -129,7 +138,7 @@ def test_a_reset_that_is_no_hang_is_no_fault(uno: Uno) -> None:
         hello_reply = hello_of(wired_uno)
         assert hello_reply.fault == 0
         nonces.append(hello_reply.nonce)
-        send(wired_uno, AWAY)
+        send(wired_uno, AWAY_PROGRAM)
         assert states(uno) == FORWARD
         uno.reset()
         uno.run_ms(300)

@@ -25,15 +25,19 @@ from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, RUN, SAVE
 from tiniscript.link.requests import OK
 
 TRIALS = 1000  # trials of the tests; a campaign runs more
-LIVES = 100  # trials of one robot
-AGAIN, QUIET = 0.3, 0.3  # probability of a repeated frame, and of a second of silence before one
-CHECKSUM_AT, BODY_AT = 10, 14  # offsets in an image
+TRIALS_PER_ROBOT = 100  # trials of one robot
+REPEAT_PROBABILITY, SILENCE_PROBABILITY = (
+    0.3,
+    0.3,
+)  # probability of a repeated frame, and of a second of silence before one
+CHECKSUM_OFFSET, BODY_OFFSET = 10, 14  # offsets in an image
 # A number whose bytes are instructions: a letter in front of it turns it into a move.
-DRIVES = "SI|SHOW(-1337933.387)"
-WHOLE = ("F(0.01,30)", "SI|R(0.02,40)", "SI|M(20,20);W(0.01)", "SB|F(0.01,30)", DRIVES,
-         "SI|LOOP(2);W(0.01);END_LOOP", "PING|CHECK_CONNECTION", "SI|X=9.87;SHOW(X)")  # fmt: skip
-OTHER = ("HELP", "FOO", "F(1,500)", "SI|LOOP(2)", "IF(TRUE)", "ENDWHILE", "SI|F(1,", "+OK", "~",
-         "(", "SI|" + "X=1.2345;" * 9, "SB|" + "9" * 70)  # fmt: skip
+HIDDEN_MOVE_PROGRAM = "SI|SHOW(-1337933.387)"
+WHOLE_LINES = ("F(0.01,30)", "SI|R(0.02,40)", "SI|M(20,20);W(0.01)", "SB|F(0.01,30)",
+               HIDDEN_MOVE_PROGRAM, "SI|LOOP(2);W(0.01);END_LOOP", "PING|CHECK_CONNECTION",
+               "SI|X=9.87;SHOW(X)")  # fmt: skip
+OTHER_LINES = ("HELP", "FOO", "F(1,500)", "SI|LOOP(2)", "IF(TRUE)", "ENDWHILE", "SI|F(1,", "+OK",
+               "~", "(", "SI|" + "X=1.2345;" * 9, "SB|" + "9" * 70)  # fmt: skip
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
 
 
@@ -58,7 +62,7 @@ class Trials:
 
     def __init__(self, seed: int) -> None:
         self.rng = random.Random(seed)
-        self.lines = {line: plain(line) for line in WHOLE}
+        self.lines = {line: plain(line) for line in WHOLE_LINES}
         self.kinds = cycle((SmallRobot, HostFirmware))
         self.lives = 0
         self.ran = 0
@@ -66,7 +70,7 @@ class Trials:
     def begin(self) -> None:
         """Take a new robot now and then."""
         if self.lives == 0:
-            self.lives = LIVES
+            self.lives = TRIALS_PER_ROBOT
             self.robot = new(next(self.kinds))
             self.seq, self.epoch, self.heard = 0, 0, b""
         self.lives -= 1
@@ -94,11 +98,11 @@ class Trials:
         for _ in range(1 if is_whole else rng.choice((0, 1, 1, 1, 2, 3))):
             kind = 0 if is_whole else rng.randrange(4)
             if kind == 0:
-                line = rng.choice(WHOLE)
+                line = rng.choice(WHOLE_LINES)
                 codes.append(self.lines[line])
                 data += line.encode() + rng.choice((b"\n", b"\r", b"\r\n"))
             else:
-                line = rng.choice(LETTERS) if kind < 3 else rng.choice(OTHER)
+                line = rng.choice(LETTERS) if kind < 3 else rng.choice(OTHER_LINES)
                 data += line.encode() + rng.choice((b"\n", b"\0", b"\0", b"\r\n"))
         return data + b"\0", codes
 
@@ -112,14 +116,14 @@ class Trials:
             f"W(0.0{rng.randrange(1, 6)})",
         ]
         text = "SI|" + "; ".join(rng.choices(parts, k=rng.choice((1, 1, 2, 4))))
-        image = compile_text(rng.choice((text, text, text, DRIVES)), KIT).image
+        image = compile_text(rng.choice((text, text, text, HIDDEN_MOVE_PROGRAM)), KIT).image
         assert image
         return image
 
     def frames(self, image: bytes) -> list[bytes]:
         """Return a program as a line of live, in one frame, or in pieces."""
         how, mode = self.rng.randrange(4), RUN | self.rng.choice((0, 0, SAVE))
-        code, body = image[HEADER_BYTES:], image[BODY_AT:]
+        code, body = image[HEADER_BYTES:], image[BODY_OFFSET:]
         if how < 2:
             return [self.frame("LIVE", bytes([RUN]) + code)]
         if how == 2:
@@ -128,8 +132,8 @@ class Trials:
             self.frame("DATA", at.to_bytes(2, "little") + body[at : at + 9])
             for at in range(0, len(body), 9)
         ]
-        begin = self.frame("BEGIN", bytes([mode]) + image[2:CHECKSUM_AT])
-        return [begin, *pieces, self.frame("COMMIT", image[CHECKSUM_AT:BODY_AT])]
+        begin = self.frame("BEGIN", bytes([mode]) + image[2:CHECKSUM_OFFSET])
+        return [begin, *pieces, self.frame("COMMIT", image[CHECKSUM_OFFSET:BODY_OFFSET])]
 
     def trial(self) -> None:
         rng = self.rng
@@ -140,7 +144,7 @@ class Trials:
         image = self.program()
         may_run = Counter([image[HEADER_BYTES:]])
         for frame in self.frames(image):
-            is_quiet = rng.random() < QUIET
+            is_quiet = rng.random() < SILENCE_PROBABILITY
             bytes_before, codes = self.text(is_quiet)
             later_text, more = self.text()
             may_run.update(codes + more)
@@ -151,7 +155,7 @@ class Trials:
             cut = len(data) - rng.choice((rng.randrange(1, most), rng.randrange(len(frame))))
             self.put(data[:cut], rng.choice((0, 0, 1, 20 * is_quiet)))
             self.put(data[cut:] + rng.choice((b"", later_text)), rng.choice((1, 4, 20)))
-            if rng.random() < AGAIN:
+            if rng.random() < REPEAT_PROBABILITY:
                 self.put(b"", rng.choice((0, 20, 300)))
                 self.put(b"\0" + frame, 20)
         self.put(b"", rng.choice((5, 30, 1100)))
@@ -173,7 +177,7 @@ def test_what_runs_is_what_was_verified() -> None:
 def test_one_letter_makes_no_move_of_a_number(text: bytes) -> None:
     robot, session = new(), computer()
     assert robot.until(session, session.hello()) == OK
-    request = session.live(image_of(DRIVES).code)
+    request = session.live(image_of(HIDDEN_MOVE_PROGRAM).code)
     frame = session.poll(robot.now_ms)
     robot.step(text + frame[:-1], flags=16, ticks=1)
     session.receive(robot.step(frame[-1:]), robot.now_ms)

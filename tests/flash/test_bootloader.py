@@ -16,7 +16,16 @@ from tests.support.command import process
 from tests.support.images import image_of
 from tests.support.needs import need
 from tests.support.platformio import firmware, shared_folder
-from tests.support.robot_on_uno import AWAY, BAUD, FORWARD, NAMES, OFF, computer, send, states
+from tests.support.robot_on_uno import (
+    AWAY_PROGRAM,
+    BAUD,
+    FORWARD,
+    NAMES,
+    OFF,
+    computer,
+    send,
+    states,
+)
 from tests.support.uno_watchdog import (
     HANGS,
     HANGS_ALONE,
@@ -116,7 +125,7 @@ def test_optiboot_does_not_hide_a_hang_that_was_noted(tmp_path: Path) -> None:
         uno.run_ms(700)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on", "watchdog"]
-        assert read_reset_report(uno) == (WATCHDOG, STALL, image_of(AWAY).checksum)
+        assert read_reset_report(uno) == (WATCHDOG, STALL, image_of(AWAY_PROGRAM).checksum)
         assert states(uno) == OFF
 
 
@@ -128,7 +137,7 @@ def test_an_old_nano_goes_on_without_its_bootloader(tmp_path: Path) -> None:
         uno.run_ms(1000)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on"]
-        assert read_reset_report(uno) == (WATCHDOG, STALL, image_of(AWAY).checksum)
+        assert read_reset_report(uno) == (WATCHDOG, STALL, image_of(AWAY_PROGRAM).checksum)
         assert states(uno) == OFF
 
 
@@ -151,7 +160,7 @@ def test_an_old_nano_that_has_hung_for_good_stays_off_until_it_has_no_power(tmp_
 def hang(uno: Uno, limit_ms: int) -> None:
     """Make a driving robot hang: its motors must go off."""
     uno.run_ms(WAIT_MS)
-    send(computer(uno), AWAY)
+    send(computer(uno), AWAY_PROGRAM)
     assert states(uno) == FORWARD
     uno.drive("button", False)
     uno.run_ms(limit_ms + 5)

@@ -43,7 +43,7 @@ def test_a_lesson_speaks_of_blocks_to_those_who_have_them(number: int, language:
 
 
 # A question, or an instruction for a pupil.
-ASKS = {
+INSTRUCTION_PATTERNS = {
     "en": r"\?|\b(Build|Change|Find|Follow|Guess|Invent|Press|Put|Read|Say|Think|Try|Write)\b",
     "es": r"\?|\b(Arma|Busca|Cambia|Di|Dilo|Escribe|Inventa|Junta|Lee|Piensa|Pon|Prueba|Pruébalo"
     r"|Pulsa|Sigue)\b",
@@ -60,7 +60,7 @@ def test_each_step_has_something_to_do(language: str, form: str) -> None:
                 row[0] for block in step["blocks"] if block["kind"] != "program"
                 for row in block["rows"]
             )  # fmt: skip
-            assert re.search(ASKS[language], text, re.IGNORECASE), (number, k, text)
+            assert re.search(INSTRUCTION_PATTERNS[language], text, re.IGNORECASE), (number, k, text)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -23,7 +23,7 @@ from tools.builds.page_texts import page_texts
 FOLDERS = catalogue.folders()
 MINUTES = "45"
 OTHER_SEEDS = range(101, 103)  # worlds that the command itself does not try
-BY_HEART = "by heart"  # part of a wrong answer's label
+BY_HEART_LABEL = "by heart"  # part of a wrong answer's label
 HEADINGS = 5  # headings of a pupil's page: title, materials, steps, task, check
 
 each_lesson = pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: path.name)
@@ -73,7 +73,7 @@ def test_a_lesson_has_answers_and_typical_mistakes(folder: Path) -> None:
     if (
         catalogue.load(folder).world_count > 1 and folder.name[:2] != "08"
     ):  # the other one is "always to the left"
-        assert any(BY_HEART in answer.label_by_language["en"] for answer in wrong)
+        assert any(BY_HEART_LABEL in answer.label_by_language["en"] for answer in wrong)
 
 
 @each_lesson

@@ -21,10 +21,10 @@ from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.markdown import blocks, printed_part
 from tiniscript.lessons.sentences import sentence
 
-FOLLOW = (
+FOLLOW_LINE = (
     "IF(LINE_L); M(5,40); ELSEIF(LINE_R); M(40,5); ELSE; M(35,35); ENDIF; W(0.02) UNTIL(BUTTON)"
 )
-RIGHT = [
+RIGHT_ANSWERS = [
     (1, 1, "M(80,80)\nW(2.5)"),
     (1, 1, "f(2.5, 80)\nloop(forever); beep(0.5, 440); w(0.5); endloop"),  # the robot stays there
     (1, 1, "LOOP(FOREVER); F(0.5,80); IF(TIME >= 2.5); BREAK; ENDIF; END_LOOP"),
@@ -45,17 +45,17 @@ RIGHT = [
     (10, 3, "LOOP(250); IF(LIGHT_L > LIGHT_R + 5); M(20,45); ELSEIF(LIGHT_R > LIGHT_L + 5); M(45,20); ELSE; M(40,40); ENDIF; W(0.05); END_LOOP"),
     (10, 4, "LOOP(40); L(1,30) UNTIL(LIGHT_L <= LIGHT_R); R(1,30) UNTIL(LIGHT_R <= LIGHT_L); F(0.3,50); END_LOOP"),
     (11, 1, "DEF PARADERO; F(0.4,40); F(FOREVER,40) UNTIL(LINE_L); BEEP(1,440); END_DEF; LOOP(3); PARADERO; END_LOOP; LOOP(FOREVER); W(1); END_LOOP"),
-    (12, 1, f"DEF SIGUE; {FOLLOW}; END_DEF; WHILE(NOT BUTTON); SIGUE; END_WHILE; S; T = TIME; BEEP(1,880); SHOW(T)"),
-    (12, 2, f"DEF SIGUE; {FOLLOW}; END_DEF; WHILE(NOT BUTTON); SIGUE; END_WHILE; SHOW(ROUND(TIME,0))"),
+    (12, 1, f"DEF SIGUE; {FOLLOW_LINE}; END_DEF; WHILE(NOT BUTTON); SIGUE; END_WHILE; S; T = TIME; BEEP(1,880); SHOW(T)"),
+    (12, 2, f"DEF SIGUE; {FOLLOW_LINE}; END_DEF; WHILE(NOT BUTTON); SIGUE; END_WHILE; SHOW(ROUND(TIME,0))"),
 ]  # fmt: skip
-BY_HEART = [
+MEMORIZED_ANSWERS = [
     (6, 1, "F(1, 60); LOOP(3); SHOW(80); END_LOOP"),
     (7, 2, "LOOP(3); F(1, 60) UNTIL(DISTANCE < 1); END_LOOP"),
     (8, 2, "F(2.6,60); L(0.42,60); IF(TRUE); F(2.4,60); ENDIF"),
     (9, 1, "LOOP(5); F(3,60); R(0.833,60); END_LOOP"),
     (10, 2, "X = LIGHT_L - LIGHT_R; L(0.1, 60); F(6, 60)"),
     (11, 2, "LOOP(3); F(2.9,40); BEEP(0.2,440); W(1); END_LOOP"),
-    (12, 1, f"DEF SIGUE; {FOLLOW}; END_DEF; WHILE(NOT BUTTON); SIGUE; END_WHILE; S; SHOW(16)"),
+    (12, 1, f"DEF SIGUE; {FOLLOW_LINE}; END_DEF; WHILE(NOT BUTTON); SIGUE; END_WHILE; S; SHOW(16)"),
 ]  # fmt: skip
 PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
     1: {
@@ -316,7 +316,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
     },
 }  # fmt: skip
-EACH = [
+ALL_WRONG_ANSWERS = [
     pytest.param(number, program, what, id=f"{number}-{group}-{k}")
     for number, groups in PROGRAMS.items()
     for group, programs in groups.items()
@@ -337,8 +337,8 @@ def test_every_lesson_has_some() -> None:
     assert all(groups.get("right") for groups in PROGRAMS.values())
 
 
-@pytest.mark.sampled("number", "program", "what", keep=len(EACH) // 8)
-@pytest.mark.parametrize(("number", "program", "what"), EACH)
+@pytest.mark.sampled("number", "program", "what", keep=len(ALL_WRONG_ANSWERS) // 8)
+@pytest.mark.parametrize(("number", "program", "what"), ALL_WRONG_ANSWERS)
 def test_what_a_pupil_wrote_is_marked_fairly(number: int, program: str, what: str) -> None:
     """In all worlds of the task: right programs get no finding, and others the right cause."""
     lesson = lesson_of(number)
@@ -348,13 +348,13 @@ def test_what_a_pupil_wrote_is_marked_fairly(number: int, program: str, what: st
         assert what in sentence(findings[0], "en")
 
 
-@pytest.mark.sampled("number", "seed", "program", keep=len(RIGHT) // 16)
-@pytest.mark.parametrize(("number", "seed", "program"), RIGHT)
+@pytest.mark.sampled("number", "seed", "program", keep=len(RIGHT_ANSWERS) // 16)
+@pytest.mark.parametrize(("number", "seed", "program"), RIGHT_ANSWERS)
 def test_a_right_program_of_another_shape_passes(number: int, seed: int, program: str) -> None:
     assert is_right(number, seed, program)
 
 
-@pytest.mark.parametrize(("number", "seed", "program"), BY_HEART)
+@pytest.mark.parametrize(("number", "seed", "program"), MEMORIZED_ANSWERS)
 def test_a_program_by_heart_does_not(number: int, seed: int, program: str) -> None:
     assert not is_right(number, seed, program)
 

@@ -11,20 +11,20 @@ import pytest
 import tiniscript
 from tests.support.ble_robot import (
     ADDRESS,
+    ADDRESS_PORT,
     DRIVE,
-    DROVE,
+    DRIVE_ACTIONS,
     HM10,
-    LAMP,
+    LAMP_SERVICE,
     NAME,
     NORDIC,
-    PLACE,
     BleRobot,
     Echo,
     Peripheral,
     uploading,
 )
 from tests.support.command import LONG, Command, inside
-from tests.support.fake_bluez import ADVERTISED_S, FakeBluez
+from tests.support.fake_bluez import ADVERTISING_INTERVAL_S, FakeBluez
 from tests.support.interrupted import interrupted_bell
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import until
@@ -40,23 +40,27 @@ def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
     """Skip the waits for cables and the network; modules announce their names more often."""
     monkeypatch.setattr("tiniscript.link.ports.list_ports", list)
     monkeypatch.setattr("tiniscript.link.ports.find_announced_robots", list)
-    monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.LINGER_S", 16 * ADVERTISED_S)
-    monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.LIST_S", 30 * ADVERTISED_S)
+    monkeypatch.setattr(
+        "tiniscript.link.transports.bluetooth_search.LINGER_S", 16 * ADVERTISING_INTERVAL_S
+    )
+    monkeypatch.setattr(
+        "tiniscript.link.transports.bluetooth_search.LIST_S", 30 * ADVERTISING_INTERVAL_S
+    )
 
 
 # -- requests -----------------------------------------------------------------------------------
 
 
 def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot) -> None:
-    for count, port in enumerate((NAME, PLACE, "BLE://tini 1", PLACE.lower()), 1):
+    for count, port in enumerate((NAME, ADDRESS_PORT, "BLE://tini 1", ADDRESS_PORT.lower()), 1):
         result = inside("upload", "-e", DRIVE, "--port", port)
         assert (result.code, result.err) == (0, ""), port
         assert result.out.splitlines()[-2:] == ["Done.", "Saved. The button starts it."]
-        assert (ble.robot.actions, ble.connections) == (DROVE * count, 2 * count - 1)
+        assert (ble.robot.actions, ble.connections) == (DRIVE_ACTIONS * count, 2 * count - 1)
         assert inside("set", "trim", "--show").code == 0  # the port is remembered
     assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
     assert max(len(data) for _, data in ble.written) == 20
-    inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\nR(0.1, 40)\n").gives(0, "")
+    inside("live", "-", "--port", ADDRESS_PORT, data=b"F(0.1, 50)\nR(0.1, 40)\n").gives(0, "")
     assert ble.robot.actions[-6::3] == ["MOTORS 50 50", "MOTORS 40 -40"]
 
 
@@ -73,8 +77,8 @@ def test_a_long_program_arrives_whole(
     bluez.add(ble)
     ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
     inside("compile", "-e", LONG, "-o", ours)
-    assert inside("upload", ours, "--no-run", "--port", PLACE).code == 0
-    assert inside("show", "-o", theirs, "--port", PLACE).code == 0
+    assert inside("upload", ours, "--no-run", "--port", ADDRESS_PORT).code == 0
+    assert inside("show", "-o", theirs, "--port", ADDRESS_PORT).code == 0
     assert theirs.read_bytes() == ours.read_bytes()
     longest = max(len(data) for _, data in ble.written)
     assert longest == (20 if service == HM10 else min(mtu - 3, LARGEST))
@@ -87,15 +91,15 @@ def test_where_a_module_answers_each_write_it_is_waited_for(
     ble = BleRobot(pty_robot)
     ble.characteristics = [(ble.characteristics[0][0], ["write", "notify"])]
     bluez.add(ble)
-    assert inside("upload", "-e", DRIVE, "--port", PLACE).code == 0
+    assert inside("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
     assert {kind for kind, _ in ble.written} == {"request"}
-    assert pty_robot.actions == DROVE
+    assert pty_robot.actions == DRIVE_ACTIONS
 
 
 # -- holders of the port -------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("port", [NAME, PLACE, ""])
+@pytest.mark.parametrize("port", [NAME, ADDRESS_PORT, ""])
 def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: str) -> None:
     command = uploading(ble, NAME)
     rows = [row for row in json.loads(inside("doctor", "--ports", "--json").out) if row["held_by"]]
@@ -108,7 +112,7 @@ def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: 
 
 
 def test_two_at_once_take_turns(ble: BleRobot) -> None:
-    both = [Command("doctor", "--identify", "--port", port) for port in (NAME, PLACE)]
+    both = [Command("doctor", "--identify", "--port", port) for port in (NAME, ADDRESS_PORT)]
     results = [command.wait_for_result() for command in both]
     assert 0 in [result.code for result in results]
     for result in results:
@@ -142,9 +146,9 @@ def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
     command.kill()
     ble.robot.until(lambda: not ble.robot.moves, "the dead-man timer stops it")
     assert bluez.devices[ADDRESS].is_connected
-    for port in (NAME, PLACE):
+    for port in (NAME, ADDRESS_PORT):
         assert inside("upload", "-e", DRIVE, "--port", port).code == 0
-    assert ble.robot.actions[-3:] == DROVE
+    assert ble.robot.actions[-3:] == DRIVE_ACTIONS
 
 
 # -- which robot --------------------------------------------------------------------------------
@@ -157,10 +161,10 @@ def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, lat
     twin.late = late
     bluez.add(twin)
     inside("upload", "-e", DRIVE, "--port", NAME).gives(
-        3, f"several robots are called {NAME}", f"{PLACE}, ble://{OTHER}"
+        3, f"several robots are called {NAME}", f"{ADDRESS_PORT}, ble://{OTHER}"
     )
     assert ble.connections == 0
-    assert inside("upload", "-e", DRIVE, "--port", PLACE).code == 0
+    assert inside("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
 
 
 @pytest.mark.parametrize(("name", "typed"), [
@@ -179,18 +183,18 @@ def test_names_are_text(bluez: FakeBluez, pty_robot: PtyRobot, name: str, typed:
 def test_a_name_that_looks_like_an_address_is_none(bluez: FakeBluez, ble: BleRobot) -> None:
     fake = Peripheral(ADDRESS, OTHER)
     bluez.add(fake)
-    assert inside("doctor", "--identify", "--port", PLACE).code == 0
+    assert inside("doctor", "--identify", "--port", ADDRESS_PORT).code == 0
     assert (ble.connections, fake.connections) == (1, 0)
 
 
 def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBluez) -> None:
     hostile = "\x1b[31mNo\r\ntsc: \u202ename"
     bluez.add(Echo(hostile, OTHER))
-    bluez.add(Peripheral("lamp", "AA:BB:CC:DD:EE:03", LAMP))
+    bluez.add(Peripheral("lamp", "AA:BB:CC:DD:EE:03", LAMP_SERVICE))
     result = inside("doctor", "--ports", "--ask").gives(0)
     rows = {line.split("   ")[0]: line.split("   ")[1:] for line in result.out.splitlines()}
-    assert rows[PLACE] == ["Tini 1, Bluetooth LE", "robot tinibot (free)"]
-    assert [port for port in rows if port.startswith("ble")] == [f"ble://{OTHER}", PLACE]
+    assert rows[ADDRESS_PORT] == ["Tini 1, Bluetooth LE", "robot tinibot (free)"]
+    assert [port for port in rows if port.startswith("ble")] == [f"ble://{OTHER}", ADDRESS_PORT]
     assert not any(sign in result.out for sign in "\x1b\r\u202e")
     assert inside("doctor", "--identify", "--port", NAME).code == 0  # from now on it has this name
     known_ports.remember("ble://yesterday", "Yesterday")
@@ -199,7 +203,7 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
         for row in json.loads(inside("doctor", "--ports", "--ask", "--json").out)
     }
     assert (names[NAME], names["ble://yesterday"]) == ("robot tinibot (free)", "out of range now")
-    assert PLACE not in names
+    assert ADDRESS_PORT not in names
 
 
 def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
@@ -208,7 +212,7 @@ def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
         ports = ("--port", NAME, "--port", "ble://tini 2")
         for words in (("upload", "-e", DRIVE), ("stop",)):
             inside(*words, *ports).gives(0, "Done: 2 of 2.")
-        assert (ble.robot.actions[:3], second.actions[:3]) == (DROVE, DROVE)
+        assert (ble.robot.actions[:3], second.actions[:3]) == (DRIVE_ACTIONS, DRIVE_ACTIONS)
 
 
 def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:
@@ -219,7 +223,7 @@ def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:
 
 def test_what_is_no_robot_is_said(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 1500)
-    bluez.add(Peripheral("lamp", OTHER, LAMP))
+    bluez.add(Peripheral("lamp", OTHER, LAMP_SERVICE))
     inside("doctor", "--identify", "--port", "ble://lamp").gives(3, "does not offer a robot's")
     bluez.add(Echo("echo", ADDRESS))
     inside("doctor", "--identify", "--port", "ble://echo").gives(3, "comes back")
@@ -240,9 +244,9 @@ def test_a_connection_that_is_closed_is_free_while_its_process_goes_on(
     ble: BleRobot, bluez: FakeBluez
 ) -> None:
     for count in (1, 2):
-        with tiniscript.connect(PLACE) as robot:
+        with tiniscript.connect(ADDRESS_PORT) as robot:
             robot.upload(DRIVE)
             robot.wait()
             assert bluez.devices[ADDRESS].is_connected
         assert not bluez.devices[ADDRESS].is_connected
-        assert (ble.connections, ble.robot.actions) == (count, DROVE * count)
+        assert (ble.connections, ble.robot.actions) == (count, DRIVE_ACTIONS * count)

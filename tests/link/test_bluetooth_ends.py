@@ -11,12 +11,12 @@ from typing import Any
 import pytest
 
 from tests.support.ble_robot import (
+    ADDRESS_PORT,
     DRIVE,
-    DROVE,
+    DRIVE_ACTIONS,
     HM10,
     NAME,
     NORDIC,
-    PLACE,
     BleRobot,
     Peripheral,
     uploading,
@@ -38,13 +38,15 @@ def stops_by_itself(ble: BleRobot) -> None:
 def test_a_connection_that_is_never_made(ble: BleRobot, stage: str) -> None:
     ble.fails_at = stage
     for language in ("en", "es"):
-        result = inside("upload", "-e", DRIVE, "--port", PLACE, "--lang", language).gives(3, out="")
+        result = inside("upload", "-e", DRIVE, "--port", ADDRESS_PORT, "--lang", language).gives(
+            3, out=""
+        )
         assert result.err.startswith("tsc: ")
-        assert PLACE.upper() in result.err.upper()
+        assert ADDRESS_PORT.upper() in result.err.upper()
     assert ble.robot.actions == []
     ble.fails_at = ""
-    assert inside("upload", "-e", DRIVE, "--port", PLACE).code == 0
-    assert ble.robot.actions == DROVE
+    assert inside("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
+    assert ble.robot.actions == DRIVE_ACTIONS
 
 
 @pytest.mark.sampled("heard", keep=3)
@@ -54,19 +56,19 @@ def test_a_program_that_is_cut_leaves_the_one_before(
 ) -> None:
     """The connection ends within HELLO, or a frame of the program, or before the last answer."""
     before, after = tmp_path / "before.bin", tmp_path / "after.bin"
-    assert inside("upload", "-e", "SB|F(1, 10)", "--port", PLACE).code == 0
-    assert inside("show", "-o", before, "--port", PLACE).code == 0
+    assert inside("upload", "-e", "SB|F(1, 10)", "--port", ADDRESS_PORT).code == 0
+    assert inside("show", "-o", before, "--port", ADDRESS_PORT).code == 0
     ble.parts_after = len(ble.received_data) + heard
-    result = inside("upload", "-e", LONG, "--port", PLACE)
+    result = inside("upload", "-e", LONG, "--port", ADDRESS_PORT)
     assert result.code == 3
-    assert f"lost the Bluetooth connection to {PLACE}" in result.err
+    assert f"lost the Bluetooth connection to {ADDRESS_PORT}" in result.err
     ble.parts_after = None
     stops_by_itself(ble)
     ours = tmp_path / "ours.bin"
     inside("compile", "-e", LONG, "-o", ours)
-    assert inside("show", "-o", after, "--port", PLACE).code == 0
+    assert inside("show", "-o", after, "--port", ADDRESS_PORT).code == 0
     assert after.read_bytes() in (before.read_bytes(), ours.read_bytes())
-    assert inside("upload", "-e", LONG, "--no-run", "--port", PLACE).code == 0
+    assert inside("upload", "-e", LONG, "--no-run", "--port", ADDRESS_PORT).code == 0
 
 
 def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
@@ -74,10 +76,10 @@ def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
 ) -> None:
     command = uploading(ble)
     bluez.part(ble)
-    command.wait_for_result().gives(3, f"lost the Bluetooth connection to {PLACE}")
+    command.wait_for_result().gives(3, f"lost the Bluetooth connection to {ADDRESS_PORT}")
     stops_by_itself(ble)
     assert inside("upload", "-e", DRIVE, "--port", NAME).code == 0
-    port = ports.open_port(PLACE, 9600)
+    port = ports.open_port(ADDRESS_PORT, 9600)
     assert port.read(1) == b""
     bluez.part(ble)
     with pytest.raises(OSError, match="has ended"):
@@ -88,9 +90,11 @@ def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
 
 
 def test_a_line_after_a_lost_connection_ends_live(ble: BleRobot, bluez: FakeBluez) -> None:
-    inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n").gives(0)
+    inside("live", "-", "--port", ADDRESS_PORT, data=b"F(0.1, 50)\n").gives(0)
     ble.parts_after = len(ble.received_data) + 60
-    inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n" * 9).gives(3, "Bluetooth connection")
+    inside("live", "-", "--port", ADDRESS_PORT, data=b"F(0.1, 50)\n" * 9).gives(
+        3, "Bluetooth connection"
+    )
 
 
 @pytest.mark.parametrize("what", ["power", "unplug", "vanish"])
@@ -107,7 +111,7 @@ def test_an_adapter_that_is_gone_ends_the_command(
     result = command.wait_for_result().gives(3, "the Bluetooth connection")
     assert result.err.count("\n") == 1  # no part of bleak
     stops_by_itself(ble)
-    result = inside("stop", "--port", PLACE, "--lang", "es")
+    result = inside("stop", "--port", ADDRESS_PORT, "--lang", "es")
     message = "el servicio de Bluetooth" if what == "vanish" else "el Bluetooth de esta computadora"
     assert (result.code, message in result.err) == (3, True)
 
@@ -125,7 +129,7 @@ def test_a_flood_is_no_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) 
                 self.loop.call_soon(self.flood, left - 1)
 
     bluez.add(Flood("flood"))
-    inside("doctor", "--identify", "--port", PLACE).gives(3, "not TiniScript")
+    inside("doctor", "--identify", "--port", ADDRESS_PORT).gives(3, "not TiniScript")
 
 
 # -- before it begins ---------------------------------------------------------------------------

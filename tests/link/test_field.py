@@ -37,10 +37,10 @@ PROGRAMS = (
     "W(1);F(20,60)",
     "SI|LOOP(2)\nF(1,60)\nEND_LOOP",
 )
-TURNS = ("SI|F(1,60)", "F(2,80)")  # of a person
+TYPED_PROGRAMS = ("SI|F(1,60)", "F(2,80)")  # of a person
 LINE_ENDS = (b"\n", b"\r", b"\r\n", b"\n\n", b"\r\n\r\n", b"")
 # from Bluetooth apps, terminals, radio modules, editors, and lines that are noisy at rest
-BEFORE = (
+NOISE_BEFORE = (
     b"\n", b"\r\n", b"\r", b"\n\n", b"\r\n\r\n", b"1\n", b";\n;\n", b"OK+CONN", b"OK+LOST\r\n",
     b"AT\r\n", b"OK", b"+CONNECTED\r\n", b"+DISC:SUCCESS\r\n", b"ERROR:(0)\r\n", b"\xef\xbb\xbf",
     b"\x1b[A\x1b[B", b"\x1b[1;5C", b"\x1b", b"\t\n\t\n", b"\x07", b"\xff\xfe", b"// hi\n\n",
@@ -89,7 +89,7 @@ class Robot:
 def never_silence(cpp: CppLink, seed: int) -> str:
     draw = random.Random(seed)
     robot = Robot(cpp)
-    before = [draw.choice(BEFORE) for _ in range(draw.randint(0, 4))]
+    before = [draw.choice(NOISE_BEFORE) for _ in range(draw.randint(0, 4))]
     # Before the last silence, because a mistake removes all lines that follow it directly.
     answered = 0
     in_frames = False  # only if a line needs its end
@@ -138,7 +138,7 @@ def no_other_program(cpp: CppLink, seed: int) -> str:
 def both_are_heard(cpp: CppLink, seed: int) -> str:
     """A person and a computer, in turns, on one port."""
     draw = random.Random(seed)
-    wanted_of = {text: programs_of(cpp, text) for text in TURNS}
+    wanted_of = {text: programs_of(cpp, text) for text in TYPED_PROGRAMS}
     robot = Robot(cpp)
     session = Session(draw.getrandbits(32), 115_200, KIT)
     session.is_attached = False
@@ -159,7 +159,7 @@ def both_are_heard(cpp: CppLink, seed: int) -> str:
         if draw.random() < 0.5:
             ask(session.status())
             continue
-        event_count, text = len(robot.did), draw.choice(TURNS)
+        event_count, text = len(robot.did), draw.choice(TYPED_PROGRAMS)
         robot.type(text.encode() + b"\n")
         robot.wait(40)
         # a computer's frame without a 0x00, where the person's line has ended, may be a stop
@@ -172,10 +172,10 @@ def both_are_heard(cpp: CppLink, seed: int) -> str:
     return f"{heard} lines"
 
 
-PROPERTIES = (never_silence, no_other_program, both_are_heard)
+CHECKS = (never_silence, no_other_program, both_are_heard)
 
 
-@pytest.mark.parametrize("holds", PROPERTIES, ids=lambda holds: holds.__name__)
+@pytest.mark.parametrize("holds", CHECKS, ids=lambda holds: holds.__name__)
 def test_a_law_of_the_wire(holds: object) -> None:
     for seed in range(SEEDS):
         holds(cpp_link(), seed)  # type: ignore[operator]
@@ -183,5 +183,5 @@ def test_a_law_of_the_wire(holds: object) -> None:
 
 if __name__ == "__main__":
     given = make_options(10_000, 1_000_000)
-    for check in PROPERTIES:
+    for check in CHECKS:
         each_seed(partial(check, link_library()), given)

@@ -29,7 +29,7 @@ EACH_MS = 10_000  # of a request and of each of its pieces
 LONG = "SI|" + "F(0.1, 30); B(0.1, 20);" * 60
 GOES_ON = "SI|F(20, 40)"
 
-ASKED: dict[str, Callable[[Session], PendingRequest[Any]]] = {
+REQUEST_MAKERS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
     "a long program": lambda session: session.upload(image_of(LONG), saves=False),
     "a saved program": lambda session: session.upload(image_of(LONG)),
     "a short program": lambda session: session.upload(image_of("SI|F(0.2, 50)"), saves=False),
@@ -111,10 +111,10 @@ def until(
 def check(seed: int) -> str:
     rng = random.Random(seed)
     robot, session, line = switched_on(), computer(), BadLine(rng)
-    name = rng.choice([*ASKED])
+    name = rng.choice([*REQUEST_MAKERS])
     assert robot.until(session, session.upload(image_of("SI|F(0.2, 50)"))) == OK
     robot.talk(session, 3000)
-    pending_requests = [ASKED[name](session), session.status()]
+    pending_requests = [REQUEST_MAKERS[name](session), session.status()]
     explanation = f"seed {seed}, {name}, {line.is_bursty} {line.likely} {line.late_ms}"
     pieces = 40 if "program" in name else 4
     for request in pending_requests:
@@ -142,7 +142,7 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
         robot, session, line = switched_on(), computer(), BadLine(rng)
         line.is_bursty, line.likely, line.late_ms = False, 0, 0
         pending_requests = [
-            rng.choice([*ASKED.values()])(session) for _ in range(rng.randint(1, 4))
+            rng.choice([*REQUEST_MAKERS.values()])(session) for _ in range(rng.randint(1, 4))
         ]
         for _ in range(rng.choice((0, 1, 3, 10, 40))):
             turn(session, robot, line)
@@ -161,7 +161,9 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
         robot.talk(session, 2000)
         if until(session, robot, line, session.hello(), EXCHANGE_TIMEOUT_MS) != OK:
             raise AssertionError(f"seed {seed}: it is there")
-        assert until(session, robot, line, ASKED["a long program"](session), 20_000) == OK, seed
+        assert (
+            until(session, robot, line, REQUEST_MAKERS["a long program"](session), 20_000) == OK
+        ), seed
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -201,14 +203,14 @@ def lost_after_ms(session: Session, robot: HostFirmware) -> int:
     return robot.now_ms - began_ms
 
 
-HEARD: dict[str, Callable[[Session, HostFirmware], object]] = {
+REQUESTS_AND_STOPS: dict[str, Callable[[Session, HostFirmware], object]] = {
     "a stop": lambda session, robot: session.stop(robot.now_ms),
     "an answer": lambda session, robot: session.status(),
     "keys": lambda session, robot: session.press(1),
 }
 
 
-@pytest.mark.parametrize("heard", HEARD)
+@pytest.mark.parametrize("heard", REQUESTS_AND_STOPS)
 def test_a_line_that_was_heard_has_its_whole_time_again(heard: str) -> None:
     """This holds however near its end was, with and without a running program."""
     robot, session = switched_on(), computer()
@@ -221,7 +223,7 @@ def test_a_line_that_was_heard_has_its_whole_time_again(heard: str) -> None:
         for _ in range(dead_ms // 10):
             session.poll(robot.now_ms)
             robot.wait(10)
-        HEARD[heard](session, robot)
+        REQUESTS_AND_STOPS[heard](session, robot)
         robot.talk(session, 500)
         assert "LOST" not in [event.name for event in session.events()]
         assert lost_after_ms(session, robot) >= DEAF_MS, dead_ms

@@ -15,7 +15,7 @@ import pytest
 from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import each_seed, make_options
 from tests.support.images import image_of
-from tests.support.queued_requests import ACTING, NOTHING, OTHERS, OWN, STOPS, Losses, Wire
+from tests.support.queued_requests import ACTING_REQUESTS, NOTHING, OTHERS, OWN, STOPS, Losses, Wire
 from tiniscript.link.messages import STATE_STOPPED
 from tiniscript.link.requests import OK
 
@@ -33,8 +33,8 @@ def check(seed: int) -> str:
     robot, session = wire.robot, wire.session
     assert robot.until(session, session.upload(image_of(RUNS), saves=False)) == OK
     how = rng.choice([*STOPS, OWN])
-    pending_requests = [rng.choice(ACTING if rng.random() < 0.6 else OTHERS)(session)
-             for _ in range(rng.randint(2, 5))]  # fmt: skip
+    pending_requests = [rng.choice(ACTING_REQUESTS if rng.random() < 0.6 else OTHERS)(session)
+                        for _ in range(rng.randint(2, 5))]  # fmt: skip
     wire.loses = rng.choice((NOTHING, Losses(0.3, 0.3), Losses(0, 1)))
     wire.turns(rng.choice((0, 0, 1, 2, 3, 5, 8, 13, 30)))
     if how == "the button" and not is_driving(robot):  # it would start the stored program

@@ -22,7 +22,15 @@ import pytest
 from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import each_seed, make_options
 from tests.support.images import TINIBOT, image_of
-from tests.support.queued_requests import ACTING, LONG, NOTHING, OTHERS, STOPS, Losses, Wire
+from tests.support.queued_requests import (
+    ACTING_REQUESTS,
+    LONG,
+    NOTHING,
+    OTHERS,
+    STOPS,
+    Losses,
+    Wire,
+)
 from tests.support.robot_on_host import computer
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.outcomes import (
@@ -56,7 +64,7 @@ def first(rng: random.Random) -> Wire:
         wire.turns(300)
     for _ in range(rng.randint(1, 4)):
         for _ in range(rng.randint(0, 3)):
-            rng.choice(ACTING if rng.random() < 0.6 else OTHERS)(wire.session)
+            rng.choice(ACTING_REQUESTS if rng.random() < 0.6 else OTHERS)(wire.session)
         wire.loses = rng.choice((NOTHING, Losses(0.3, 0.3), Losses(0.9, 0.9), Losses(0, 1)))
         wire.turns(rng.choice((1, 3, 8, 30, 300)))
         happens(rng, wire)

@@ -41,8 +41,8 @@ from tiniscript.link.session import IDLE_HEARTBEAT_MS, Session
 from tiniscript.link.transmission import CONFIRM_MS, STOP_MS, TRIES
 
 ROBOT = robots.load("tinibot")
-NOWHERE = LinkConnection()
-LOW, SAVING = STATUSES["LOW_SUPPLY"], STATUSES["SAVING"]
+NO_CONNECTION = LinkConnection()
+LOW_SUPPLY, SAVING = STATUSES["LOW_SUPPLY"], STATUSES["SAVING"]
 
 
 def sending(session: Session, until_ms: int) -> list[tuple[int, bytes]]:
@@ -220,7 +220,7 @@ def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> Non
     live, waits = session.live(FORWARD), session.start()
     session.poll(0)
     session.stop(5)
-    assert [reason_of(NOWHERE, it.outcome) for it in (live, waits) if it.outcome] == [
+    assert [reason_of(NO_CONNECTION, it.outcome) for it in (live, waits) if it.outcome] == [
         "stopped_midway", "stopped_elsewhere",
     ]  # fmt: skip
     for is_cleared in (False, True):  # the latch has to be released before the program
@@ -528,7 +528,7 @@ def test_a_heartbeat_has_three_seconds_and_so_has_asking_for_the_end_of_a_run() 
     assert 3000 <= lost_at(session, at) - at < 3500
 
 
-AT_REST: dict[str, int | bytes] = {
+IDLE_STATUS: dict[str, int | bytes] = {
     "state": 0, "run": 1, "program": 0, "length": 0, "slot": 0, "saved": 0, "fault": 0,
     "fault_at": 0, "fault_program": 0, "damaged": 0, "dropped": 0, "framing": 0, "overrun": 0,
     "noise": b"",
@@ -539,7 +539,7 @@ AT_REST: dict[str, int | bytes] = {
 def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
     """A heartbeat's reply may report it in the same moment as its event."""
     session, at = over()
-    frames = [answer(session.poll(at), AT_REST),
+    frames = [answer(session.poll(at), IDLE_STATUS),
               event("DONE", 0, {"run": 1}, epoch=10)]  # fmt: skip
     for frame in reversed(frames) if is_event_first else frames:
         session.receive(frame, at)
@@ -562,7 +562,7 @@ def test_the_end_of_a_run_waits_for_its_readings_and_nobody_else_does(reading_co
             frame = decode_frame(data.strip(b"\0"))
             assert frame
             asked_for = messages.BY_NUMBER[frame.number].reply
-            reply = {field.name: AT_REST.get(field.name, b"") for field in asked_for}
+            reply = {field.name: IDLE_STATUS.get(field.name, b"") for field in asked_for}
             session.receive(answer(data, reply), at)
     assert request.outcome and request.outcome.status == 0
     names = [event.name for event in session.events()]
@@ -604,10 +604,14 @@ def count_namings(statuses: list[int]) -> tuple[int, int]:
 @pytest.mark.parametrize(
     ("statuses", "times", "ends"),
     [
-        ([LOW], 1 + 4, LOW),
+        ([LOW_SUPPLY], 1 + 4, LOW_SUPPLY),
         ([SAVING], 1 + 12, SAVING),
         # a voltage that was enough in between is waited for anew
-        ([LOW, LOW, LOW, LOW, SAVING, LOW], 1 + 4 + 4, LOW),
+        (
+            [LOW_SUPPLY, LOW_SUPPLY, LOW_SUPPLY, LOW_SUPPLY, SAVING, LOW_SUPPLY],
+            1 + 4 + 4,
+            LOW_SUPPLY,
+        ),
     ],
 )
 def test_a_low_voltage_is_waited_for_less_long(statuses: list[int], times: int, ends: int) -> None:

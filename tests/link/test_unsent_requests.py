@@ -39,11 +39,11 @@ def stopped_by_hand(robot: HostFirmware) -> HostFirmware:
     return robot
 
 
-ASKS = ["heartbeat", "status", "fetch", "identify", "clear"]
+REQUEST_NAMES = ["heartbeat", "status", "fetch", "identify", "clear"]
 
 
 @pytest.mark.parametrize("wanted", [live, upload, long_upload])
-@pytest.mark.parametrize("asks", ASKS)
+@pytest.mark.parametrize("asks", REQUEST_NAMES)
 def test_it_is_done_after_a_reset(asks: str, wanted: Ask) -> None:
     for seed in (0x9ABCDEF1, 3, 4, 5):
         session, robot = open_session()
@@ -54,7 +54,7 @@ def test_it_is_done_after_a_reset(asks: str, wanted: Ask) -> None:
 
 
 @pytest.mark.parametrize("wanted", [live, upload, long_upload])
-@pytest.mark.parametrize("asks", ASKS)
+@pytest.mark.parametrize("asks", REQUEST_NAMES)
 def test_it_is_void_after_a_stop(asks: str, wanted: Ask) -> None:
     session, robot = running()
     busy_line(session, robot, asks)

@@ -21,7 +21,7 @@ from tests.machines.host import (
     parse_run,
     run_request,
 )
-from tests.machines.pace import AT_ONCE, Pace
+from tests.machines.pace import NO_DELAY, Pace
 from tiniscript.base.kit import Kit
 from tools.bench import avr_bench
 
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     from tests.machines import Senses
 
 UNO, NANO, MEGA = "uno", "nano", "mega"
-PORTABLE = "portable"  # an Uno with the machine of all other chips
-BUILT = {
+PORTABLE_CHIP = "portable"  # an Uno with the machine of all other chips
+COMPILER_ARGUMENTS = {
     UNO: ("atmega328p", "-Dtiniscript_with_tasks"),
     NANO: ("atmega328p",),
-    PORTABLE: ("atmega328p", "-Dtiniscript_with_tasks", "-Dtiniscript_portable"),
+    PORTABLE_CHIP: ("atmega328p", "-Dtiniscript_with_tasks", "-Dtiniscript_portable"),
     # Some variables lie after a border of 256 bytes.
     MEGA: ("atmega2560", "-Wl,--section-start=.data=0x8002c0"),
 }
@@ -47,7 +47,7 @@ def program(chip: str) -> bytes:
     folders = [SOURCES / name for name in ("src/vm", "extras/chip", "extras/avr")]
     made_from = contents(SOURCES / "src", *folders)
     code = sorted(str(path) for folder in folders for path in folder.glob("*.[cS]*"))
-    mcu, *more = BUILT[chip]
+    mcu, *more = COMPILER_ARGUMENTS[chip]
     flags = (f"-mmcu={mcu}", *more, *FLAGS, *WARNINGS)
     return compile_sources("the C++ machine", flags, code, made_from).read_bytes()
 
@@ -71,7 +71,7 @@ def ran_on(
     kit: Kit,
     senses: Senses,
     not_ready: int = 0,
-    pace: Pace = AT_ONCE,
+    pace: Pace = NO_DELAY,
     begin_ms: int = 0,
 ) -> Ran:
     """Run an image, which is read and verified by the simulated chip."""
@@ -81,5 +81,5 @@ def ran_on(
 
 def answer(chip: str, request: bytes, most_seconds: int = 120) -> str:
     """Return the program's answer to a request. Raises TimeoutExpired."""
-    lines = avr_bench.run(program(chip), request, BUILT[chip][0], most_seconds)
+    lines = avr_bench.run(program(chip), request, COMPILER_ARGUMENTS[chip][0], most_seconds)
     return "".join(f"{line}\n" for line in lines)

@@ -45,17 +45,19 @@ PORTS = {
     "a": 0x22, "b": 0x25, "c": 0x28, "d": 0x2B, "e": 0x2E, "f": 0x31, "g": 0x34,
     "h": 0x102, "j": 0x105, "k": 0x108, "l": 0x10B,
 }  # fmt: skip
-LINKED = ("uart.cpp", "eeprom.cpp")  # files that only the firmware needs
-BUILT_IN = "SB|F(1, 60);B(1, 60);BEEP(0.2, 880)"
+FIRMWARE_ONLY_FILES = ("uart.cpp", "eeprom.cpp")  # files that only the firmware needs
+BUILT_IN_PROGRAM = "SB|F(1, 60);B(1, 60);BEEP(0.2, 880)"
 
 
 # Gaps of simavr for the ATmega2560: changes of ports J and K, and the analog inputs of port K.
-_LEFT_OUT = {"echo": "jk", "analog": "k"}
+_UNSIMULATED_PORTS = {"echo": "jk", "analog": "k"}
 
 
 def simulates(board: str, pin: int, ability: str) -> bool:
     """Return whether a pin of a board behaves on the simulated chip as on a real one."""
-    return board != "mega" or AVRS[board].bit_by_pin[pin].port not in _LEFT_OUT.get(ability, "")
+    return board != "mega" or AVRS[board].bit_by_pin[pin].port not in _UNSIMULATED_PORTS.get(
+        ability, ""
+    )
 
 
 def missing() -> str:
@@ -153,7 +155,7 @@ def _build(header: str, more: str, words: Sequence[object], path: Path) -> None:
                     *source.rglob("vm/*"),
                 ]
             )
-            if path.suffix in (".cpp", ".S") and path.name not in LINKED
+            if path.suffix in (".cpp", ".S") and path.name not in FIRMWARE_ONLY_FILES
         ]
         run("avr-g++", *code, f"-I{source}", *words, "-o", path)
 
@@ -237,12 +239,12 @@ class Simulated:
 class Board(Simulated):
     """A robot's firmware with one program; `ran` runs it."""
 
-    def __init__(self, robot: Robot, text: str = BUILT_IN, more: str = "") -> None:
+    def __init__(self, robot: Robot, text: str = BUILT_IN_PROGRAM, more: str = "") -> None:
         super().__init__(robot)
         elf = build_sketch(firmware.header([robot], "the tests."), self.board, more)
         compilation = compile_text(text, robot.kit)
         assert compilation.image, compilation.diagnostics
-        image_before = compile_text(BUILT_IN, robot.kit).image
+        image_before = compile_text(BUILT_IN_PROGRAM, robot.kit).image
         at = elf.index(image_before)
         self.elf = elf[:at] + compilation.image + b"\0" * 4 + elf[at + len(compilation.image) + 4 :]
         self.changes: list[Change] = []

@@ -15,12 +15,14 @@ from typing import NamedTuple
 from tests.machines.board import ARDUINO
 
 FOLDER = ARDUINO / "bootloaders"
-BEGIN, VERSION = 0x7E00, 0x7FFE
+BOOTLOADER_ADDRESS, VERSION_ADDRESS = 0x7E00, 0x7FFE
 FLAGS = (
     "-w", "-Os", "-fno-split-wide-types", "-fno-inline-small-functions",
     "-fno-inline-functions-called-once", "-mmcu=atmega328p", "-DF_CPU=16000000L",
-    "-DLED_START_FLASHES=3", "-DBAUD_RATE=115200", f"-Wl,--section-start=.text={BEGIN:#x}",
-    f"-Wl,--section-start=.version={VERSION:#x}", "-Wl,--relax", "-nostartfiles", "-nostdlib",
+    "-DLED_START_FLASHES=3", "-DBAUD_RATE=115200",
+    f"-Wl,--section-start=.text={BOOTLOADER_ADDRESS:#x}",
+    f"-Wl,--section-start=.version={VERSION_ADDRESS:#x}", "-Wl,--relax", "-nostartfiles",
+    "-nostdlib",
 )  # fmt: skip
 
 

@@ -15,7 +15,7 @@ from struct import pack, unpack
 from typing import NamedTuple
 
 from tests.machines.host import (
-    BUILDS,
+    BUILD_CACHE,
     FLAGS,
     SOURCES,
     WARNINGS,
@@ -174,7 +174,7 @@ def build_esp32(header: str, chip: str, major: int) -> Path:
 
     Only files that depend on the robot's pins are compiled for each robot.
     """
-    own = BUILDS / f"own-{sha256(header.encode()).hexdigest()[:16]}.h"
+    own = BUILD_CACHE / f"own-{sha256(header.encode()).hexdigest()[:16]}.h"
     if not own.exists():  # another worker may look for the file too
         draft = own.with_suffix(f".{os.getpid()}")
         draft.write_text(header, encoding="utf-8")
@@ -197,9 +197,9 @@ def build_esp32(header: str, chip: str, major: int) -> Path:
         return (*usual, *of_boards) if is_own else usual
 
     used = {path: text for path, text in files.items() if not is_other(path)}
-    objects = objects_of("g++", BUILDS, used, flags)
+    objects = objects_of("g++", BUILD_CACHE, used, flags)
     return compile_once(
-        "g++", BUILDS, "", usual, [name.encode() for name in objects], [*objects, *TLS]
+        "g++", BUILD_CACHE, "", usual, [name.encode() for name in objects], [*objects, *TLS]
     )
 
 

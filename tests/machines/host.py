@@ -58,7 +58,7 @@ def of_builds(folder: Path) -> Path:
     return folder
 
 
-BUILDS = of_builds(Path(tempfile.gettempdir()) / f"tiniscript-host-{USER}")
+BUILD_CACHE = of_builds(Path(tempfile.gettempdir()) / f"tiniscript-host-{USER}")
 
 RULE_NAMES = {number: name for name, (number, _) in RULES.items()}
 REFUSAL_NAMES = {number: name for name, (number, _) in REFUSALS.items()}
@@ -169,7 +169,7 @@ class Host(Process):
     `sources` is a folder like `vm_arduino`; the results are in `builds`.
     """
 
-    def __init__(self, sources: Path = SOURCES, builds: Path = BUILDS) -> None:
+    def __init__(self, sources: Path = SOURCES, builds: Path = BUILD_CACHE) -> None:
         super().__init__([build_machine(sources, builds)], "the C++ machine")
 
     def run(
@@ -255,7 +255,7 @@ def parse_run(answer: str) -> Ran:
     return Ran(first, second, trace + "\n")
 
 
-def build_machine(sources: Path, builds: Path = BUILDS) -> Path:
+def build_machine(sources: Path, builds: Path = BUILD_CACHE) -> Path:
     """Return the program made from `sources`, a folder like `vm_arduino`."""
     inputs = files_in(sources, "src", "src/vm", "extras/chip", "extras/host")
     return compile_program(inputs, (*FLAGS, COUNTS_INSTRUCTIONS), builds)
@@ -267,7 +267,9 @@ def files_in(sources: Path, *folders: str) -> list[Path]:
     return sorted(path for path in paths if path.suffix in (".h", ".cpp"))
 
 
-def compile_program(inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS) -> Path:
+def compile_program(
+    inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILD_CACHE
+) -> Path:
     """Return the program made from sources and headers; unchanged parts are reused.
 
     Workers may build at the same time: each object that two build at once is built twice, and the
@@ -277,7 +279,7 @@ def compile_program(inputs: Sequence[Path], flags: Sequence[str], builds: Path =
 
 
 def built_by(
-    compiler: str, inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS
+    compiler: str, inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILD_CACHE
 ) -> Path:
     """Build with any compiler, and with all of its flags."""
     texts = {path: path.name.encode() + path.read_bytes() for path in inputs}
@@ -344,7 +346,7 @@ def build_cached(
     compiler: str, flags: Sequence[str], made_from: Iterable[bytes], make: Callable[[Path], object]
 ) -> Path:
     """Return a program that is made `once` from the same by the same compiler, in any run."""
-    return once(BUILDS / f"{_key(compiler, flags, made_from)}.elf", make)
+    return once(BUILD_CACHE / f"{_key(compiler, flags, made_from)}.elf", make)
 
 
 def contents(*folders: Path) -> list[bytes]:

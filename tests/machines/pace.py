@@ -20,7 +20,7 @@ from tiniscript.vm.state import DONE, FAULT
 if TYPE_CHECKING:
     from tests.machines import Senses
 
-BUDGET = 60_000  # instructions of a call: more than a task runs in a turn
+CALL_INSTRUCTIONS = 60_000  # instructions of a call: more than a task runs in a turn
 
 
 class Pace(NamedTuple):
@@ -43,8 +43,8 @@ class Pace(NamedTuple):
         return name in self.slow and self.from_ms <= now_ms % self.period_ms < self.to_ms
 
 
-AT_ONCE = Pace()
-ECHO = ("DISTANCE",)
+NO_DELAY = Pace()
+ECHO_SENSORS = ("DISTANCE",)
 
 
 def a_pace(rng: random.Random) -> Pace:
@@ -52,7 +52,7 @@ def a_pace(rng: random.Random) -> Pace:
     period_ms = rng.choice((31, 50, 90, 130, 170))
     from_ms = rng.randrange(period_ms // 3)
     to_ms = rng.randint(2 * from_ms, period_ms)
-    slow = rng.choice((ECHO, ("LIGHT_L",), ("DISTANCE", "LIGHT_L")))
+    slow = rng.choice((ECHO_SENSORS, ("LIGHT_L",), ("DISTANCE", "LIGHT_L")))
     return Pace(rng.choice((1, 1, 1, 3, 7, 25)), slow, period_ms, from_ms, to_ms)
 
 
@@ -77,7 +77,7 @@ def trace_at(pace: Pace, machine_of: MachineOf, image: bytes, kit: Kit, senses: 
     machine = machine_of(image[HEADER_BYTES:], robot, len(kit.readings), senses.seed)
     while True:
         robot.was_slow = False
-        status = machine.tick(robot.now_ms, BUDGET)
+        status = machine.tick(robot.now_ms, CALL_INSTRUCTIONS)
         if status in (DONE, FAULT):
             robot.record(status, (), f"FAULT {machine.fault}" if status == FAULT else "DONE")
         else:

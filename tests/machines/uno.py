@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
-from tests.machines.avr import BUILT, FLAGS, UNO, compile_sources
+from tests.machines.avr import COMPILER_ARGUMENTS, FLAGS, UNO, compile_sources
 from tests.machines.avr import missing as no_compiler
 from tests.machines.host import WARNINGS
 from tests.support.needs import need
@@ -25,5 +25,11 @@ def build_uno(name: str, **constants: int) -> Path:
     skip_unless_available()
     given_words = [f"-Dk{constant}={value}L" for constant, value in constants.items()]
     source = SOURCES / f"{name}.cpp"
-    flags = (f"-mmcu={BUILT[UNO][0]}", *FLAGS, *WARNINGS, "-DF_CPU=16000000L", *given_words)
+    flags = (
+        f"-mmcu={COMPILER_ARGUMENTS[UNO][0]}",
+        *FLAGS,
+        *WARNINGS,
+        "-DF_CPU=16000000L",
+        *given_words,
+    )
     return compile_sources(source.name, flags, [str(source)], [source.read_bytes()])

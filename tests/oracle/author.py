@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tests.oracle.author_values import LONG, SMALL, WIDE, Tokens, ValueAuthor, plain
+from tests.oracle.author_values import (
+    LONG_DECIMALS,
+    SMALL_NUMBERS,
+    WIDE_RANGE_NUMBERS,
+    Tokens,
+    ValueAuthor,
+    plain,
+)
 from tests.oracle.words import (
     ACTS,
     MAX_CALLS,
@@ -40,7 +47,7 @@ class Author(ValueAuthor):
         words = ("CM", "cm") if word in "FB" else ("DEG", "deg", "°", "º")
         roll = self.rng.random()
         if roll < 0.6:
-            way = [self.rng.choice((*SMALL, *WIDE, *LONG))]
+            way = [self.rng.choice((*SMALL_NUMBERS, *WIDE_RANGE_NUMBERS, *LONG_DECIMALS))]
         else:
             way = self.seconds() if roll < 0.8 else self.number(2)
         if plain(way) and way[0].startswith("-"):

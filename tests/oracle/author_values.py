@@ -14,11 +14,40 @@ VALUES = ("SIZE", "POWER", "K", "ON", "HOW_OFTEN", "W1")  # names of DEF paramet
 PROCEDURES = ("TURN", "LOOK", "DANCE", "SQUARE", "P1", "GO_ON", "BACK_OFF", "TELL", "Q")
 
 TIMES = ("0", "0.02", "0.05", ".1", "0.25", "0.033", "0.5", "1", "1.5", "0.001", "2.0")
-SMALL = ("0", "1", "2", "3", "4", "5", "7", "10", "0.5", ".25", "1.5", "2.75", "0.1", "0.2", "0.3")
-WIDE = ("9", "20", "50", "100", "128.5", "400", "500", "1000", "1023", "12.345", "0.001", "007")
-LONG = ("0.0005", "1.2345", "2.71828", "3.00049", "99.9995", "0.33333333333333")
-BIG = ("2147483.647", "2147483", "2000000", "1073741.824", "46340.95", "999999.999")
-LEAST = "-2147483.648"
+SMALL_NUMBERS = (
+    "0",
+    "1",
+    "2",
+    "3",
+    "4",
+    "5",
+    "7",
+    "10",
+    "0.5",
+    ".25",
+    "1.5",
+    "2.75",
+    "0.1",
+    "0.2",
+    "0.3",
+)
+WIDE_RANGE_NUMBERS = (
+    "9",
+    "20",
+    "50",
+    "100",
+    "128.5",
+    "400",
+    "500",
+    "1000",
+    "1023",
+    "12.345",
+    "0.001",
+    "007",
+)
+LONG_DECIMALS = ("0.0005", "1.2345", "2.71828", "3.00049", "99.9995", "0.33333333333333")
+BIG_NUMBERS = ("2147483.647", "2147483", "2000000", "1073741.824", "46340.95", "999999.999")
+LEAST_NUMBER = "-2147483.648"
 
 _PLAIN = re.compile(r"-?[0-9.]+")
 
@@ -69,14 +98,14 @@ class ValueAuthor:
     def literal(self) -> Tokens:
         roll = self.rng.random()
         if roll < 0.55:
-            return [self.rng.choice(SMALL)]
+            return [self.rng.choice(SMALL_NUMBERS)]
         if roll < 0.85:
-            return [self.rng.choice(WIDE)]
+            return [self.rng.choice(WIDE_RANGE_NUMBERS)]
         if roll < 0.92:
             return [f"{self.rng.uniform(0, 200):.{self.rng.randint(1, 3)}f}"]
         if roll < 0.97:
-            return [self.rng.choice(LONG)]
-        return [self.rng.choice(BIG)] if self.chance(0.7) else [LEAST]
+            return [self.rng.choice(LONG_DECIMALS)]
+        return [self.rng.choice(BIG_NUMBERS)] if self.chance(0.7) else [LEAST_NUMBER]
 
     def choose_name(self, is_yes_no: bool) -> Tokens | None:
         """A variable or a sensor of the kind, if there is one."""

@@ -42,7 +42,7 @@ BOARDS = sorted(
     path for folder in ("", "avr") for path in (SOURCES / "src/boards" / folder).glob("*.[ch]*")
 )
 STRICT = ("-std=c++11", "-pedantic", "-fno-exceptions", "-fno-rtti", *WARNINGS, "-fsyntax-only")
-ALLOWED = {"<stdint.h>", "<stddef.h>", "<avr/pgmspace.h>"}
+ALLOWED_HEADERS = {"<stdint.h>", "<stddef.h>", "<avr/pgmspace.h>"}
 ARDUINOS = {"HIGH", "LOW", "OUTPUT"}  # defined by a header for sketches
 CHIP_OF_THE_CORE = "ARDUINO_ARCH_ESP32"  # defined on the command line, as __AVR__ is for an AVR
 FORBIDDEN = ("virtual", "new", "delete", "throw", "try", "float", "double", "goto", "malloc",
@@ -67,7 +67,7 @@ def test_nothing_shouts(path: Path) -> None:
 def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     included_headers = re.findall(r"#include (<[^>]+>)", text)
-    assert set(included_headers) <= ALLOWED
+    assert set(included_headers) <= ALLOWED_HEADERS
     words = set(re.findall(r"\w+", code_of(path)))
     assert not words & set(FORBIDDEN)
 

@@ -126,7 +126,7 @@ def test_links_lead_somewhere(document: Path) -> None:
             assert (document.parent / target).exists(), f"{document.name}: {target}"
 
 
-TRANSLATED = [
+TRANSLATED_DOCUMENTS = [
     (language, name, of.sources["en"])
     for of in documents(ROOT)
     for language, name in of.sources.items()
@@ -134,7 +134,7 @@ TRANSLATED = [
 ]
 
 
-@each_row("language, name, english", TRANSLATED)
+@each_row("language, name, english", TRANSLATED_DOCUMENTS)
 def test_a_translation_leads_to_documents_of_its_language(
     language: str, name: str, english: str
 ) -> None:
@@ -161,7 +161,7 @@ FOLDERS = ("compiler", "tests", "tools", "docs", "examples", "vm_arduino")
 # The beginning of a path in a document, a docstring or a comment.
 BASES = (ROOT, ROOT / "compiler" / "tiniscript", ROOT / "vm_arduino", ROOT / "vm_arduino" / "src")
 # Names of files that a person has, and of those that a build makes.
-OTHERS_FILES = {"prog.ts", "own.h", "myrobot.toml", "my.toml", "firmware.elf"}
+FOREIGN_FILES = {"prog.ts", "own.h", "myrobot.toml", "my.toml", "firmware.elf"}
 PATH = r"[\w.-]+(?:/[\w.-]+)+/?"
 FILE_NAME = r"[\w-]+\.(?:py|md|cpp|h|c|S|ini|toml|ts|sh|wasm|ino)"
 
@@ -179,11 +179,11 @@ def modules_in(path: Path) -> list[str]:
 
 
 # Files that commands create in a clone, which `.gitignore` lists.
-BUILT = {"compiler/tiniscript/studio/page/", "tools/studio/node_modules"}
+BUILT_FOLDERS = {"compiler/tiniscript/studio/page/", "tools/studio/node_modules"}
 
 
 def exists(path: str) -> bool:
-    return path in BUILT or any((base / path).exists() for base in BASES)
+    return path in BUILT_FOLDERS or any((base / path).exists() for base in BASES)
 
 
 @each_row("document", [*DOCUMENTS, ROOT / "tools" / "uno" / "README.md"])
@@ -193,7 +193,7 @@ def test_files_that_are_named_exist(document: Path) -> None:
     `NAME.toml` and `tests/*.py` are no names.
     """
     known_names = {path.name for path in (*SOURCES, *ROOT.glob("examples/*.ts"), *ROOT.iterdir())}
-    known_names |= OTHERS_FILES | {
+    known_names |= FOREIGN_FILES | {
         "machine.wasm",
         "robot.wasm",
         "robot_mega.wasm",
@@ -226,7 +226,7 @@ def test_paths_in_sources_exist() -> None:
 
 # `stop_run` and `end_run` (`firmware/run.cpp`), `Link::turn` in `link/link.cpp`
 SPAN = r"`[^`]+`"
-IN_FILE = re.compile(
+NAMES_IN_FILE = re.compile(
     rf"({SPAN}(?:(?:, | and |, and ){SPAN})*),?\s+(?:in|of|\()\s*`([\w/]+\.(?:cpp|h|py))`"
 )
 
@@ -235,7 +235,7 @@ def test_what_architecture_says_is_in_a_file_is_there() -> None:
     text = (ROOT / "docs/develop/architecture.md").read_text(encoding="utf-8")
     paths = text[text.index("### The path of a program") : text.index("### Ten files to read")]
     count = 0
-    for names, file in IN_FILE.findall(paths):
+    for names, file in NAMES_IN_FILE.findall(paths):
         matches = [path for path in SOURCES if path.as_posix().endswith(f"/{file}")]
         matches += (ROOT / "vm_arduino" / "src").rglob(file)
         assert matches, file

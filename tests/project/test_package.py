@@ -25,20 +25,19 @@ from tests.support.waiting import HANGS_S
 from tiniscript.base.languages import cache_files
 from tools.release import facts
 
-SKIPPED = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__", "*.pyc", ".pio",
-           "page", "node_modules", "made",
-           "machine.json", "link.json",
-           ".*_cache", ".coverage", "own.h", "*.bin", "*.texts", "way.png")  # fmt: skip
-ADDED = {"PKG-INFO", "setup.cfg"}  # files added by setuptools
+SKIPPED_NAMES = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__", "*.pyc",
+                 ".pio", "page", "node_modules", "made", "machine.json", "link.json",
+                 ".*_cache", ".coverage", "own.h", "*.bin", "*.texts", "way.png")  # fmt: skip
+SETUPTOOLS_FILES = {"PKG-INFO", "setup.cfg"}  # files added by setuptools
 SOURCES = "tiniscript/flash/vm_arduino/"
-BUILT = "tiniscript/studio/page/index.html"  # built by tools.builds.studio before the wheel
+BUILT_PAGE = "tiniscript/studio/page/index.html"  # built by tools.builds.studio before the wheel
 CASES = "tiniscript/conformance/machine.json"  # built by tools.builds.conformance
 URL = "https://example.org/tiniscript"
 EPOCH = "1700000000"
-BUILD = "import sys; from setuptools import build_meta; print(build_meta.{0}(sys.argv[1]))"
+BUILD_CODE = "import sys; from setuptools import build_meta; print(build_meta.{0}(sys.argv[1]))"
 
 # Files that a collection reads, without a test for each row.
-IMPORT_ALL = """
+IMPORT_ALL_CODE = """
 import importlib, pathlib, pytest
 for path in sorted(pathlib.Path("tests").rglob("*.py")):
     try:
@@ -58,7 +57,7 @@ def repo(tmp_path_factory: pytest.TempPathFactory) -> Path:
     if int(version("setuptools").partition(".")[0]) < 77:
         need("setuptools is older than 77")
     folder = tmp_path_factory.mktemp("package") / "repo"
-    shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*SKIPPED))
+    shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*SKIPPED_NAMES))
     about = folder / "pyproject.toml"
     about.write_text(facts.with_address(about.read_text("utf-8"), URL), encoding="utf-8")
     return folder
@@ -72,7 +71,7 @@ def repo_files(repo: Path) -> set[str]:
 
 def build_package(repo: Path, what: str, target: Path) -> Path:
     completed = subprocess.run(
-        [sys.executable, "-c", BUILD.format(what), str(target)],
+        [sys.executable, "-c", BUILD_CODE.format(what), str(target)],
         cwd=repo, capture_output=True, text=True, check=False,
         env={**os.environ, "SOURCE_DATE_EPOCH": EPOCH},
     )  # fmt: skip
@@ -94,7 +93,7 @@ def wheel(repo: Path, repo_files: set[str], tmp_path_factory: pytest.TempPathFac
         (stale / name).touch()
     own = repo / "vm_arduino" / "src" / "boards" / "kits" / "own.h"
     own.write_text("#error")
-    page = repo / "compiler" / BUILT
+    page = repo / "compiler" / BUILT_PAGE
     page.parent.mkdir()
     page.touch()
     cases = repo / "compiler" / CASES
@@ -150,7 +149,7 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
         if name.startswith("vm_arduino/src/")
         or name in ("vm_arduino/platformio.ini", "vm_arduino/partitions.csv")
     }
-    assert packed_names == package | sources | {BUILT, CASES}
+    assert packed_names == package | sources | {BUILT_PAGE, CASES}
     assert len(sources) > 50
 
 
@@ -197,7 +196,7 @@ FIRMWARE_MISSING = "tools.builds.firmware_files"
 CASES_MISSING = "tools.builds.conformance"
 
 
-BUILDS_PAGE = """#!/bin/sh
+PAGE_BUILD_SCRIPT = """#!/bin/sh
 [ "$*" = "-m tiniscript.cli.page_build" ] || exit 1
 mkdir compiler/tiniscript/studio/page
 touch compiler/tiniscript/studio/page/index.html
@@ -214,18 +213,18 @@ def test_a_wheel_says_what_it_is_made_without(
     folder = tmp_path / "sources"
     shutil.copytree(source_folder, folder)
     if page == "built":
-        path = folder / "compiler" / BUILT
+        path = folder / "compiler" / BUILT_PAGE
         path.parent.mkdir()
         path.touch()
     stand_in = folder / ".venv" / "bin" / "python"
     stand_in.parent.mkdir(parents=True)
-    stand_in.write_text(BUILDS_PAGE)
+    stand_in.write_text(PAGE_BUILD_SCRIPT)
     stand_in.chmod(0o755)
     ours, theirs = os.openpty()
     packages: list[bytes] = []
     reader = Thread(target=lambda: packages.extend(iter(lambda: rest_of(ours), b"")), daemon=True)
     reader.start()
-    command = [sys.executable, "-c", BUILD.format("build_wheel"), str(tmp_path)]
+    command = [sys.executable, "-c", BUILD_CODE.format("build_wheel"), str(tmp_path)]
     stdin, stderr = (
         (theirs, theirs) if page == "asked for" else (subprocess.DEVNULL, subprocess.PIPE)
     )
@@ -240,7 +239,7 @@ def test_a_wheel_says_what_it_is_made_without(
     assert "made without" in output and FIRMWARE_MISSING in output and CASES_MISSING in output
     assert (PAGE_MISSING in output) == (page == "none")
     with zipfile.ZipFile(tmp_path / completed.stdout.split()[-1]) as zip_file:
-        assert (BUILT in zip_file.namelist()) == (page != "none")
+        assert (BUILT_PAGE in zip_file.namelist()) == (page != "none")
         zip_file.extractall(tmp_path / "made")
     version = python("-m", "tiniscript", "--version", "--lang", "en", folder=tmp_path,
                      PYTHONPATH=str(tmp_path / "made"))  # fmt: skip
@@ -280,7 +279,7 @@ def test_a_source_package_has_the_whole_repository(
     source_folder: Path, repo_files: set[str]
 ) -> None:
     packed_names = {name for name in files_of(source_folder) if ".egg-info/" not in name}
-    assert packed_names - ADDED == repo_files - ADDED
+    assert packed_names - SETUPTOOLS_FILES == repo_files - SETUPTOOLS_FILES
 
 
 @pytest.mark.sampled(of="source packages")
@@ -307,7 +306,7 @@ def test_a_registry_takes_both_packages(wheel: Path, source_folder: Path) -> Non
 @pytest.mark.sampled(of="source packages")
 def test_the_tests_of_a_source_package_run(source_folder: Path) -> None:
     pytest_here = ("-m", "pytest", "-p", "no:cacheprovider")
-    every = python("-c", IMPORT_ALL, folder=source_folder, PYTHONPATH=f"compiler{os.pathsep}.")
+    every = python("-c", IMPORT_ALL_CODE, folder=source_folder, PYTHONPATH=f"compiler{os.pathsep}.")
     assert every.returncode == 0, every.stderr[-3000:]
     some = ("tests/bytecode/test_image.py", "tests/robots/test_robots.py")
     alone = {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}

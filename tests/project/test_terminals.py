@@ -15,7 +15,7 @@ from tests.support.casefile import ROOT
 from tools.site.documents import language_of
 
 PAGES = sorted([*ROOT.glob("README*.md"), *(ROOT / "docs").glob("*/*.md")])
-ANSWER = "// "
+ANSWER_PREFIX = "// "
 LONGEST_MS = 5000  # timeout of an answer
 SILENT_MS = 1500  # pause between the answers and the next line: over a second
 
@@ -48,10 +48,10 @@ def play_conversation(lines: list[str], language: str) -> list[str]:
     robot = VirtualRobot(robots.load("tinibot").with_language(language), floor())
     transcript = []
     for k, line in enumerate(lines):
-        if line.startswith(ANSWER):
+        if line.startswith(ANSWER_PREFIX):
             continue
         wanted_count = next(
-            (n for n, line in enumerate(lines[k + 1 :]) if not line.startswith(ANSWER)),
+            (n for n, line in enumerate(lines[k + 1 :]) if not line.startswith(ANSWER_PREFIX)),
             len(lines) - k - 1,
         )
         data = robot.step(robot.now_ms + 1, line.encode() + b"\r\n")

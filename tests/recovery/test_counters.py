@@ -17,11 +17,11 @@ HEADS = (
     "para cada {v} de {a} a {b}", "for ({v} = {a}; {v} <= {b}; {v}++)",
     "for (int {v} = {a}; {v} < {c}; {v}++)",
 )  # fmt: skip
-ENDS = ("NEXT {v}", "END_LOOP")
+LOOP_ENDS = ("NEXT {v}", "END_LOOP")
 NAMES = ("I", "n", "vuelta2")
 RANGES = ((1, 5), (0, 3), (2, 4), (1, 10))
 BODIES = ("F(1, {v} * 10)", "W(1);SHOW({v});S", "IF({v} > 2);S;ENDIF")
-BETWEEN = ("\n", "\n  ")
+SEPARATORS = ("\n", "\n  ")
 
 
 def mend(wrong: str) -> str:
@@ -31,9 +31,9 @@ def mend(wrong: str) -> str:
 
 
 @pytest.mark.parametrize("head", HEADS)
-@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize("end", LOOP_ENDS)
 def test_a_counter_that_is_used_grows_from_its_first_value(head: str, end: str) -> None:
-    for name, (first, last), body, between in product(NAMES, RANGES, BODIES, BETWEEN):
+    for name, (first, last), body, between in product(NAMES, RANGES, BODIES, SEPARATORS):
         values = {"v": name, "a": first, "b": last, "c": last + 1}
         begun_text, inside, ended_text = (part.format(**values) for part in (head, body, end))
         wrong = f"SI|W(3)\n{begun_text}{between}{inside}\n{ended_text}\nS"

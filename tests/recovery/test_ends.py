@@ -22,8 +22,12 @@ BODIES = (
     ("BEEP(1, 880)", "F(10, 40)"), ("W(1)", "S"), ("F(1, 60)", "F(1, 60)", "S"),
     ("S", "LOOP(2);R(1, 60);END_LOOP", "B(1, 60)"),
 )  # fmt: skip
-AROUND = (("LOOP(2)", "END_LOOP"), ("DEF PASSO", "END_DEF;PASSO"), ("LOOP(FOREVER)", "END_LOOP"))
-BEFORE = ("SI|", "SI|W(3);", "SB|V = 3;F(V, 60);")
+ENCLOSING_BLOCKS = (
+    ("LOOP(2)", "END_LOOP"),
+    ("DEF PASSO", "END_DEF;PASSO"),
+    ("LOOP(FOREVER)", "END_LOOP"),
+)
+PROGRAM_HEADS = ("SI|", "SI|W(3);", "SB|V = 3;F(V, 60);")
 
 
 def code_and_fix(text: str) -> tuple[str, str]:
@@ -38,7 +42,7 @@ def places(body: tuple[str, ...]) -> str:
 
 
 @pytest.mark.parametrize("between", [";", "; ", " ; "])
-@pytest.mark.parametrize(("begun_text", "block"), [*product(BEFORE, BLOCKS)])
+@pytest.mark.parametrize(("begun_text", "block"), [*product(PROGRAM_HEADS, BLOCKS)])
 def test_each_place_is_named_and_none_is_made(
     begun_text: str, block: tuple[str, str], between: str
 ) -> None:
@@ -52,7 +56,7 @@ def test_each_place_is_named_and_none_is_made(
         assert repair_program(text, check).text == text
 
 
-@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("around", ENCLOSING_BLOCKS)
 @pytest.mark.parametrize("block", BLOCKS[2:])
 @pytest.mark.parametrize("body", BODIES[:3])
 def test_the_inner_block_lacks_its_end_where_the_outer_one_has_its_own(

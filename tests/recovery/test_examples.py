@@ -13,7 +13,14 @@ PLACES = (
     "F(3, {p});IF(DISTANCE < 9);{};ENDIF", "DEF A1;{};END_DEF;A1;F(3, {p})",
     "TASK;{};END_TASK;W(1);F(3, {p})",
 )  # fmt: skip
-ALONE = ("SI|{}", "{}", "W(3);{}", "{};W(3)", "IF(DISTANCE < 9);{};ENDIF", "DEF A1;{};END_DEF;A1")
+SURROUNDINGS = (
+    "SI|{}",
+    "{}",
+    "W(3);{}",
+    "{};W(3)",
+    "IF(DISTANCE < 9);{};ENDIF",
+    "DEF A1;{};END_DEF;A1",
+)
 SAID = {"en": "is an example", "es": "es solo un ejemplo", "pt": "é só um exemplo"}
 
 
@@ -34,7 +41,7 @@ def test_where_the_others_have_several_it_is_an_example(place: str) -> None:
     assert (diagnostic.values["fix"], diagnostic.values["sample"]) == ("R(1, 80)", "80 %"), wrong
 
 
-@pytest.mark.parametrize("place", ALONE)
+@pytest.mark.parametrize("place", SURROUNDINGS)
 @pytest.mark.parametrize("language", SAID)
 def test_an_example_is_said_to_be_one(place: str, language: str) -> None:
     for call, fix, sample in (("R(1)", "R(1, 80)", "80 %"), ("BEEP(1)", "BEEP(1, 440)", "440 Hz")):

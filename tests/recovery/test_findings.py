@@ -88,7 +88,7 @@ def test_what_would_lose_something_is_never_repaired_without_asking(wrong: str) 
 
 
 FORMS = ("{}{}", "{} {}", "{}: {}", "{}({}", "{}[{}]", "{}( {} )", "{} {})", "{} {}]")
-BETWEEN = (", ", " ", ";", "; ", " y ", ".")
+SEPARATORS = (", ", " ", ";", "; ", " y ", ".")
 
 
 @pytest.mark.sampled("word", keep=2)
@@ -97,7 +97,7 @@ def test_no_repair_loses_a_sign_or_a_point(word: str) -> None:
     """`R .5 60` is not `R(5, 60)`, nor `M: -50 50` `M(50, 50)`."""
     pairs = (["0.5", "60"], [".5", "60"], ["1.25", "70"], ["-50", "50"], ["50", "-50"])
     changed = []
-    for values, form, between in product(pairs, FORMS, BETWEEN):
+    for values, form, between in product(pairs, FORMS, SEPARATORS):
         wrong = form.format(word, between.join(values))
         repaired_text = repair_program(wrong, check).text
         numbers = [float(number) for number in re.findall(r"-?[0-9]*\.?[0-9]+", repaired_text)]

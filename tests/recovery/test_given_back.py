@@ -13,7 +13,7 @@ RESULTS = ["N * 2", "(N * 2)", "N", "DISTANCE", "ABS(N - 3)"]
 USES = ["X = DOUBLE(4);SHOW(X)", "SHOW(DOUBLE(4))", "F(DOUBLE(4), 60)", "W(1 + DOUBLE(4))",
         "IF(DOUBLE(4) > 3);S;ENDIF", "LOOP(DOUBLE(4));S;END_LOOP", "SHOW(MAX(DOUBLE(4), 9))",
         "SHOW(DOUBLE(4) + DOUBLE(4))", "F(2, 80) UNTIL(DISTANCE < DOUBLE(4))"]  # fmt: skip
-BETWEEN = (";", "\n", ";\n  ")
+SEPARATORS = (";", "\n", ";\n  ")
 
 
 def codes_of(text: str) -> list[str]:
@@ -24,7 +24,7 @@ def codes_of(text: str) -> list[str]:
 @pytest.mark.parametrize("use", USES)
 @pytest.mark.parametrize("result", RESULTS)
 @pytest.mark.parametrize("word", RETURNS)
-@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("between", SEPARATORS)
 def test_a_return_and_its_uses_are_one_mistake(
     use: str, result: str, word: str, between: str
 ) -> None:
@@ -38,7 +38,7 @@ def test_a_return_and_its_uses_are_one_mistake(
 
 
 @pytest.mark.parametrize("use", USES)
-@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("between", SEPARATORS)
 def test_what_the_message_says_to_do_is_right(use: str, between: str) -> None:
     call = ["DOUBLE(4)", *use.replace("DOUBLE(4)", "RESULT").split(";")]
     join_after = between.join(["SI|DEF DOUBLE(N)", "RESULT = N * 2", "END_DEF", *call])

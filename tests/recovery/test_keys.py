@@ -18,14 +18,14 @@ SIDES = {
     "A": ("A",), "B": ("B",),
 }  # fmt: skip
 OF_KEYS = ("KEY", "tecla", "botón", "SETA")
-AFTER = ("{k}_{s}", "{k} {s}", "{k} = {s}", '{k} == "{s}"', "{k}({s})",
-         "{k} {s} pressed", "pulso {k} {s}", "{k}{s}")  # fmt: skip
-BEFORE = ("{s}_{k}", "{s} {k}", "{s}{k}")
+SIDE_LAST_FORMS = ("{k}_{s}", "{k} {s}", "{k} = {s}", '{k} == "{s}"', "{k}({s})",
+                   "{k} {s} pressed", "pulso {k} {s}", "{k}{s}")  # fmt: skip
+SIDE_FIRST_FORMS = ("{s}_{k}", "{s} {k}", "{s}{k}")
 CASES = [
     (form.format(k=key, s=word), side)
     for side, words in SIDES.items()
     for key, word in product(OF_KEYS, words)
-    for form in (*AFTER, *(BEFORE if len(side) > 1 else ()))
+    for form in (*SIDE_LAST_FORMS, *(SIDE_FIRST_FORMS if len(side) > 1 else ()))
     if not (len(side) == 1 and form == "{k}{s}" and key == "botón")
 ]
 PLACES = (

@@ -12,7 +12,7 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 
-BETWEEN = (";", "\n", ";\n  ")  # instructions
+SEPARATORS = (";", "\n", ";\n  ")  # instructions
 BLOCKS = (
     ("LOOP(3)", "END_LOOP"),
     ("WHILE(DISTANCE > 10)", "END_WHILE"),
@@ -40,7 +40,7 @@ def apply_fix(text: str, diagnostic: Diagnostic) -> str:
 # -- ends that are crossed ------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("between", SEPARATORS)
 @pytest.mark.parametrize(("outer", "inner"), [*permutations(BLOCKS, 2)])
 @pytest.mark.parametrize("rest", ["R(1, 60)", "R(1, 60);W(2)", "LOOP(2);R(1, 60);END_LOOP"])
 def test_crossed_ends_are_swapped_and_no_body_leaves_its_block(
@@ -94,7 +94,7 @@ def test_what_stands_after_its_brackets_is_in_no_branch() -> None:
 # -- a DEF that is set ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("between", SEPARATORS)
 @pytest.mark.parametrize("value", ["40", "V + 1", "DISTANCE"])
 def test_a_def_with_one_value_that_is_set_is_called(between: str, value: str) -> None:
     lines = ["SI|DEF PASSO(N)", "F(N CM, 60)", "END_DEF", "V = 3", f"PASSO = {value}", "S"]
@@ -176,7 +176,7 @@ def test_each_of_several_moves_has_both_readings() -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("between", SEPARATORS)
 @pytest.mark.parametrize(
     ("unit", "word", "way"), [("CM", "F", "CM"), ("cm", "B", "CM"), ("graus", "R", "DEG")]
 )
@@ -235,7 +235,7 @@ def test_a_right_unit_before_it_is_not_told_of(word: str, unit: str) -> None:
 # -- consequences of one mistake ------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("between", SEPARATORS)
 @pytest.mark.parametrize(
     ("head", "end", "slip"),
     [("DEF GIRO", "END_DEF", "END_DFE"), ("LOOP(2)", "END_LOOP", "END_LOPO"),
@@ -261,7 +261,7 @@ def test_an_end_after_dots_is_not_missing(head: str, dots: str) -> None:
     assert code == "TS082" and ("DEF" in head) == (f"{head}; F(1, 60); {end}" in fix)
 
 
-@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("between", SEPARATORS)
 def test_a_wrong_head_of_a_def_makes_no_name_of_its_body_unknown(between: str) -> None:
     lines = ["SI|DEF LADO(30)", "F(LARGO CM, 60)", "W(LARGO)", "END_DEF", "LADO(30)", "W(ZZZ)"]
     assert [code for code, _ in codes_and_fixes(between.join(lines))] == ["TS091", "TS103"]
@@ -275,7 +275,7 @@ def test_a_wrong_head_of_a_def_makes_no_name_of_its_body_unknown(between: str) -
     [("LADO(pot=60, lar=20)", "LADO(20, 60)"), ("LADO(20, pot = 60)", "LADO(20, 60)"),
      ("LADO(pot=60, 20)", "LADO(20, 60)"), ("LADO(LAR=V + 1, POT=60)", "LADO(V + 1, 60)")],
 )  # fmt: skip
-@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("between", SEPARATORS)
 def test_named_values_of_a_def_stand_in_its_order(call: str, right: str, between: str) -> None:
     lines = ["SI|DEF LADO(LAR, POT)", "F(LAR CM, POT)", "END_DEF", "V = 4", call]
     assert codes_and_fixes(between.join(lines)) == [("TS052", right)]
@@ -335,8 +335,8 @@ def test_an_example_takes_the_number_of_the_program(number: str, beside: str) ->
 # -- questions --------------------------------------------------------------------------------
 
 ORDERS = ("F(5, 60)", "S", "BEEP(1, 440)", "SHOW(DISTANCE)", "P")
-COMPARED = "DISTANCE > 3"
-ASKED = [
+COMPARISON = "DISTANCE > 3"
+CONDITION_TEMPLATES = [
     *("F(5, 60) IF({})", "F(5, 60) IF {}", "S IF({});F(1, 50)", "S IF({})\nF(1, 50)"),
     *("F(5, 60) WHEN {} BEEP(1, 440)", "IF {} S ENDIF", "IF({}) S ENDIF", "F(5, 60) UNTIL {}"),
     *("WHILE {};F(1, 50);END_WHILE", "WHEN({}) BEEP(1, 440) END", "STOP({})"),
@@ -346,13 +346,13 @@ ASKED = [
 
 @pytest.mark.sampled("text", keep=4)
 @pytest.mark.parametrize("place", ["SI|{}", "SI|W(1);{}", "SI|W(1)\n{}"])
-@pytest.mark.parametrize("text", ASKED)
+@pytest.mark.parametrize("text", CONDITION_TEMPLATES)
 def test_a_yes_or_no_is_a_question_wherever_a_comparison_is(text: str, place: str) -> None:
     wrong = place.format(text)
-    compared = [fix for _, fix in codes_and_fixes(wrong.format(COMPARED))]
-    assert compared and COMPARED in compared[0]
+    compared = [fix for _, fix in codes_and_fixes(wrong.format(COMPARISON))]
+    assert compared and COMPARISON in compared[0]
     for asked in ("KEY_A", "NOT KEY_LEFT", "KEY_UP AND KEY_B"):
-        as_compared = [fix.replace(COMPARED, asked) for fix in compared]
+        as_compared = [fix.replace(COMPARISON, asked) for fix in compared]
         assert [fix for _, fix in codes_and_fixes(wrong.format(asked))] == as_compared
 
 
@@ -365,7 +365,7 @@ def test_a_yes_or_no_is_a_question_wherever_a_comparison_is(text: str, place: st
 def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
     order: str, word: str, end: str, around: str
 ) -> None:
-    for question in ("KEY_A", COMPARED):
+    for question in ("KEY_A", COMPARISON):
         line = f"{order} {word}({question});B(1, 50)"
         text = f"SI|DEF P;S;END_DEF\n{around.format(line)}"
         assert any(diagnostic.is_mistake for diagnostic in check(text))
@@ -379,7 +379,7 @@ def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
 # -- what is named, and what is reported once -------------------------------------------------
 
 
-@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("between", SEPARATORS)
 @pytest.mark.parametrize("around", ["SI|{}", "SI|F(2, 80);{}", "{};S"])
 @pytest.mark.parametrize(
     ("head", "named_text"),

@@ -9,13 +9,33 @@ import pytest
 from tests.pupils.corpus import check
 from tiniscript.diagnostics.fixing import repair_program
 
-ALONE = ("{n})", "{n}.", "{n} -", "{n}.-", "({n})", "{n}º", "{n}:", "{a})", "{a}.", "{A})", "{a}:")
+NUMBER_LABELS = (
+    "{n})",
+    "{n}.",
+    "{n} -",
+    "{n}.-",
+    "({n})",
+    "{n}º",
+    "{n}:",
+    "{a})",
+    "{a}.",
+    "{A})",
+    "{a}:",
+)
 WORDS = (
     "Questão", "Questao", "Passo", "Paso", "Step", "Linha", "Ejercicio", "Exercício", "Pregunta",
     "Item", "Parte", "Mission",
 )  # fmt: skip
-WITH_WORD = ("{w} {n}:", "{w} {n} -", "{w} {n})", "{w} {n}.", "{w} {a}:", "{w} nº {n}:", "{w}{n}:")
-LABELS = [*ALONE, *(it.replace("{w}", w) for w, it in product(WORDS, WITH_WORD))]
+WORD_LABELS = (
+    "{w} {n}:",
+    "{w} {n} -",
+    "{w} {n})",
+    "{w} {n}.",
+    "{w} {a}:",
+    "{w} nº {n}:",
+    "{w}{n}:",
+)
+LABELS = [*NUMBER_LABELS, *(it.replace("{w}", w) for w, it in product(WORDS, WORD_LABELS))]
 PROGRAMS = (
     ("F(2, 60)", "L(90 DEG, 60)", "BEEP(1, 500)", "S"),
     ("LOOP(2)", "F(25 CM, 60)", "END_LOOP", "S"),

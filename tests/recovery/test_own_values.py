@@ -17,11 +17,11 @@ PLACES = (
     "SI|DEF PASO;{};END_DEF;PASO", "SI|IF(DISTANCE < 9)\n{}\nELSE\nS\nENDIF",
 )  # fmt: skip
 TRAVELS = (("F", "CM"), ("B", "CM"), ("L", "DEG"), ("R", "DEG"))
-APART = ("{w}({v}, {u}, {p})", "{w}({u}, {v}, {p})", "{w}({v}, {p}, {u})", "{w}({u} {v}, {p})")
+CALL_FORMS = ("{w}({v}, {u}, {p})", "{w}({u}, {v}, {p})", "{w}({v}, {p}, {u})", "{w}({u} {v}, {p})")
 THOUSANDS = ("1,000", "2,500", "12,000", "1,500")
 
 
-@pytest.mark.parametrize("form", APART)
+@pytest.mark.parametrize("form", CALL_FORMS)
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
 @pytest.mark.parametrize(("value", "power"), [("40", "70"), ("7.5", "35"), ("V", "V"), ("V", "45")])
 def test_a_unit_that_is_a_value_goes_to_its_own(

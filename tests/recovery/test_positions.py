@@ -22,10 +22,10 @@ from tiniscript.recovery.meanings import WORD_OF_END, lexemes, texts
 from tiniscript.recovery.search import Candidate, Recovery
 
 KITS = [robots.load(name).kit for name in ("tinibot", "grabber", "liner")]
-ON_A_LINE = ("W(3);{}", "{};W(3)", "W(3);{};W(3)")
-IN_A_BLOCK = ("IF(DISTANCE < 9);{};ENDIF", "DEF A1;{};END_DEF;A1", "TASK;{};END_TASK")
-AT_THE_TOP = re.compile(r"\b(?:DEF|TASK|WHEN|BREAK)\b")  # these are in no block, or in a loop
-OF_A_LINE = ("^^", "$$", r"\A", r"\Z")
+PLACES_ON_A_LINE = ("W(3);{}", "{};W(3)", "W(3);{};W(3)")
+PLACES_IN_A_BLOCK = ("IF(DISTANCE < 9);{};ENDIF", "DEF A1;{};END_DEF;A1", "TASK;{};END_TASK")
+TOP_LEVEL_WORD = re.compile(r"\b(?:DEF|TASK|WHEN|BREAK)\b")  # these are in no block, or in a loop
+LINE_ANCHORS = ("^^", "$$", r"\A", r"\Z")
 
 
 def examples() -> list[str]:
@@ -33,7 +33,7 @@ def examples() -> list[str]:
     texts = []
     for pattern, *_, example in chain(rewrites.cells(rows.SIGNS), rewrites.cells(rows.TOKENS)):
         wrong = example.rpartition(" => ")[0].strip()
-        if not any(sign in pattern for sign in OF_A_LINE) and "//" not in example:
+        if not any(sign in pattern for sign in LINE_ANCHORS) and "//" not in example:
             texts.append(re.sub(r"\s*⏎\s*", ";", re.sub(r"^SI\s*\|", "", wrong)))
     return [*dict.fromkeys(texts)]
 
@@ -74,8 +74,8 @@ def means_the_same_everywhere(wrong: str) -> None:
     if alone is None:
         return  # the program depends on its lines in the table
     is_open = ends(alone.text) > ends(wrong)  # later lines may belong to the block that it begins
-    is_free = not AT_THE_TOP.search(alone.text.upper())
-    for place in (*ON_A_LINE, *(IN_A_BLOCK if is_free else ())):
+    is_free = not TOP_LEVEL_WORD.search(alone.text.upper())
+    for place in (*PLACES_ON_A_LINE, *(PLACES_IN_A_BLOCK if is_free else ())):
         candidate = find_meant_program(place.format(wrong))
         same = place.format(alone.text)
         if is_open and not place.endswith("{}"):

@@ -109,9 +109,12 @@ def test_an_explanation_has_a_slip_and_its_edits(
 
 
 # Values removed by `dedupe`.
-ASKED_FOR = {codes.BAD_NAME: {"found"}, codes.NAME_WITH_SPACE: {"found"}}
-OTHERS_SAY = (codes.ARGUMENT_COUNT, codes.WRONG_END)  # the checker, or the block: some of it
-OF_BLOCKS = {"whole", "line", "lines", "times", "ends"}
+DEDUPED_GAPS = {codes.BAD_NAME: {"found"}, codes.NAME_WITH_SPACE: {"found"}}
+CODES_SAID_ELSEWHERE = (
+    codes.ARGUMENT_COUNT,
+    codes.WRONG_END,
+)  # the checker, or the block: some of it
+BLOCK_GAPS = {"whole", "line", "lines", "times", "ends"}
 
 
 @each_row("code", [pytest.param(code, id=code.number) for code in slips.NAMES_OF_CODE])
@@ -126,10 +129,10 @@ def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
                 break
             asked.append({*re.findall(r"\{@?(\w+)\}", text)})
             text = languages.find_text("messages", f"{code.number}/{part}/{k}", "en")
-    assert names <= set().union(*asked) | ASKED_FOR.get(code, set())
+    assert names <= set().union(*asked) | DEDUPED_GAPS.get(code, set())
     own = {"found", "right", "before", "word", "usage", "fix", "letter", "takes"}
-    whole = [names & own for names in asked if names <= own | OF_BLOCKS]
-    assert code in OTHERS_SAY or set().union(*whole) <= names
+    whole = [names & own for names in asked if names <= own | BLOCK_GAPS]
+    assert code in CODES_SAID_ELSEWHERE or set().union(*whole) <= names
 
 
 def test_a_line_is_searched_once_for_the_same_names() -> None:

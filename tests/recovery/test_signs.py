@@ -12,11 +12,11 @@ from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, scan
 
-RIGHT = [program.text for program in programs()
-         if program.robot == "tinibot" and "~" not in program.text
-         and not check(program.text)]  # fmt: skip
+RIGHT_PROGRAMS = [program.text for program in programs()
+                  if program.robot == "tinibot" and "~" not in program.text
+                  and not check(program.text)]  # fmt: skip
 STEPS = ("{}++", "{}--", "{} ++", "{} --")
-BEGINS = (";", "|", NEWLINE)  # signs before an assigned name
+STATEMENT_STARTS = (";", "|", NEWLINE)  # signs before an assigned name
 FRAMES = (
     "{}",
     "SI|{}",
@@ -32,10 +32,10 @@ FRAMES = (
 def test_a_plus_before_a_number_goes_and_the_number_stays(part: int) -> None:
     """This holds for every number of every program, except in `X = +1`, which may be `X += 1`."""
     count = 0
-    for text in RIGHT[part::3]:
+    for text in RIGHT_PROGRAMS[part::3]:
         tokens = scan(text).tokens
         for k, token in enumerate(tokens):
-            is_set = tokens[k - 1].kind == "=" and (k < 3 or tokens[k - 3].kind in BEGINS)
+            is_set = tokens[k - 1].kind == "=" and (k < 3 or tokens[k - 3].kind in STATEMENT_STARTS)
             if tokens[k - 1].kind == "-":  # the number would lose its sign: it is only shown
                 continue
             if token.kind is not NUMBER or is_set:

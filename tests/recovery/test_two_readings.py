@@ -11,13 +11,13 @@ from tiniscript.base.source import Source
 from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 
-LAST = (
+LAST_PLACES = (
     "{}", "SI|{}", "W(1);{}", "W(1)\n{}\nW(1)", "IF(DISTANCE < 9)\n{}\nENDIF",
     "DEF A1\n{}\nEND_DEF\nA1", "TASK\n{}\nEND_TASK",
 )  # fmt: skip
-BEFORE_OTHERS = ("{};W(1)", "SI|W(1);{};S", "IF(DISTANCE < 9);{};ENDIF")
+EARLIER_PLACES = ("{};W(1)", "SI|W(1);{};S", "IF(DISTANCE < 9);{};ENDIF")
 # Text that may be a note, and its other meaning.
-ASIDES = {
+PROGRAM_BY_NOTE = {
     "avanza otra vez": "LOOP(2);F(3, 50);END_LOOP", "again": "LOOP(2);F(3, 50);END_LOOP",
     "siempre": "LOOP(FOREVER);F(3, 50);END_LOOP", "al reves": "B(3, 50)",
     "gira a la derecha": "F(3, 50);R(2, 50)", "turn right": "F(3, 50);R(2, 50)",
@@ -27,25 +27,25 @@ IFS = (
     ("DISTANCE < 20", "DISTANCE > 20"), ("DISTANCE < 20", "DISTANCE >= 20"),
     ("DISTANCE > 35", "DISTANCE < 35"), ("LIGHT_L = 5", "LIGHT_L <> 5"), ("KEY_A", "NOT KEY_A"),
 )  # fmt: skip
-AROUND = ("{}", "SI|W(1);{}", "{};S", "LOOP(3);{};END_LOOP", "DEF A1;{};END_DEF;A1")
+SURROUNDINGS = ("{}", "SI|W(1);{}", "{};S", "LOOP(3);{};END_LOOP", "DEF A1;{};END_DEF;A1")
 
 
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
-@pytest.mark.parametrize("words", ASIDES)
+@pytest.mark.parametrize("words", PROGRAM_BY_NOTE)
 def test_words_that_may_be_a_note_are_one_first(words: str, language: str) -> None:
-    for place in (*LAST, *BEFORE_OTHERS):
+    for place in (*LAST_PLACES, *EARLIER_PLACES):
         text = place.format(f"F(3, 50) {words}")
         diagnostic = next(
             diagnostic for diagnostic in check(text) if diagnostic.code.number in ("TS085", "TS074")
         )
         fix = message(diagnostic, Source(text), language).fix
-        note = f"F(3, 50) // {words}" if place in LAST else f"// {words}"
-        assert 0 < fix.find(note) < fix.find(ASIDES[words]), text
+        note = f"F(3, 50) // {words}" if place in LAST_PLACES else f"// {words}"
+        assert 0 < fix.find(note) < fix.find(PROGRAM_BY_NOTE[words]), text
         assert repair_program(text, check).text == text
 
 
 @pytest.mark.parametrize("between", [";", "\n"])
-@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("around", SURROUNDINGS)
 @pytest.mark.parametrize(("asked_text", "other"), IFS)
 def test_an_else_that_asks_the_opposite_asks_nothing(
     asked_text: str, other: str, around: str, between: str
@@ -62,7 +62,7 @@ def test_an_else_that_asks_the_opposite_asks_nothing(
     assert wrong[slice(*edit.span)] == f"ELSE({other})" and edit.text == "ELSE"
 
 
-@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("around", SURROUNDINGS)
 @pytest.mark.parametrize("other", ["DISTANCE > 40", "LIGHT_L > 20", "DISTANCE < 10"])
 def test_an_else_that_asks_something_else_is_an_elseif(around: str, other: str) -> None:
     wrong = around.format(f"IF(DISTANCE < 20);B(1, 60);ELSE({other});F(1, 60);ENDIF")

@@ -129,7 +129,7 @@ def is_shield(motors: str) -> bool:
 
 KNOWING = [path for path in sorted((SOURCES / "src" / "boards").glob("*.cpp"))
            if '"kit.h"' in path.read_text(encoding="utf-8")]  # fmt: skip
-ALL = [
+ALL_ROBOTS = [
     *(pytest.param(robot_with(motors, DEVICES), id=f"mega {motors}") for motors in MOTORS),
     *(pytest.param(robot_with(motors, DEVICES[:3], "nano", False), id=f"nano {motors}")
       for motors in MOTORS),
@@ -161,7 +161,7 @@ def compile_all(robot: Robot, folder: Path) -> None:
 
 
 @pytest.mark.sampled("robot", keep=12)
-@pytest.mark.parametrize("robot", ALL)
+@pytest.mark.parametrize("robot", ALL_ROBOTS)
 def test_what_a_driver_writes_compiles(robot: Robot, tmp_path: Path) -> None:
     compile_all(robot, tmp_path)
 

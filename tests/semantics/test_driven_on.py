@@ -9,7 +9,7 @@ from tiniscript.base.words import WORDS
 from tiniscript.diagnostics import codes
 
 # Places in a program; in TASKs other instructions interrupt it.
-AROUND = (
+SURROUNDINGS = (
     "{}", "W(1);{}", "{};W(1)", "IF(DISTANCE < 9);{};ENDIF",
     "IF(DISTANCE < 9);W(1);ELSE;{};ENDIF", "LOOP(2);IF(DISTANCE < 9);W(1);ENDIF;{};END_LOOP",
     "DEF SIDE;{};END_DEF;SIDE",
@@ -31,7 +31,7 @@ def move_values(text: str) -> dict[str, str]:
     return {key: values[key] for key in ("whole", "running") if key in values}
 
 
-@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("around", SURROUNDINGS)
 @pytest.mark.parametrize("beside", [";", "\n", "  // on;S\n", "\n\n// it drives\n"])
 def test_a_wait_and_an_s_end_it_wherever_it_stands(around: str, beside: str) -> None:
     for wait, whole in WAITS.items():
@@ -39,7 +39,7 @@ def test_a_wait_and_an_s_end_it_wherever_it_stands(around: str, beside: str) -> 
         assert move_values(around.format(parts)) == {"whole": whole}, parts
 
 
-@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("around", SURROUNDINGS)
 @pytest.mark.parametrize(("move", "motors"), [
     ("F", "M(60, 60)"), ("B", "M(-60, -60)"), ("L", "M(-60, 60)"), ("R", "M(60, -60)"),
 ])  # fmt: skip
@@ -48,7 +48,7 @@ def test_an_s_further_on_ends_its_motors(around: str, move: str, motors: str) ->
     assert move_values(around.format(text)) == {"running": motors}
 
 
-@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("around", SURROUNDINGS)
 @pytest.mark.parametrize("tail", [
     "", " // on; S", ";W(3)", ";W(3) // S", ";B(1, 50);S", ";IF(DISTANCE < 9);S;ENDIF",
     ";W(1) UNTIL(DISTANCE < 9);W(1);S",
@@ -59,7 +59,7 @@ def test_nothing_else_does(around: str, tail: str) -> None:
 
 
 @pytest.mark.sampled("around")
-@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("around", SURROUNDINGS)
 @pytest.mark.parametrize("word", [*WORDS, "espera"])
 def test_no_word_with_forever_is_taken_for_a_move(around: str, word: str) -> None:
     """This holds for any number of values: FOREVER alone, first, last or between others."""

@@ -13,7 +13,7 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import message
 
 TINIBOT, LINER = robots.load("tinibot").kit, robots.load("liner").kit
-BETWEEN = (";", "\n", "; ")
+SEPARATORS = (";", "\n", "; ")
 
 
 def fix_of(text: str, lang: str = "en") -> str:
@@ -27,7 +27,7 @@ def mistakes(text: str) -> list[str]:
 # -- a sensor that is set ---------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("between", SEPARATORS)
 @pytest.mark.parametrize("word", "FB")
 @pytest.mark.parametrize("value", ["30", "7.5"])
 @pytest.mark.parametrize("around", ["SI|{}", "SI|W(1);{}", "SI|{};S"])
@@ -78,7 +78,7 @@ HEADS = ["IF(DISTANCE < 10)", "IF(KEY_A AND LIGHT_L > 3)"]
 RESTS = [["BEEP(1, 440)"], ["F(1, 60)", "S"], ["LOOP(2);S;END_LOOP"]]
 
 
-@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("between", SEPARATORS)
 @pytest.mark.parametrize("head", HEADS)
 @pytest.mark.parametrize("inside", [[], ["S"], ["B(1, 60)", "W(1)"]])
 @pytest.mark.parametrize("rest", RESTS)
@@ -181,7 +181,7 @@ def test_lamps_are_told_once_and_a_light_that_is_not_switched_is_none() -> None:
 
 
 @pytest.mark.parametrize(("lang", "name"), [("en", "SIZE"), ("es", "LARGO"), ("pt", "TAMANHO")])
-@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("between", SEPARATORS)
 @pytest.mark.parametrize(
     "inside", ["F({} CM, 60)", "R({}, 60)", "W(1 + {})", "LOOP({});S;END_LOOP"]
 )

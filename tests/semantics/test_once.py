@@ -21,7 +21,7 @@ KIT = robots.load("tinibot").kit
 QUESTIONS = [
     device.name if device.is_yes_no else f"{device.name} > 20" for device in REMOTE
 ] + ["NOT KEY_A", "DISTANCE < 9 OR KEY_B"]  # fmt: skip
-AROUND = [
+SURROUNDINGS = [
     "{}", "SI|{}", "SI|F(1, 60);{};S", "SI|W(2)\n{}\nS", "IF(DISTANCE < 9);{};ENDIF",
     "IF(DISTANCE < 9);S;ELSE;W(1);{};ENDIF", "SI|TASK;{};END_TASK;F(9, 60)",
     "W(FOREVER) UNTIL(DISTANCE < 9);{}", "LOOP(3);F(1, 60);END_LOOP;{}",
@@ -46,7 +46,7 @@ def of(code: codes.Code, text: str) -> list[Diagnostic]:
 
 
 @pytest.mark.sampled("around", keep=3)
-@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("around", SURROUNDINGS)
 @pytest.mark.parametrize("read", READ)
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_a_question_that_is_asked_once_is_told(around: str, read: str, question: str) -> None:
@@ -56,7 +56,7 @@ def test_a_question_that_is_asked_once_is_told(around: str, read: str, question:
     name = re.findall(r"(?:KEY|PAD)_\w+", question)[0]
     assert text[slice(*diagnostic.span)] == name
     assert name in (diagnostic.values.get("early"), diagnostic.values.get("name"))
-    is_early = around in ("{}", "SI|{}", *AROUND[4:5], AROUND[6], AROUND[9])
+    is_early = around in ("{}", "SI|{}", *SURROUNDINGS[4:5], SURROUNDINGS[6], SURROUNDINGS[9])
     assert ("early" in diagnostic.values) == is_early or "W(1);ELSEIF" in asked_text
     if diagnostic.repair and "IF(DISTANCE < 9)" not in text and "WHEN" not in text:
         assert not of(codes.ASKED_ONCE, apply_edits(text, diagnostic.repair.edits))

@@ -24,8 +24,8 @@ from tiniscript.link.sharing.requests import ClientRequest
 from tiniscript.link.sharing.shared_connection import DEAF_S, SharedConnection
 
 LONG_S = 20 * DEAF_S
-ANSWER = {"id": 1, "status": OK, "detail": 0, "heard": 9, "came": "fe", "is_echoed": False,
-          "boot": 0, "values": {}}  # fmt: skip
+ANSWER_MESSAGE = {"id": 1, "status": OK, "detail": 0, "heard": 9, "came": "fe", "is_echoed": False,
+                  "boot": 0, "values": {}}  # fmt: skip
 SHOWN = {"event": "SHOW", "ms": 5, "values": protocol.event_fields(ShownEvent(5, 0))}
 
 
@@ -133,7 +133,7 @@ def test_a_request_that_takes_long_is_answered(
     holder = Holder(lambda: 0.1)
     line = open_shared_connection(monkeypatch, holder)
     request: PendingRequest[EmptyReply] = line.begin(lambda session: session.name(b"Pia"))
-    holder.says(ANSWER, takes_s)
+    holder.says(ANSWER_MESSAGE, takes_s)
     assert line.wait(request).status == OK
     assert holder.now_s - 100.0 >= takes_s
     assert (line.heard_count, line.early_bytes) == (9, b"\xfe")

@@ -42,10 +42,10 @@ from tiniscript.link.sharing import server as server_of
 from tiniscript.link.sharing.server import Server
 
 STEP_MS = 20
-MARK, MARKED = "BEEP(0.001, 31);", "BEEP 31 1"
+MARK, MARK_ACTION = "BEEP(0.001, 31);", "BEEP 31 1"
 # Messages about the robot, its runs and the clock, not about the client.
-STRIPPED = re.compile(r'"(run|ms|boot|nonce|epoch|heard|noise|reset|fault\w*|state|program|length'
-                      r'|slot|saved|answer|cause)": ?("[^"]*"|\d+)')  # fmt: skip
+ROBOT_FIELD = re.compile(r'"(run|ms|boot|nonce|epoch|heard|noise|reset|fault\w*|state|program'
+                         r'|length|slot|saved|answer|cause)": ?("[^"]*"|\d+)')  # fmt: skip
 Json = dict[str, Any]
 
 
@@ -188,8 +188,8 @@ def draw_program(rng: random.Random) -> str:
     return f"SI|{MARK}{moves};{rng.choice(('', 'F(60, 50)', 'F(60, 50)', 'X = 0;SHOW(1 / X)'))}"
 
 
-ASKED = ("upload", "upload", "live", "status", "trim", "identify")
-OF_WHAT_IT_HOLDS = ("start", "undo")  # these report the previous client to the next one
+REQUEST_NAMES = ("upload", "upload", "live", "status", "trim", "identify")
+STORED_PROGRAM_REQUESTS = ("start", "undo")  # these report the previous client to the next one
 
 
 def asks(rng: random.Random, client: Client, what: str) -> None:
@@ -229,7 +229,7 @@ def comes_first(rng: random.Random, at: Desk) -> str:
     client = at.join(rng.choice(("upload", "run", "monitor", "python")))
     at.steps(rng.choice((20, 200)))
     for _ in range(rng.randint(1, 3)):
-        asks(rng, client, rng.choice((*ASKED, *OF_WHAT_IT_HOLDS)))
+        asks(rng, client, rng.choice((*REQUEST_NAMES, *STORED_PROGRAM_REQUESTS)))
         at.steps(rng.choice((0, 20, 40, 100, 400, 1500)))
     if rng.random() < 0.6:  # during its run, or while it is under way
         for _ in range(rng.choice((1, 1, 3))):
@@ -270,19 +270,19 @@ def second(rng: random.Random, at: Desk) -> tuple[list[str], list[str]]:
     asks(rng, client, "upload")
     at.steps(rng.choice((400, 1500, 3000)))
     for _ in range(2):
-        asks(rng, client, rng.choice(ASKED))
+        asks(rng, client, rng.choice(REQUEST_NAMES))
         at.steps(rng.choice((400, 1500)))
     client.says({"do": "stop"})
     at.steps(400)
     heard = [message for message in client.heard if "beat" not in message]
     begins = next((k for k, message in enumerate(heard) if "status" in message), 0)
     messages = [
-        STRIPPED.sub(r'"\1"', protocol.encode_message(message).decode())
+        ROBOT_FIELD.sub(r'"\1"', protocol.encode_message(message).decode())
         for message in heard[begins:]
     ]
     # The mark of its program.
     actions = [line.split(" ", 1)[1] for line in robot.did if not line.endswith(" 200")]
-    return messages, actions[actions.index(MARKED) :] if MARKED in actions else actions
+    return messages, actions[actions.index(MARK_ACTION) :] if MARK_ACTION in actions else actions
 
 
 def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:

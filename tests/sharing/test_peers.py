@@ -25,10 +25,10 @@ from tiniscript.virtual.transports import Transports
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells the user")
 
-NOBODY = 65534
+NOBODY_UID = 65534
 LINE = b"SI|F(0.1,50)\r\n"
 # Says a line as another user; then hangs up at once, resets the connection, or stays.
-STRANGER = """
+STRANGER_SCRIPT = """
 import encodings.idna, os, socket, struct, sys
 os.setgid(65534); os.setuid(65534)
 peer = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
@@ -78,11 +78,11 @@ def test_of_an_end_that_is_nobody_s_the_kernel_says_so() -> None:
     (1234, 1234, 0, False),
     (1234, 0, 5, True),  # root has every right
     (1234, 0, 0, False),
-    (1234, NOBODY, 5, False),
-    (1234, NOBODY, 0, False),
+    (1234, NOBODY_UID, 5, False),
+    (1234, NOBODY_UID, 0, False),
     (0, 0, 5, True),
     (0, 0, 0, False),
-    (0, NOBODY, 5, False),
+    (0, NOBODY_UID, 5, False),
 ])  # fmt: skip
 def test_which_ends_are_let_in(
     monkeypatch: pytest.MonkeyPatch, own: int, user: int, inode: int, is_let_in: bool
@@ -117,7 +117,7 @@ def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) ->
 def test_another_user_moves_nothing(how: str) -> None:
     with robot("--listen", "0") as running_robot:
         number = running_robot.port.rpartition(":")[2]
-        words = [sys.executable, "-I", "-c", STRANGER, number, how, LINE.hex()]
+        words = [sys.executable, "-I", "-c", STRANGER_SCRIPT, number, how, LINE.hex()]
         for _ in range(3):
             completed = subprocess.run(words, capture_output=True, text=True, timeout=HANGS_S)
             assert completed.returncode == 0, completed.stderr
@@ -135,7 +135,7 @@ def test_another_user_moves_nothing(how: str) -> None:
 # -- another server in a robot's place -------------------------------------------------------------
 
 # Listens at a port as another user, and prints what it receives.
-LISTENER = """
+LISTENER_SCRIPT = """
 import os, socket, sys
 os.setgid(65534); os.setuid(65534)
 listening = socket.create_server(("127.0.0.1", int(sys.argv[1])))
@@ -151,7 +151,7 @@ def test_whoever_listens_at_a_port_has_its_user(monkeypatch: pytest.MonkeyPatch)
     with socket.create_server(("127.0.0.1", 0)) as server:
         number = server.getsockname()[1]
         assert not peers.is_of_another_user(number)
-        monkeypatch.setattr(os, "geteuid", lambda: NOBODY)
+        monkeypatch.setattr(os, "geteuid", lambda: NOBODY_UID)
         assert peers.is_of_another_user(number) == (os.getuid() != 0)  # root has every right
     assert not peers.is_of_another_user(number)  # no server listens there
 
@@ -189,7 +189,7 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
 def test_the_port_of_a_robot_that_was_killed_is_asked_whose_it_is() -> None:
     running_robot = Robot("--listen", "0")
     running_robot.kill()
-    listener = Command(running_robot.port.rpartition(":")[2], code=LISTENER)
+    listener = Command(running_robot.port.rpartition(":")[2], code=LISTENER_SCRIPT)
     listener.until("listens")
     process("upload", "-e", "SI|S", "--port", running_robot.port).gives(3, "another user")
     process("start", "--virtual").gives(3)

@@ -20,7 +20,7 @@ from tiniscript.link.wifi import BrokerSettings, Network, Tls
 
 HOME = Network(b"Home", b"a password", False)
 BROKER = BrokerSettings(bytes((10, 0, 0, 7)), 1883, "class", b"robot", b"secret")
-NAMED = BROKER._replace(name=b"broker.class", tls=Tls(bytes(range(256)) * 8, 20261121))
+NAMED_BROKER = BROKER._replace(name=b"broker.class", tls=Tls(bytes(range(256)) * 8, 20261121))
 IMAGE = Image("SI", 3, b"\x44\xf0\x50", 0xFFFFFFFF, (2, 0), b"\1")
 
 
@@ -35,7 +35,7 @@ class Asked(NamedTuple):
         return message_of(json.dumps(request.message).encode())
 
 
-ASKED = (
+REQUESTS = (
     *(Asked(name) for name in ("hello", "ping", "status", "clear", "fetch", "undo", "identify",
                                "hold_back", "wifi", "forget_wifi", "broker")),
     Asked("claim", (0,)), Asked("claim", (1,)), Asked("disown", (1,)),
@@ -45,14 +45,15 @@ ASKED = (
     Asked("press", (0x3F, -100, 100, 0)), Asked("press", (0, 0, 0, 0)),
     Asked("join", (Network(b"N" * 32, b"p" * 63, True),)),
     Asked("join", (Network(b"N", b"p" * 8, False),)),
-    Asked("use_broker", (BROKER,)), Asked("use_broker", (None,)), Asked("use_broker", (NAMED,)),
+    Asked("use_broker", (BROKER,)), Asked("use_broker", (None,)),
+    Asked("use_broker", (NAMED_BROKER,)),
     Asked("use_broker", (BROKER._replace(name=b"x"),)),
     Asked("upload", (IMAGE, False, True, True, 7)),
     Asked("upload", (IMAGE._replace(isa=(2, 1), needs=255), True, True, False, 7)),
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("asked", ASKED, ids=str)
+@pytest.mark.parametrize("asked", REQUESTS, ids=str)
 def test_it_is_asked_of_the_session_as_of_the_client(asked: Asked) -> None:
     session = Mock()
     request = request_maker(asked.message(), 700)(session)
@@ -65,7 +66,7 @@ def of(method: str, *arguments: object, **changed: object) -> dict[str, Any]:
     return {**Asked(method, arguments).message(), **changed}
 
 
-BAD: tuple[dict[str, Any], ...] = (
+BAD_MESSAGES: tuple[dict[str, Any], ...] = (
     {"do": "poll"}, {"do": None}, {}, of("claim", 2), of("claim", -1), of("disown", 2),
     of("allow_text", 1), of("name", b""), of("name", b"A" * 17), of("name", b"A", name="g"),
     of("trim", b"\1"), of("trim", b"\1\2\3\4"), of("start", 1), of("live", b"\x44", kit="7"),
@@ -80,7 +81,7 @@ BAD: tuple[dict[str, Any], ...] = (
     of("press", 1, x="1"), of("press", 1, y=None),
     of("use_broker", BROKER, port=0), of("use_broker", BROKER, port=1 << 16),
     of("use_broker", BROKER, address=""), of("use_broker", BROKER, password="61" * 64),
-    *(of("use_broker", NAMED, **{key: value}) for key, value in (
+    *(of("use_broker", NAMED_BROKER, **{key: value}) for key, value in (
         ("trust", ""), ("trust", "00" * 2049), ("trust", 1), ("date", 0), ("date", -1),
         ("date", True), ("date", 1 << 32), ("name", ""), ("name", "00"), ("name", "78" * 97),
         ("port", 0), ("address", "7f"), ("group", "a/b"),
@@ -95,7 +96,7 @@ BAD: tuple[dict[str, Any], ...] = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("message", BAD, ids=lambda message: str(message)[:60])
+@pytest.mark.parametrize("message", BAD_MESSAGES, ids=lambda message: str(message)[:60])
 def test_what_no_session_may_be_asked_is_refused(message: dict[str, Any]) -> None:
     with pytest.raises(BadMessage):
         request_maker(message, 700)
@@ -117,7 +118,7 @@ def test_who_presses_keys_is_not_for_the_client_to_say() -> None:
 
 # -- a request that is no more than a message ------------------------------------------------------
 
-NOD = Message(
+NOD_MESSAGE = Message(
     99, "NOD", True,
     (Field("times", "u8", 1, 1), Field("turn", "i8", 1, 1), Field("which", "u32", 4, 4),
      Field("said", "rest", 1, 3)), (), "The robot nods.",
@@ -132,7 +133,7 @@ def nod(
 
 @pytest.fixture
 def _knows_nod(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(BY_NAME, "NOD", NOD)
+    monkeypatch.setitem(BY_NAME, "NOD", NOD_MESSAGE)
     monkeypatch.setitem(REPLIES, "NOD", EmptyReply)
     monkeypatch.setattr(Requester, "nod", nod, raising=False)
 
@@ -146,7 +147,7 @@ def test_a_message_of_the_table_and_its_method_are_a_request(values: tuple[Any, 
     request_maker(Asked("nod", values).message(), 700)(session)
     ((name, taken, _),) = session.method_calls
     assert (name, taken) == ("nod", values)
-    given_fields = dict(zip((its.name for its in NOD.request), values, strict=True))
+    given_fields = dict(zip((its.name for its in NOD_MESSAGE.request), values, strict=True))
     assert next(exchange_by_name("nod")(Mock(), **given_fields)) == Request("NOD", given_fields)
 
 

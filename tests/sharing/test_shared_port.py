@@ -25,7 +25,7 @@ from tiniscript.link.sharing.shared_connection import SharedConnection, join
 
 TRIES = 8  # tries of a command whose predecessor has just left
 # On a busy computer, sharing a newly opened port takes a while.
-PATIENT = (
+PATIENT_COMMAND_CODE = (
     "import sys; from tiniscript.cli import main; from tiniscript.library import opening; "
     "opening.BUSY_TIMEOUT_S = 100; sys.exit(main(sys.argv[1:]))"
 )
@@ -157,35 +157,42 @@ def test_monitor_shows_what_live_does_and_not_its_bookkeeping(
     assert monitor.wait_for_result().out == ""
 
 
-IMPORTS = (
+LIST_IMPORTS_CODE = (
     "import sys; from tiniscript.cli import main; assert main(sys.argv[1:]) == 0; "
     "print(' '.join(sys.modules))"
 )
 # Commands with a waiting person, and the modules that each must not import.
-AT_ONCE = [
+QUICK_COMMANDS = [
     pytest.param(("upload", "-e", "SI|F(0.1, 30)"), set[str](), id="upload"),
     pytest.param(("stop",), {"csv", "tiniscript.codegen", "tiniscript.semantics"}, id="stop"),
 ]
-NEVER = {"tomllib", "tomli", "rich", "ssl", "asyncio", "bleak", "zeroconf", "wasmtime",
-         "concurrent.futures", "tiniscript.cli.robot.fleet", "tiniscript.cli.robot.in_reach",
-         "tiniscript.cli.robot.simulator", "tiniscript.diagnostics.rendering",
-         "tiniscript.virtual.transports", "tiniscript.vm.machine"}  # fmt: skip
-OF_A_PORT = {"serial", "cobs", "threading", "tiniscript.link.session", "tiniscript.link.ports"}
+UNWANTED_MODULES = {"tomllib", "tomli", "rich", "ssl", "asyncio", "bleak", "zeroconf", "wasmtime",
+                    "concurrent.futures", "tiniscript.cli.robot.fleet",
+                    "tiniscript.cli.robot.in_reach",
+                    "tiniscript.cli.robot.simulator", "tiniscript.diagnostics.rendering",
+                    "tiniscript.virtual.transports", "tiniscript.vm.machine"}  # fmt: skip
+PORT_MODULES = {"serial", "cobs", "threading", "tiniscript.link.session", "tiniscript.link.ports"}
 
 
-@pytest.mark.parametrize(("arguments", "unwanted_modules"), AT_ONCE)
+@pytest.mark.parametrize(("arguments", "unwanted_modules"), QUICK_COMMANDS)
 def test_a_command_imports_no_more_than_it_needs(
     pty_robot: PtyRobot, arguments: tuple[str, ...], unwanted_modules: set[str]
 ) -> None:
     def imported_by(port: str) -> set[str]:
-        result = Command(*arguments, "--port", port, code=IMPORTS).wait_for_result()
+        result = Command(*arguments, "--port", port, code=LIST_IMPORTS_CODE).wait_for_result()
         return set(result.out.splitlines()[-1].split())
 
     modules = imported_by(pty_robot.port)
-    assert sorted((NEVER | unwanted_modules) & modules) == []
-    assert modules >= OF_A_PORT
+    assert sorted((UNWANTED_MODULES | unwanted_modules) & modules) == []
+    assert modules >= PORT_MODULES
     with Shared() as (shared_robot, _):
-        assert sorted((NEVER | OF_A_PORT | unwanted_modules) & imported_by(shared_robot.port)) == []
+        assert (
+            sorted(
+                (UNWANTED_MODULES | PORT_MODULES | unwanted_modules)
+                & imported_by(shared_robot.port)
+            )
+            == []
+        )
 
 
 # -- the owner of a run ---------------------------------------------------------------------------
@@ -373,7 +380,7 @@ def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
     """A client is notified when its server leaves, and connects again."""
 
     def start_command(*words: str) -> Command:
-        return Command(*words, "--port", pty_robot.port, code=PATIENT)
+        return Command(*words, "--port", pty_robot.port, code=PATIENT_COMMAND_CODE)
 
     asked = [["doctor", "--identify"]] * 3 + [["upload", "-e", "SB|S"]]
     commands = [start_command(*words) for words in asked]

@@ -12,11 +12,11 @@ if TYPE_CHECKING:
 
 Size = tuple[int, int]  # width and height in pixels
 # They are next to the program; on a phone they have their own screen.
-BESIDE = {"running", "paused", "driven", "trace", "plot", "floor", "drawing", "box", "flag",
-          "lesson", "checked", "real", "teacher", "programs"}  # fmt: skip
-STARTS = {"start", "own programs"}  # screens without halves
-WRONG = "SI|" + "F(-2, 80);\nIF(DISTANCE < 10;\n" * 6
-See = Callable[["Page"], None]
+SCREENS_BESIDE_PROGRAM = {"running", "paused", "driven", "trace", "plot", "floor", "drawing", "box",
+                          "flag", "lesson", "checked", "real", "teacher", "programs"}  # fmt: skip
+WHOLE_SCREENS = {"start", "own programs"}  # screens without halves
+WRONG_PROGRAM = "SI|" + "F(-2, 80);\nIF(DISTANCE < 10;\n" * 6
+Show = Callable[["Page"], None]
 
 
 def _write(page: Page, text: str) -> None:
@@ -33,7 +33,7 @@ def _blocks(page: Page) -> None:
 
 def _wrong(page: Page) -> None:
     page.click("#words")
-    _write(page, WRONG)
+    _write(page, WRONG_PROGRAM)
 
 
 def _running(page: Page) -> None:
@@ -56,7 +56,7 @@ def _drive_run(page: Page) -> None:
     in_phase(page, "ended")
 
 
-def _part(index: int) -> See:
+def _part(index: int) -> Show:
     def see(page: Page) -> None:
         count = page.locator("#world_part option").count()
         page.select_option("#world_part", index=index % count)
@@ -103,7 +103,7 @@ def _own_programs(page: Page) -> None:
     page.locator("#start_programs li").first.wait_for()
 
 
-SCREENS: dict[str, See] = {
+SCREENS: dict[str, Show] = {
     "start": lambda page: page.locator("#pictures").wait_for(),
     "blocks": _blocks,
     "toolbox": lambda page: page.locator(".blocklyToolboxCategory").first.click(),
@@ -136,7 +136,7 @@ def each_screen(page: Page, sizes: Callable[[str], Iterable[Size]]) -> Iterator[
         see(page)
         for width, height in sizes(screen):
             page.set_viewport_size({"width": width, "height": height})
-            if screen not in STARTS:
-                turn(page, "robot" if screen in BESIDE else "program")
+            if screen not in WHOLE_SCREENS:
+                turn(page, "robot" if screen in SCREENS_BESIDE_PROGRAM else "program")
             page.evaluate(SETTLED)
             yield screen, (width, height)

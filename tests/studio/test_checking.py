@@ -173,22 +173,22 @@ def test_answers_are_json() -> None:
 
 
 LINER = "// robot: liner\nSI|SHOW(LINE_L)\n"
-ASKED = {"do": "check", "robot": "tinibot", "language": "en"}
+CHECK_REQUEST = {"do": "check", "robot": "tinibot", "language": "en"}
 
 
 def test_a_program_names_its_robot_in_the_page_too() -> None:
-    checked = json.loads(worker.answer(json.dumps(ASKED), LINER.encode()))
+    checked = json.loads(worker.answer(json.dumps(CHECK_REQUEST), LINER.encode()))
     assert (checked["robot"], checked["names_robot"], checked["findings"]) == ("liner", True, [])
     assert bytes.fromhex(checked["image"]) == compile(LINER).image
-    checked = json.loads(worker.answer(json.dumps(ASKED), b"// robot: linar\nS"))
+    checked = json.loads(worker.answer(json.dumps(CHECK_REQUEST), b"// robot: linar\nS"))
     assert (checked["robot"], checked["names_robot"], checked["image"]) == ("tinibot", False, "")
-    checked = json.loads(worker.answer(json.dumps({**ASKED, "robot": "grabber"}), b"S"))
+    checked = json.loads(worker.answer(json.dumps({**CHECK_REQUEST, "robot": "grabber"}), b"S"))
     assert (checked["robot"], checked["names_robot"]) == ("grabber", False)
     answer = worker.answer(
-        json.dumps({**ASKED, "do": "rename", "robot": "grabber"}), LINER.encode()
+        json.dumps({**CHECK_REQUEST, "do": "rename", "robot": "grabber"}), LINER.encode()
     )
     assert json.loads(answer)["text"] == LINER.replace("liner", "grabber")
-    line = json.loads(worker.answer(json.dumps({**ASKED, "do": "line"}), LINER.encode()))
+    line = json.loads(worker.answer(json.dumps({**CHECK_REQUEST, "do": "line"}), LINER.encode()))
     assert line["text"].startswith("SI|SHOW(LINE_L)")
 
 
@@ -202,7 +202,7 @@ def test_a_robot_that_is_offered_has_a_button(text: str) -> None:
 
 
 def test_blocks_keep_the_robot() -> None:
-    form = worker.answer(json.dumps({**ASKED, "do": "blocks"}), LINER.encode())
+    form = worker.answer(json.dumps({**CHECK_REQUEST, "do": "blocks"}), LINER.encode())
     request = {"do": "text", "form": json.loads(form)}
     assert json.loads(worker.answer(json.dumps(request)))["text"] == LINER
 

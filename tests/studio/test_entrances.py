@@ -23,16 +23,16 @@ from tiniscript.link.sharing import peers
 from tiniscript.studio import serving
 from tiniscript.studio.entrances import OPEN_TIMEOUT_S, Entrances
 
-NOBODY = 65534
+NOBODY_UID = 65534
 # Stands for a browser: another user reads its command line while it runs.
-BROWSER = """#!/bin/sh
+FAKE_BROWSER_SCRIPT = """#!/bin/sh
 echo $$ "$@" > {folder}/opened.new
 mv {folder}/opened.new {folder}/opened
 while [ ! -e {folder}/closed ]; do sleep 0.1; done
 """
 # Finds the address on the command line of a process, as another user, and sends its page's
 # requests.
-STRANGER = """
+STRANGER_SCRIPT = """
 import encodings.idna, http.client, json, os, sys
 os.setgid(65534); os.setuid(65534)
 own, token, code, *pids = sys.argv[1:]
@@ -72,7 +72,7 @@ def peer() -> Iterator[socket.socket]:
 def of_another(monkeypatch: pytest.MonkeyPatch) -> None:
     """All connections within this computer are of another user."""
     monkeypatch.setattr(peers, "tells_users", lambda: True)
-    monkeypatch.setattr(peers, "_socket_owner", lambda other, own: peers.SocketOwner(NOBODY, 1))
+    monkeypatch.setattr(peers, "_socket_owner", lambda other, own: peers.SocketOwner(NOBODY_UID, 1))
     monkeypatch.setattr(os, "geteuid", lambda: 1234, raising=False)
 
 
@@ -179,7 +179,7 @@ def test_another_user_reads_the_browser_s_command_line_and_gets_nothing(
     tmp_path: Path, is_class: bool
 ) -> None:
     browser = tmp_path / "browser"
-    browser.write_text(BROWSER.format(folder=tmp_path))
+    browser.write_text(FAKE_BROWSER_SCRIPT.format(folder=tmp_path))
     browser.chmod(0o755)
     (tmp_path / "page").mkdir()
     (tmp_path / "page" / "index.html").write_text('<html lang="en">')
@@ -203,7 +203,17 @@ def test_another_user_reads_the_browser_s_command_line_and_gets_nothing(
 
         # The token is not on any command line, so it is taken from another page.
         token = enter(own, printed_text.rpartition("=")[2])[1]["token"]
-        stranger = [sys.executable, "-I", "-c", STRANGER, own, token, code, pid, str(command.pid)]
+        stranger = [
+            sys.executable,
+            "-I",
+            "-c",
+            STRANGER_SCRIPT,
+            own,
+            token,
+            code,
+            pid,
+            str(command.pid),
+        ]
         completed = subprocess.run(stranger, capture_output=True, text=True, timeout=HANGS_S)
         assert completed.returncode == 0, completed.stderr
         entering, asking, is_shown = json.loads(completed.stdout)

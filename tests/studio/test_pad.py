@@ -19,8 +19,8 @@ __all__ = ["page_data"]
 
 WAYS_SCRIPT = Path(__file__).with_name("keys_in_node.mjs")
 SCRIPT = Path(__file__).with_name("pad_in_node.mjs")
-ALL = ["KEY_UP", "KEY_DOWN", "KEY_LEFT", "KEY_RIGHT", "KEY_A", "KEY_B", "PAD_X", "PAD_Y"]
-WHOLE: Any = ["offer", "driving", {"reads": ALL}]
+ALL_READINGS = ["KEY_UP", "KEY_DOWN", "KEY_LEFT", "KEY_RIGHT", "KEY_A", "KEY_B", "PAD_X", "PAD_Y"]
+WHOLE: Any = ["offer", "driving", {"reads": ALL_READINGS}]
 UP, A = 1, 16
 NOTHING = [0, 0, 0]
 
@@ -128,18 +128,18 @@ def test_a_gamepad_holds_until_it_is_unplugged(page_data: Path) -> None:
 
 
 def test_what_the_program_reads_is_there_and_nothing_else(page_data: Path) -> None:
-    for reads in (ALL, ["KEY_A"], ["PAD_X"], ["KEY_LEFT", "PAD_Y"], []):
+    for reads in (ALL_READINGS, ["KEY_A"], ["PAD_X"], ["KEY_LEFT", "PAD_Y"], []):
         driven = ["offer", "driving", {"reads": reads}]
         parts = [reading for reading in reads if reading.startswith("KEY")]
         stick = ["stick"] if any(reading.startswith("PAD") for reading in reads) else []
         assert play_story(page_data, driven)["shown"] == parts + stick
     assert play_story(page_data, WHOLE, ["offer", "driving", None])["shown"] == []
-    another = ["offer", "link", {"reads": ALL}]  # differs from the visible offer
+    another = ["offer", "link", {"reads": ALL_READINGS}]  # differs from the visible offer
     assert play_story(page_data, another)["shown"] == []
 
 
 def test_a_robot_without_a_remote_control_is_told_nothing(page_data: Path) -> None:
-    deaf = ["offer", "link", {"reads": ALL, "isDeaf": True}]
+    deaf = ["offer", "link", {"reads": ALL_READINGS, "isDeaf": True}]
     outcome = play_story(
         page_data, ["side", "side_real"], deaf, ["keydown", "ArrowUp"], ["passes", 500], ["stop"],
         ["gamepads", [[0, -1], [0]]], ["event", "gamepadconnected"], ["passes", 500],
@@ -152,7 +152,7 @@ def test_a_robot_that_comes_to_be_seen_is_told_what_is_pressed_from_then_on(
     page_data: Path,
 ) -> None:
     """The one before hears that all is let go."""
-    real = ["offer", "link", {"reads": ALL}]
+    real = ["offer", "link", {"reads": ALL_READINGS}]
     outcome = play_story(
         page_data, WHOLE, real, ["down", "KEY_UP", 1], ["passes", 10], ["side", "side_real"],
         ["passes", 500], ["up", "KEY_UP", 1], ["down", "KEY_A", 1], ["side", "side_virtual"],

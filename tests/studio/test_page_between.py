@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 SILENT_S, ROOM_S = 3.0, 0.5
 ENDS_S = 40.0  # the longest request, and a stop
-AGAIN_S = 40.0  # time until the next try succeeds
+NEXT_TRY_S = 40.0  # time until the next try succeeds
 LISTEN = """(place) => {
   const line = document.querySelector(place);
   window.told = [];
@@ -65,7 +65,7 @@ class Between(NamedTuple):
     suspends: bool = False
 
 
-BETWEEN = (
+NETWORK_FAULTS = (
     Between("page and studio: late", late_s=0.3),
     Between("page and studio: loses", lost=0.2),
     Between("page and studio: stalls", held_s=4.0),
@@ -245,7 +245,7 @@ class Scene:
 
     def _connect(self) -> str:
         page = self.page
-        end_s = CLOCK.now_s + AGAIN_S
+        end_s = CLOCK.now_s + NEXT_TRY_S
         while not page.locator("html[data-robot=connected]").count():
             if CLOCK.now_s > end_s:
                 return f"no connection: {self._link_text()}"
@@ -256,16 +256,16 @@ class Scene:
                 self._choose()
                 page.evaluate(LISTEN, SAID)
                 page.click("#link_connect")
-                self._until(r"^(?!Connecting)", AGAIN_S)
+                self._until(r"^(?!Connecting)", NEXT_TRY_S)
             page.wait_for_timeout(100)
         return ""
 
     def _run(self) -> str:
         self.page.evaluate(LISTEN, SAID)
         self.page.click("#link_upload")
-        if not self._until("The robot has the program|stopped", AGAIN_S):
+        if not self._until("The robot has the program|stopped", NEXT_TRY_S):
             return f"no run: {self._link_text()}"
-        end_s = CLOCK.now_s + AGAIN_S
+        end_s = CLOCK.now_s + NEXT_TRY_S
         while not self.line.moves:
             if CLOCK.now_s > end_s:
                 return f"it does not drive: {self._link_text()}"
@@ -275,7 +275,7 @@ class Scene:
     def _stop(self) -> str:
         self.page.evaluate(LISTEN, SAID)
         self.page.click("#stop")
-        if not self._until(CONFIRMED, AGAIN_S):
+        if not self._until(CONFIRMED, NEXT_TRY_S):
             return f"no stop: {self._link_text()}"
         return "it moves" if self.line.moves else ""
 
@@ -305,7 +305,7 @@ class ClassScene(Scene):
         for which, text in enumerate((class_.room.code, "Ana")):
             self.page.locator("#class_pupil input").nth(which).fill(text)
         self.page.click("[data-text=class_join]")
-        self.page.locator(ASKS).wait_for()
+        self.page.locator(ASK_BUTTON).wait_for()
 
     def _place(self, action: str) -> tuple[Page, str]:
         return (self.teacher, "#stops") if action == "stop all" else (self.page, SAID)
@@ -313,7 +313,7 @@ class ClassScene(Scene):
     def _prepare(self, action: str, fault: Fault | Between) -> None:
         if action == "ask":
             self._leave()
-            self.page.locator(ASKS).wait_for()
+            self.page.locator(ASK_BUTTON).wait_for()
             return
         assert self._connect() == "", self._link_text()
         if action in ("stop", "stop all"):
@@ -325,19 +325,19 @@ class ClassScene(Scene):
         self.page.wait_for_timeout(1000 * LATCH_S)  # no page drives after a teacher's stop
 
     def _connect(self) -> str:
-        page, end_s = self.page, CLOCK.now_s + AGAIN_S
+        page, end_s = self.page, CLOCK.now_s + NEXT_TRY_S
         while not page.locator("html[data-robot=connected]").count():
             if CLOCK.now_s > end_s:
                 return f"no connection: {self._link_text()}"
-            for button in (ASKS, "#class_pupil [data-text=link_connect]"):
+            for button in (ASK_BUTTON, "#class_pupil [data-text=link_connect]"):
                 if page.locator(button).is_visible() and page.locator(button).is_enabled():
                     page.click(button)
             page.wait_for_timeout(200)
         return ""
 
 
-ASKS = "[data-text=class_ask]"
-BUTTONS |= {"ask": ASKS, "stop all": "#stop"}
+ASK_BUTTON = "[data-text=class_ask]"
+BUTTONS |= {"ask": ASK_BUTTON, "stop all": "#stop"}
 ENDS |= {
     "ask": r"^(?!Connecting|Choose|$)",
     "stop all": "STOP: 1 of 1|Not confirmed|did not reach",
@@ -384,7 +384,7 @@ def test_a_sample_of_what_is_pressed_keeps_the_laws(
 ) -> None:
     chance = Random(sampling.seed(request.config))
     with scene(browser, chance) as opened_scene:
-        faults: list[Fault | Between] = [*BETWEEN[:5], *LINES[:6]]
+        faults: list[Fault | Between] = [*NETWORK_FAULTS[:5], *LINES[:6]]
         tried_action = opened_scene.try_action(chance.choice(ACTIONS), chance.choice(faults))
         assert not list_faults(tried_action, 3.0), tried_action
 
@@ -418,7 +418,7 @@ if __name__ == "__main__":
                         )
         for seed in range(options.seed, options.seed + options.count * (not options.taught)):
             with scene(browser, Random(seed)) as opened_scene:
-                faults: list[Fault | Between] = [*BETWEEN * (not options.line),
+                faults: list[Fault | Between] = [*NETWORK_FAULTS * (not options.line),
                                                  *LINES * (not options.network)]  # fmt: skip
                 for fault in faults:
                     for action in ACTIONS:

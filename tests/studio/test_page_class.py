@@ -53,7 +53,7 @@ NOTES = """() => { window.noted = '';
   new MutationObserver(() => { window.noted += wall.textContent; }).observe(wall, all); }"""
 
 # The number of lines of the bar, if each of its pictures is as wide as it is high.
-IN_ONE_LINE = """() => {
+BAR_LINES_SCRIPT = """() => {
   const pictures = [...document.querySelectorAll('#bar button > svg')].filter((each) => each.checkVisibility());
   if (pictures.some((each) => each.clientWidth < each.clientHeight)) return 0;
   const tops = (each) => {
@@ -65,7 +65,7 @@ IN_ONE_LINE = """() => {
 }"""  # noqa: E501
 
 # Whether the tabs and the buttons of the bar are each in one row inside the page.
-ARE_IN_ONE_ROW = """() => ['#sides', '#bar'].map((row) => {
+IN_ONE_ROW_SCRIPT = """() => ['#sides', '#bar'].map((row) => {
   const buttons = [...document.querySelectorAll(`${row} > button`)];
   const boxes = buttons.filter((it) => it.checkVisibility()).map((it) => it.getBoundingClientRect());
   return new Set(boxes.map(({ top }) => top)).size < 2 && boxes.every(({ right }) => right <= innerWidth);
@@ -267,8 +267,8 @@ def test_who_opens_the_address_of_a_class_joins_it_at_once(
     wait_for_status(page, "Estás en la clase, Eva")
     if size[0] < size[1]:
         for _ in range(2):
-            assert page.evaluate(IN_ONE_LINE) == 1  # including the raised hand
-            assert page.evaluate(ARE_IN_ONE_ROW) == [True, True]
+            assert page.evaluate(BAR_LINES_SCRIPT) == 1  # including the raised hand
+            assert page.evaluate(IN_ONE_ROW_SCRIPT) == [True, True]
             page.click("#other")
     page.close()
     only_ana(shared_class)

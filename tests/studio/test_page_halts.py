@@ -36,14 +36,14 @@ pytestmark = pytest.mark.usefixtures("no_page_timeouts")
 drawn = pytest.mark.sampled(of="details of halts", keep=2)
 
 __all__ = ["first", "first_robot", "page", "pages", "robot"]  # fixtures
-MERGED = "LOOP(2);\nDISTANCE;\nIF(DISTANCE < 10);\nSTOP;\nENDIF;\nW(0.05);\nEND_LOOP"
+MERGED_PROGRAM = "LOOP(2);\nDISTANCE;\nIF(DISTANCE < 10);\nSTOP;\nENDIF;\nW(0.05);\nEND_LOOP"
 # A program, and the lines of its breakpoints.
 PROGRAMS = {
     "loop": (COUNTING_PROGRAM, (5,)),
     "first and last": ("N = 2;\nFAR = 3 > N;\nF(0.05, 60);\nSHOW(FAR);\nN = N / 4", (1, 5)),
     "DEF": ("DEF TWICE(A);\nSHOW(A + A);\nEND_DEF;\nX = 4;\nTWICE(X);\nTWICE(X / 8)", (2, 5)),
     "UNTIL": ("K = 0;\nLOOP(3);\nK = K + 1;\nF(0.2, 80) UNTIL(K > 2);\nEND_LOOP;\nSHOW(K)", (4, 6)),
-    "joined": (MERGED, (3, 6)),
+    "joined": (MERGED_PROGRAM, (3, 6)),
     "many": ("".join(f"V{k} = {k} / 8;\n" for k in range(30)) + "SHOW(V3);\nW(0.05)", (32,)),
 }
 
@@ -165,13 +165,13 @@ def test_it_tells_where_the_other_tasks_are(page: Page) -> None:
     ]
 
 
-LOOP = "SHOW(1);\nLOOP(FOREVER);\nF(0.05, 80);\nSHOW(2);\nEND_LOOP"
+LOOP_PROGRAM = "SHOW(1);\nLOOP(FOREVER);\nF(0.05, 80);\nSHOW(2);\nEND_LOOP"
 
 
 @drawn
 def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: PtyRobot) -> None:
     """It stays while the text changes; a waiting or restarted program has it too."""
-    put(page, LOOP, ())
+    put(page, LOOP_PROGRAM, ())
     page.click("#link_upload")
     robot.until(lambda: robot.moves, "it drives")
     press_margin(page, 4)
@@ -245,9 +245,9 @@ def test_a_robot_that_cannot_halt_says_so_and_runs(
     assert note.is_hidden()
 
 
-HALTING = title_of(robots.load("tinibot"), True)
-BROUGHT = [
-    ("tinibot", "nano"), ("tinibot", "uno"), (HALTING, "uno"),
+HALTING_TITLE = title_of(robots.load("tinibot"), True)
+BROUGHT_FIRMWARES = [
+    ("tinibot", "nano"), ("tinibot", "uno"), (HALTING_TITLE, "uno"),
     ("liner", "nano"),
 ]  # fmt: skip
 
@@ -263,7 +263,7 @@ def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     other = pages.blank(is_alone=True)
     rows = [
         {"title": title, "board": board, "file": f"{title}-{board}-digest.hex"}
-        for title, board in BROUGHT
+        for title, board in BROUGHT_FIRMWARES
     ]
     questions: list[str] = []
     other.route("**/firmware.json", lambda route: route.fulfill(json=rows))
@@ -289,7 +289,9 @@ def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     assert not [name for name in questions if name.endswith(".hex")]
     other.click("#flash_write")
     wait_for_message(other, "That is not a complete HEX file")
-    assert [name for name in questions if name.endswith(".hex")] == [f"{HALTING}-uno-digest.hex"]
+    assert [name for name in questions if name.endswith(".hex")] == [
+        f"{HALTING_TITLE}-uno-digest.hex"
+    ]
     other.select_option("#flash_board", "nano")
     other.locator("#flash_halts").wait_for(state="hidden")
     assert not other.locator("#flash_halts").is_checked()
@@ -313,7 +315,7 @@ def connect_again(page: Page, robot: PtyRobot) -> None:
 @pytest.mark.sampled("how", keep=2)
 @pytest.mark.parametrize("how", ["stop", "Escape", "button", "restart"])
 def test_what_is_halted_ends_as_what_runs_does(page: Page, robot: PtyRobot, how: str) -> None:
-    put(page, LOOP, (4,))
+    put(page, LOOP_PROGRAM, (4,))
     page.click("#link_upload")
     halts(page, 4)
     if how == "stop":
@@ -335,7 +337,7 @@ def test_a_program_that_is_stopped_on_its_way_never_starts(
     page: Page, robot: PtyRobot, what: str
 ) -> None:
     """Its places come between the program and its start."""
-    put(page, LOOP, (4,))
+    put(page, LOOP_PROGRAM, (4,))
     count_before = len(robot.actions)
     pressed: list[bool] = []
 

@@ -24,7 +24,7 @@ drawn = pytest.mark.sampled(of="held files and ports", keep=2)
 
 SCRIPT = Path(__file__).with_name("progress_in_node.mjs")
 FILE = "tinibot-uno-digest.hex"
-STUCK = "The port no longer accepts data."
+STUCK_PORT_MESSAGE = "The port no longer accepts data."
 
 
 @pytest.fixture(scope="module")
@@ -136,7 +136,7 @@ def test_a_port_that_takes_no_bytes_is_closed_and_may_be_tried_again(
         hears(page, lambda: page.evaluate("window.port.isOpen"), "it is open")
         wait_for_message(page, "Connecting")
         hears(page, lambda: page.locator("#link_ways").is_visible(), "it is given up")
-        wait_for_message(page, STUCK)
+        wait_for_message(page, STUCK_PORT_MESSAGE)
         hears(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
         assert page.evaluate("window.port.opened") == count
     page.click("#flash_write")
@@ -159,12 +159,12 @@ def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: servi
 # -- requirements of a run
 
 # The page's message when a request hangs; the browser fetches the pictures and the style itself.
-WORDS = ("#coming, #status:has-text('not load'), #status:has-text('not arrive'), "
-         "#doing:has-text('not load'), #doing:has-text('not arrive')")  # fmt: skip
-OF_THE_COMPILER = ("worker.js", "pyodide.asm.mjs", "pyodide.asm.wasm", "python.zip",
-                   "tiniscript.zip", "messages.en.json")  # fmt: skip
-BEGINS = "html[data-screen=start] [data-begin=dance]"
-NEEDLESS = ("style.css", ".svg", ".webmanifest", ".cur")
+HANGING_MESSAGE = ("#coming, #status:has-text('not load'), #status:has-text('not arrive'), "
+                   "#doing:has-text('not load'), #doing:has-text('not arrive')")  # fmt: skip
+COMPILER_FILES = ("worker.js", "pyodide.asm.mjs", "pyodide.asm.wasm", "python.zip",
+                  "tiniscript.zip", "messages.en.json")  # fmt: skip
+BEGIN_BUTTON = "html[data-screen=start] [data-begin=dance]"
+OPTIONAL_ENDINGS = ("style.css", ".svg", ".webmanifest", ".cur")
 
 
 @pytest.fixture(scope="module")
@@ -194,12 +194,12 @@ def visits(browser: Browser, hasty: serving.Server) -> Iterator[Pages]:
 
 
 # Records all messages about the virtual robot, however short.
-TOLD = """window.told = [];
+RECORDING_SCRIPT = """window.told = [];
 new MutationObserver(() => {
   const said = document.querySelector('#doing')?.textContent;
   if (said !== window.told.at(-1)) window.told.push(said);
 }).observe(document, {subtree: true, childList: true, characterData: true})"""
-WAITED = """window.told
+WAITS_SCRIPT = """window.told
   .map((said) => /waiting(?= for the compiler)|did not load/.exec(said ?? '')?.[0])
   .filter(Boolean).filter((each, k, all) => each !== all[k - 1])"""
 TRIES = 10
@@ -220,13 +220,13 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
     page.goto(visits.address)
     page.click("[data-begin=dance]")
     check_dance_goes_on(page)
-    names = sorted({name for name in questions if name and not name.endswith(NEEDLESS)})
-    assert {*OF_THE_COMPILER, "main.js", "texts.en.json"} <= {*names}
+    names = sorted({name for name in questions if name and not name.endswith(OPTIONAL_ENDINGS)})
+    assert {*COMPILER_FILES, "main.js", "texts.en.json"} <= {*names}
     for name in names:
         page = visits.blank(is_alone=True)
         held_robot = Held(page, f"**/{name}")
         page.goto(visits.address, wait_until="commit")
-        begin, word = page.locator(f"{BEGINS}:visible"), page.locator(WORDS)
+        begin, word = page.locator(f"{BEGIN_BUTTON}:visible"), page.locator(HANGING_MESSAGE)
         running = page.locator("html:is([data-phase=running], [data-phase=ended])")
 
         def is_told(begin: Locator = begin, word: Locator = word) -> bool:
@@ -241,7 +241,7 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
         hears(page, goes_on, name)
         held_robot.let_go()
         if not page.locator("html[data-screen=program]").count():
-            page.click(BEGINS)
+            page.click(BEGIN_BUTTON)
         elif page.locator("#doing", has_text="did not load").count():
             page.click("#run")  # this computer was slow: it was given up
         check_dance_goes_on(page)
@@ -249,13 +249,13 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
 
 
 @pytest.mark.sampled("name")
-@pytest.mark.parametrize("name", OF_THE_COMPILER)
+@pytest.mark.parametrize("name", COMPILER_FILES)
 def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
     visits: Pages, name: str
 ) -> None:
     """The first retry fails, the next succeeds."""
     page = visits.blank(is_alone=True)
-    page.add_init_script(TOLD)
+    page.add_init_script(RECORDING_SCRIPT)
     Held(page, f"**/{name}")
     page.goto(visits.address)
     page.click("[data-begin=dance]")
@@ -263,7 +263,7 @@ def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
         page.locator("#doing", has_text="The compiler did not load. Press Run to try").wait_for()
         page.click("#run")
         page.locator("#doing", has_not_text="did not load").wait_for()
-    assert page.evaluate(WAITED)[:4] == ["waiting", "did not load"] * 2
+    assert page.evaluate(WAITS_SCRIPT)[:4] == ["waiting", "did not load"] * 2
     page.context.unroute_all()
     outcome = page.locator("html[data-phase=running], #doing:has-text('did not load')")
     for _ in range(TRIES):

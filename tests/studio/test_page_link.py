@@ -52,9 +52,9 @@ drawn = pytest.mark.sampled(of="details of a link", keep=4)
 
 __all__ = ["first", "first_robot", "page", "pages", "robot"]  # fixtures
 
-RUNS = 5
-VOID = "The robot was stopped first, so it"
-BLINKS = "The robot that blinks and plays its tune is"
+RUN_COUNT = 5
+VOID_STOP_MESSAGE = "The robot was stopped first, so it"
+BLINKING_MESSAGE = "The robot that blinks and plays its tune is"
 
 
 def test_a_program_and_a_line_are_sent_and_run(page: Page, robot: PtyRobot) -> None:
@@ -145,15 +145,15 @@ def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: Pty
     other.click("#stop")  # anyone who sees STOP may press it
     robot.until(lambda: not robot.moves, "it stands")
     other.close()
-    while BLINKS not in page.locator("#link_said").inner_text():
+    while BLINKING_MESSAGE not in page.locator("#link_said").inner_text():
         page.click("#link_identify")  # refused for a moment after a STOP for all
-        wait_for_message(page, re.compile(f"{VOID}|{BLINKS}"))
+        wait_for_message(page, re.compile(f"{VOID_STOP_MESSAGE}|{BLINKING_MESSAGE}"))
 
 
 @drawn
 def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     page.click("#link_identify")
-    wait_for_message(page, BLINKS)
+    wait_for_message(page, BLINKING_MESSAGE)
     page.click("#link_teacher summary")
     page.fill("#link_rename_to", "Ñandú")
     page.click("#link_rename")
@@ -401,7 +401,7 @@ def test_a_robot_that_does_not_tell_readings_says_so_where_the_program_has_some(
 def agrees(page: Page, run: Callable[[], None]) -> None:
     """Record runs until one agrees with the virtual robot: a busy computer hears of some late."""
     doing = page.locator("#doing")
-    for _ in range(RUNS):
+    for _ in range(RUN_COUNT):
         page.click("#side_real")
         run()
         page.click("#record_play")

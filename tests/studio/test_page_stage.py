@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
 
 FOREVER = "SI|LOOP(FOREVER);\n  F(1, 60);\n  R(0.5, 60);\nEND_LOOP;\n"
-AREA = (
+AREA_SCRIPT = (
     "(() => { const { width, height } = arena.getBoundingClientRect(); return width * height; })()"
 )
 # How long the robot is on the screen: its green does not occur on any floor.
@@ -82,16 +82,16 @@ def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -
     page.reload()  # a chosen camera is kept
     page.select_option("#world", world)
     write(page, FOREVER)
-    small = page.evaluate(AREA)
+    small = page.evaluate(AREA_SCRIPT)
     page.click("#run")
     in_phase(page, "running")
-    hears(page, lambda: page.evaluate(AREA) >= 1366 * 768 / 3, "a third of the page")
+    hears(page, lambda: page.evaluate(AREA_SCRIPT) >= 1366 * 768 / 3, "a third of the page")
     hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
     page.keyboard.press("Escape")
     in_phase(page, "ended")
-    assert page.evaluate(AREA) >= 1366 * 768 / 3  # until someone continues to write
+    assert page.evaluate(AREA_SCRIPT) >= 1366 * 768 / 3  # until someone continues to write
     page.hover("#editor")
-    hears(page, lambda: page.evaluate(AREA) == small, "as before")
+    hears(page, lambda: page.evaluate(AREA_SCRIPT) == small, "as before")
 
 
 def see_last_step(page: Page, size: tuple[int, int]) -> float:
@@ -118,26 +118,26 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
 ) -> None:
     """The step comes back by the lesson's own buttons, the check is in reach all the time."""
     large = see_last_step(page, size)
-    small = page.evaluate(AREA)
+    small = page.evaluate(AREA_SCRIPT)
     for is_ended in (False, True):
         page.click("#run")
         in_phase(page, "running")
-        hears(page, lambda: page.evaluate(AREA) >= large, "a large part of the page")
+        hears(page, lambda: page.evaluate(AREA_SCRIPT) >= large, "a large part of the page")
         hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
         assert not page.locator("#lesson_page").is_visible()
         assert page.locator("#lesson_check").is_visible() and page.locator("#stop").is_visible()
         if is_ended:
             page.keyboard.press("Escape")
             in_phase(page, "ended")
-            assert page.evaluate(AREA) > small
+            assert page.evaluate(AREA_SCRIPT) > small
         page.locator("#lesson_steps button").last.click()
-        assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA) == small
+        assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA_SCRIPT) == small
         page.click("#stop")
     page.click("#run")
     in_phase(page, "running")
     page.click("#lesson_check")
     page.locator("#lesson_said[data-verdict]").wait_for()
-    assert page.evaluate(AREA) <= small and page.locator("#lesson_page").is_visible()
+    assert page.evaluate(AREA_SCRIPT) <= small and page.locator("#lesson_page").is_visible()
     page.click("#side_virtual")
     turn(page, "program")
 
@@ -153,12 +153,12 @@ def test_a_run_that_is_judged_is_as_large_until_it_is_told(
         page.click("#lesson_check")
         if not is_still:
             in_phase(page, "running")
-            hears(page, lambda: page.evaluate(AREA) >= large, "a large part of the page")
+            hears(page, lambda: page.evaluate(AREA_SCRIPT) >= large, "a large part of the page")
             hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
             page.click("#lesson_end")  # the button leads to the lesson's result
         page.locator("#lesson_said[data-verdict]").wait_for()
         assert page.locator("html[data-big]").count() == 0
-        assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA) < large
+        assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA_SCRIPT) < large
     page.emulate_media(reduced_motion="no-preference")
     page.click("#side_virtual")
     turn(page, "program")
@@ -391,7 +391,7 @@ def test_full_screen_comes_with_a_key_and_goes_with_it(page: Page) -> None:
             )
             assert page.locator("#writing").is_visible() != is_full
             assert page.locator("#stop").is_visible() and page.locator("#run").is_visible()
-            assert not is_full or page.evaluate(AREA) > 0.8 * 1366 * 768
+            assert not is_full or page.evaluate(AREA_SCRIPT) > 0.8 * 1366 * 768
             assert page.locator("#full").get_attribute("aria-pressed") == str(is_full).lower()
     page.click("#full")
     page.click("#run")
@@ -469,17 +469,17 @@ def test_cameras_and_the_whole_page_are_there_on_small_screens(
     write(page, FOREVER)
     page.set_viewport_size({"width": size[0], "height": size[1]})
     turn(page, "robot")
-    small = page.evaluate(AREA)
+    small = page.evaluate(AREA_SCRIPT)
     for button in ("#camera", "#full"):
         box = page.locator(button).bounding_box()
         assert box is not None and min(box["width"], box["height"]) >= 44
     page.click("#full")
-    hears(page, lambda: page.evaluate(AREA) > small, "more of the robot")
+    hears(page, lambda: page.evaluate(AREA_SCRIPT) > small, "more of the robot")
     page.click("#run")
     in_phase(page, "running")
     shown_buttons = "all => all.filter((e) => e.checkVisibility()).map((e) => e.id)"
     assert page.locator("body > header button").evaluate_all(shown_buttons) in ([], ["stop"])
-    assert page.evaluate(AREA) > 0.6 * size[0] * size[1]
+    assert page.evaluate(AREA_SCRIPT) > 0.6 * size[0] * size[1]
     page.click("#stop")
     page.click("#full")
     choose(page, "above")  # the default position

@@ -20,7 +20,7 @@ drawn = pytest.mark.sampled(of="what is heard and seen", keep=3)
 
 # The computer's sound, noted as often as it is opened. `rest` closes it after a while: the test
 # decides when, since a run on a slow computer may take longer.
-OPENED = """window.opened = []; window.closings = 0; window.rest = null;
+COUNTING_SCRIPT = """window.opened = []; window.closings = 0; window.rest = null;
 const {setTimeout: wait, clearTimeout: forget} = window;
 window.setTimeout = (act, ms, ...more) => {
   if (!String(act).includes('suspend')) return wait(act, ms, ...more);
@@ -35,9 +35,9 @@ window.AudioContext = class extends AudioContext {
   constructor() { super(); window.opened.push(this); }
   suspend() { window.closings += 1; return super.suspend(); }
 }"""
-CRASH = "F(9, 100)"  # into the box to the right
-WAY, WAY_BEFORE = "2f74c0", "bcd2ea"
-NEAR = 20  # tolerance for a color at smooth edges or under a ray
+CRASH_PROGRAM = "F(9, 100)"  # into the box to the right
+WAY_COLOUR, EARLIER_WAY_COLOUR = "2f74c0", "bcd2ea"
+COLOUR_TOLERANCE = 20  # tolerance for a color at smooth edges or under a ray
 
 
 def count(page: Page, color: str) -> int:
@@ -46,7 +46,10 @@ def count(page: Page, color: str) -> int:
     wanted_bytes = bytes.fromhex(color)
     pixels = zip(*(band.tobytes() for band in picture.split()), strict=True)
     return sum(
-        all(abs(one - other) < NEAR for one, other in zip(pixel, wanted_bytes, strict=True))
+        all(
+            abs(one - other) < COLOUR_TOLERANCE
+            for one, other in zip(pixel, wanted_bytes, strict=True)
+        )
         for pixel in pixels
     )
 
@@ -136,7 +139,7 @@ def test_no_sound_is_open_at_rest(pages: Pages) -> None:
     """An open one works all the time, and empties a battery. A page must wait before it closes
     this."""
     page = pages.blank(is_alone=True)
-    page.context.add_init_script(OPENED)
+    page.context.add_init_script(COUNTING_SCRIPT)
     enter(page, pages.address)
     wait_for_blocks(page)
     assert page.evaluate("window.opened.length") == 0
@@ -175,7 +178,7 @@ def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page)
         "() => { window.told = []; new MutationObserver(([row]) => window.told.push("
         "row.target.textContent)).observe(document.querySelector('#where'), {childList: true}); }"
     )
-    run(page, CRASH)
+    run(page, CRASH_PROGRAM)
     assert page.evaluate(noted_text) == [1, 1, 1]
     assert count(page, "ffd84d") > 20  # the star where it touches the box
     first, *_, last = page.evaluate("window.told")
@@ -189,7 +192,7 @@ def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page)
 def test_nothing_shakes_for_who_wants_it_still(listening: Page) -> None:
     page = listening
     page.emulate_media(reduced_motion="reduce")
-    run(page, CRASH)
+    run(page, CRASH_PROGRAM)
     page.emulate_media(reduced_motion="no-preference")
     assert page.evaluate("[window.heard.length, window.shaken]") == [1, 0]
     assert count(page, "ffd84d") > 20
@@ -199,17 +202,17 @@ def test_nothing_shakes_for_who_wants_it_still(listening: Page) -> None:
 def test_ways_stay_until_they_are_erased(listening: Page) -> None:
     page = listening
     page.select_option("#world", "obstacles")
-    assert count(page, WAY) == 0
+    assert count(page, WAY_COLOUR) == 0
     run(page, "R(0.1, 60);F(1.5, 80)")  # oblique: both edges of a level line may have that color
-    few = count(page, WAY_BEFORE)
-    assert count(page, WAY) > 20
+    few = count(page, EARLIER_WAY_COLOUR)
+    assert count(page, WAY_COLOUR) > 20
     run(page, "L(0.5, 60);F(0.5, 80)")
-    assert count(page, WAY) > 5 and count(page, WAY_BEFORE) > few + 20
+    assert count(page, WAY_COLOUR) > 5 and count(page, EARLIER_WAY_COLOUR) > few + 20
     erase(page)
-    assert count(page, WAY) == 0 and count(page, WAY_BEFORE) < 10
+    assert count(page, WAY_COLOUR) == 0 and count(page, EARLIER_WAY_COLOUR) < 10
     run(page, "F(1, 80)")
     page.select_option("#world", "light")
-    assert count(page, WAY) == 0 and count(page, WAY_BEFORE) < 10
+    assert count(page, WAY_COLOUR) == 0 and count(page, EARLIER_WAY_COLOUR) < 10
 
 
 TASK = """[floor]
@@ -249,7 +252,7 @@ def test_flags_points_and_stars_are_seen_and_heard(listening: Page) -> None:
     assert not page.locator("#score").is_visible()
 
 
-ASLEEP = """[floor]
+SLEEPING_RIVAL_WORLD = """[floor]
 width_cm = 200
 height_cm = 100
 border = false
@@ -266,17 +269,18 @@ x_cm = 80
 y_cm = 50
 power_percent = 0
 """
-RIVAL, DARK = "9a4fc0", "3b434c"
+RIVAL_COLOUR, DARK_COLOUR = "9a4fc0", "3b434c"
 
 
 @drawn
 def test_a_bout_is_seen_and_heard_and_how_it_ends(listening: Page) -> None:
     page = listening
     page.set_input_files(
-        "#world_file", {"name": "bout.toml", "mimeType": "", "buffer": ASLEEP.encode()}
+        "#world_file",
+        {"name": "bout.toml", "mimeType": "", "buffer": SLEEPING_RIVAL_WORLD.encode()},
     )
     page.locator("#world option:checked", has_text="bout").wait_for(state="attached")
-    assert count(page, RIVAL) > 100 and count(page, DARK) > 1000
+    assert count(page, RIVAL_COLOUR) > 100 and count(page, DARK_COLOUR) > 1000
     for program, score, message in (
         (
             "// robot: sumo\nSI|F(5, 80)",

@@ -30,7 +30,7 @@ CODE = re.compile("`([^`]+)`")
 WORD = re.compile(r"[^\W\d_]+|\d+")
 NEAR = 2  # words next to a block
 STEM = 4  # letters that the forms of a word share
-AGAIN = re.compile(r"\b(\w+)[ (%]{1,3}\1\b", re.IGNORECASE)
+REPEATED_WORD = re.compile(r"\b(\w+)[ (%]{1,3}\1\b", re.IGNORECASE)
 
 __all__ = ["page_data"]
 

@@ -15,18 +15,18 @@ from tests.support.pty_robot import PtyRobot
 
 HM10 = "0000ffe0-0000-1000-8000-00805f9b34fb"
 NORDIC = "6e400001-b5a3-f393-e0a9-e50e24dcca9e"
-LAMP = "0000fff0-0000-1000-8000-00805f9b34fb"
-BOTH = ["write", "write-without-response"]
+LAMP_SERVICE = "0000fff0-0000-1000-8000-00805f9b34fb"
+WRITE_KINDS = ["write", "write-without-response"]
 CHARACTERISTICS = {
-    HM10: [("0000ffe1-0000-1000-8000-00805f9b34fb", ["read", BOTH[1], "notify"])],
-    NORDIC: [("6e400002-b5a3-f393-e0a9-e50e24dcca9e", BOTH),
+    HM10: [("0000ffe1-0000-1000-8000-00805f9b34fb", ["read", WRITE_KINDS[1], "notify"])],
+    NORDIC: [("6e400002-b5a3-f393-e0a9-e50e24dcca9e", WRITE_KINDS),
              ("6e400003-b5a3-f393-e0a9-e50e24dcca9e", ["notify"])],
-    LAMP: [("0000fff1-0000-1000-8000-00805f9b34fb", BOTH)],
+    LAMP_SERVICE: [("0000fff1-0000-1000-8000-00805f9b34fb", WRITE_KINDS)],
 }  # fmt: skip
 ADDRESS = "AA:BB:CC:DD:EE:01"
-NAME, PLACE = "ble://Tini 1", f"ble://{ADDRESS}"  # ports of the robot
+NAME, ADDRESS_PORT = "ble://Tini 1", f"ble://{ADDRESS}"  # ports of the robot
 DRIVE = "SI|F(0.2, 80)"
-DROVE = ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+DRIVE_ACTIONS = ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 class Peripheral:
@@ -135,7 +135,7 @@ class BleRobot(Peripheral):
             self.tell(data)
 
 
-def uploading(ble: BleRobot, port: str = PLACE) -> Command:
+def uploading(ble: BleRobot, port: str = ADDRESS_PORT) -> Command:
     """A program that runs, and the command that attends to it."""
     command = Command("upload", "-e", FOREVER, "--port", port)
     command.until("running")

@@ -11,7 +11,7 @@ from tiniscript.robots.reader import read
 
 STEADY = 29.8  # ms after its release a button is surely up
 PRESS, START = 100.0, 200.0  # ms: when the button goes down, and when it is certainly up again
-FORWARD, BACK, OFF = 50.0, 150.0, 350.0  # ms after the start of MOVES
+FORWARD, BACKWARD, OFF = 50.0, 150.0, 350.0  # ms after the start of MOVES
 MOVES = "SI|F(0.1, 80);B(0.1, 40);M(50, -100);W(0.1)"
 TURN = 250.0
 

@@ -29,7 +29,7 @@ LISTED = re.compile("[0-9a-f]{4}  ")
 TIMES = re.compile(r"([0-9a-f]{4})  (((?:[0-9a-f]{2} )+) .*), (\d+) times")
 FOLDED = 4  # rows alike, and more, are one
 SHOWN = re.compile(r"(?:line|línea) 1:  (.*\n)")
-ABOUT = re.compile(r"(?m)^(\S.*)\n(?=(?:line|línea) \d+:  )")
+TITLE_LINE = re.compile(r"(?m)^(\S.*)\n(?=(?:line|línea) \d+:  )")
 
 
 class Case(NamedTuple):
@@ -115,7 +115,7 @@ def _fold(text: str) -> str:
 
 def _split_by_message(case: Case, fence: str, text: str, end: int) -> Iterator[Case]:
     """Yield a case with its messages, and one for each row that names its subject."""
-    before, *titled = ABOUT.split(text)
+    before, *titled = TITLE_LINE.split(text)
     parts = [(case, before)] if before or not titled else []
     if case.parts and titled and not before:
         yield case  # the case of the heading above, whose text is complete

@@ -10,8 +10,8 @@ from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.esp32_radio import in_reach
 
 NETWORK, PASSWORD = "Aula 3", b"a secret of the school"
-DRIVES = "SI|F(0.2, 80)"
-DROVE = ["MOTORS 80 80", "MOTORS 0 0"]
+DRIVE_PROGRAM = "SI|F(0.2, 80)"
+DRIVE_ACTIONS = ["MOTORS 80 80", "MOTORS 0 0"]
 
 
 def near(robot: Esp32PtyRobot, password: bytes = PASSWORD) -> None:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from tests.support.ble_robot import Peripheral
 
 ADAPTER = "/org/bluez/hci0"
-ADVERTISED_S = 0.05
+ADVERTISING_INTERVAL_S = 0.05
 STEP_S = 10.0  # timeout of a step in the bus's thread
 _Nothing = Annotated[None, DBusSignature("")]
 
@@ -284,7 +284,7 @@ class FakeBluez:
             is_late = device.peripheral.late > self.adapter.rounds
             if device.peripheral.is_on and not is_late and not device.is_connected:
                 device.advertise()
-        self.loop.call_later(ADVERTISED_S, self.advertise)
+        self.loop.call_later(ADVERTISING_INTERVAL_S, self.advertise)
 
     def part(self, peripheral: Peripheral) -> None:
         """End a peripheral's connection, as if it had moved out of range."""

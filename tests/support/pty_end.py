@@ -22,7 +22,7 @@ _SPEEDS = {
     getattr(termios, name): int(name[1:])
     for name in ("B9600", "B19200", "B38400", "B57600", "B115200")
 }
-BEHIND_S = 1.0  # largest lag before its clock slows down
+LARGEST_LAG_S = 1.0  # largest lag before its clock slows down
 
 
 class PtyEnd(PtyPort):
@@ -68,7 +68,7 @@ class PtyEnd(PtyPort):
     def _run(self) -> None:
         next_s = time.monotonic()
         while not self._is_over:
-            next_s = max(next_s + 0.001, time.monotonic() - BEHIND_S)
+            next_s = max(next_s + 0.001, time.monotonic() - LARGEST_LAG_S)
             ready, _, _ = select.select([self.ours], [], [], 0)
             if self.simulated is None:
                 reply = self.pass_ms(1, os.read(self.ours, 4096) if ready else b"")

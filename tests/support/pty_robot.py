@@ -22,7 +22,7 @@ from tests.support.simulated_port import STRIDE_MS, PtyPort, simulate
 from tiniscript.base.kit import Kit
 
 PUSHED, RELEASED, HELD = 1, 2, 32  # flags of a step
-BEHIND_MS = 50  # largest lag before the robot's clock slows down
+LARGEST_LAG_MS = 50  # largest lag before the robot's clock slows down
 
 
 def drives_now(actions: Sequence[str]) -> bool:
@@ -185,7 +185,7 @@ class PtyRobot(PtyPort):
                 last_s = time.monotonic() if self.simulated else last_s
                 continue
             last_s += passed_ms / 1000
-            sent_bytes = self.pass_ms(min(passed_ms, BEHIND_MS) - 1)
+            sent_bytes = self.pass_ms(min(passed_ms, LARGEST_LAG_MS) - 1)
             sent_bytes += self.pass_ms(1, os.read(self.ours, 4096) if ready else b"")
             if sent_bytes:
                 os.write(self.ours, sent_bytes)

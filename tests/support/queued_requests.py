@@ -18,7 +18,7 @@ from tiniscript.link.session import Session
 SHORT, LONG = "SI|F(60, 40)", "SI|" + "F(0.1, 30); B(0.1, 20);" * 30
 STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
 Ask = Callable[[Session], PendingRequest[Any]]
-ACTING: list[Ask] = [
+ACTING_REQUESTS: list[Ask] = [
     lambda session: session.live(image_of(SHORT).code),
     lambda session: session.upload(image_of(SHORT), saves=False),
     lambda session: session.upload(image_of(LONG)),

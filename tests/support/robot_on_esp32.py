@@ -13,7 +13,7 @@ from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import STATUS_NAMES
 from tiniscript.link.session import Session
 
-AWAY = "SI|F(60, 80)"
+AWAY_PROGRAM = "SI|F(60, 80)"
 Make = Callable[[Esp32Robot], End]
 RADIOS: list[Make] = [LowEnergy, SerialPort]
 TRANSPORTS: list[Make] = [*RADIOS, Network]
@@ -46,5 +46,5 @@ def claim_robot(robot: Esp32Robot, ends: Ends, who: Session, which: int = 0) -> 
     assert claim.outcome and claim.outcome.status == 0
 
 
-def upload_text(robot: Esp32Robot, ends: Ends, who: Session, text: str = AWAY) -> str:
+def upload_text(robot: Esp32Robot, ends: Ends, who: Session, text: str = AWAY_PROGRAM) -> str:
     return wait_for_outcome(robot, ends, who.upload(image_of(text), saves=False))

@@ -13,8 +13,8 @@ from tiniscript.link.requests import OK, Reply
 from tiniscript.link.session import Session
 
 KIT = robots.load("tinibot").kit
-LONG = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
-AWAY = "SI|F(60, 80)"
+LONG_PROGRAM = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
+AWAY_PROGRAM = "SI|F(60, 80)"
 
 
 def switched_on(memory: bytes = EMPTY, **options: float) -> HostFirmware:
@@ -66,7 +66,7 @@ def holding(text: str = "SB|F(0.2, 80)") -> tuple[HostFirmware, Session]:
 
 def broken_upload(robot: HostFirmware, session: Session) -> None:
     """Break off an upload, so that the robot holds its stored program."""
-    request = session.upload(image_of(LONG))
+    request = session.upload(image_of(LONG_PROGRAM))
     robot.talk(session, 3)
     assert request.outcome is None
     robot.wait(3000)

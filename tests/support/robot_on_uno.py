@@ -22,7 +22,7 @@ NAMES = {
 MOTORS = [name for name in NAMES if "left" in name or "right" in name]
 OFF = dict.fromkeys(MOTORS, "low")
 FORWARD = OFF | {"left": "pwm", "right": "pwm", "left forward": "high", "right forward": "high"}
-AWAY = "SI|F(70, 80)"
+AWAY_PROGRAM = "SI|F(70, 80)"
 OBSTACLE_LINES = (
     "SI|LOOP(FOREVER);", "  F(1, 80);", "  DISTANCE;", "  IF(DISTANCE < 10);", "    STOP;",
     "    R(1, 60);", "  ENDIF;", "END_LOOP;",

@@ -19,7 +19,7 @@ from tiniscript.link.requests import OK
 
 RUN_MS = 2500
 BYTE_TICKS = round(TICKS * 10_000 / 9600)
-MOST_APART_MS = 1  # a byte
+LARGEST_DELAY_MS = 1  # a byte
 
 
 class SensedRun(NamedTuple):
@@ -56,4 +56,4 @@ def sensed_run(
 def is_steady(text: str, seed: int) -> bool:
     """Return whether a program acts at the same times on a line that is 5 % slower or faster."""
     usual, *others = (sensed_run(text, seed, False, BYTE_TICKS + more).did for more in (0, -1, 1))
-    return all(apart_ms(usual, other) <= MOST_APART_MS for other in others)
+    return all(apart_ms(usual, other) <= LARGEST_DELAY_MS for other in others)

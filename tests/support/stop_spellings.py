@@ -48,7 +48,7 @@ FRAMED = {
     "a zero and UTF-8": "\0ñandú\n".encode(),
     "a zero and noise": b"\0\x7f\x80\xff\n",
 }
-ALL = PREFIXES | FRAMED
+ALL_PREFIXES = PREFIXES | FRAMED
 STRICT = (b"S\n", b"s\r", b"STOP\r\n", b"stop\n", b" \t;S ;\n", b";sToP\r\n")
 LOOSE = (
     b"SS\n", b"S.\r", b"Stop.\r\n", b"stop!\n", b"S()\n", b"stop();\r\n", b"STOP NOW\n", b"alto\r",

@@ -19,7 +19,7 @@ from tiniscript.robots.text_levels import LEVELS, TASK_AND_EXTENT_WORDS, UNREAD_
 from tiniscript.syntax.lexer import scan
 
 KIT = robots.load("tinibot").kit
-MORE = Answer()
+MORE_NEEDED = Answer()
 BLOCK_BYTES = 3 + 3 * 4  # including a bit for each of 32 sensors
 
 
@@ -51,7 +51,7 @@ def test_line_ends(end: bytes) -> None:
 
 def test_a_program_goes_on_until_its_blocks_are_closed() -> None:
     answers = read_lines(KIT, b"LOOP(2)\nF(1,\n80)\nEND_LOOP\nS\n")
-    assert answers[:3] == [MORE] * 3
+    assert answers[:3] == [MORE_NEEDED] * 3
     assert answers[3] == one("LOOP(2);F(1,80);END_LOOP")
     assert answers[4] == one("S")
 
@@ -63,7 +63,7 @@ def test_a_line_may_end_in_brackets_alone(cut: int) -> None:
         return
     answers = read_lines(KIT, f"{whole[:cut]} // )\n{whole[cut:]}\n".encode())
     if whole[:cut].count("(") > whole[:cut].count(")"):
-        assert answers == [MORE, one(whole)]
+        assert answers == [MORE_NEEDED, one(whole)]
     else:
         assert answers[0].problem
 
@@ -74,7 +74,7 @@ def test_a_problem_ends_a_program() -> None:
 
 
 def test_an_empty_line_begins_anew_on_this_computer() -> None:
-    assert read_lines(KIT, b"LOOP(2)\n\nS\n") == [MORE, one("S")]
+    assert read_lines(KIT, b"LOOP(2)\n\nS\n") == [MORE_NEEDED, one("S")]
 
 
 @pytest.mark.parametrize("line", ["", "  ", "// only a note", "SI|", ";;"])
@@ -113,7 +113,7 @@ def test_every_damage_of_one_byte_is_noticed() -> None:
 @pytest.mark.parametrize("bytes_before", [b"LOOP(2)", b"LOOP(2) // ~0", b"LOOP(2) // ~0 and more"])
 def test_a_checksum_is_that_of_its_own_line(bytes_before: bytes) -> None:
     lines = read_lines(KIT, bytes_before + b"\n" + add_checksum(b"S;END_LOOP") + b"\n")
-    assert lines == [MORE, one("LOOP(2);S;END_LOOP")]
+    assert lines == [MORE_NEEDED, one("LOOP(2);S;END_LOOP")]
 
 
 @pytest.mark.parametrize("line", [b"F(2, 80)~", b"S~1234567", b"S~1234567G", b"~S", b"S~ 12345678"])
@@ -154,7 +154,7 @@ def test_other_characters(odd: str) -> None:
 
 # -- its messages and their places ---------------------------------------------------------------
 
-WRONG = {
+PROBLEM_BY_LINE = {
     "F(2, 80)é": ("CHARACTER", 9), "W(5.)": ("NUMBER", 3), "X = 2147483.648": ("TOO_BIG", 5),
     "SI(X)": ("SETUP", 3), "F(1,80);SB|S": ("RESERVED", 9), "PING|S": ("PING", 6),
     "5": ("INSTRUCTION", 1), "GO": ("UNKNOWN_WORD", 1), "X = X + 1": ("UNKNOWN_VALUE", 5),
@@ -200,15 +200,15 @@ WRONG = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("line", WRONG)
+@pytest.mark.parametrize("line", PROBLEM_BY_LINE)
 def test_what_is_wrong_and_where(line: str) -> None:
     answer = one(line)
-    assert (answer.problem, answer.column) == WRONG[line]
+    assert (answer.problem, answer.column) == PROBLEM_BY_LINE[line]
 
 
 # An unknown beginning of an instruction is reported at its place, and so is a FOREVER.
-AT_ITS_WORD = ("UNKNOWN_WORD", "INSTRUCTION", "FOREVER_HERE")
-RIGHT = (
+PROBLEMS_AT_A_WORD = ("UNKNOWN_WORD", "INSTRUCTION", "FOREVER_HERE")
+RIGHT_LINES = (
     "SI|F(2, 80)", "sb | L(FOREVER, 50) UNTIL(DISTANCE < 9 OR NOT LIGHT_L >= 5)",
     "PING|CHECK_CONNECTION", "SPEED = -(2 + 3) * MIN(4, ABS(5)) <> 7 / 2",
     "X = TRUE; Y = NOT X <> FALSE",
@@ -224,7 +224,7 @@ RIGHT = (
 
 @pytest.mark.sampled("tail")
 @pytest.mark.parametrize("tail", ["", "  ", "// note", " // note"])
-@pytest.mark.parametrize("line", RIGHT)
+@pytest.mark.parametrize("line", RIGHT_LINES)
 def test_what_is_missing_at_the_end_is_missing_after_the_last_character(
     line: str, tail: str
 ) -> None:
@@ -235,7 +235,7 @@ def test_what_is_missing_at_the_end_is_missing_after_the_last_character(
     refused_count, gap = 0, tail.find("/") > 0
     for token in scan(line).tokens[:-1]:
         answer = one(line[: token.end] + tail)
-        if answer.problem and answer.problem not in AT_ITS_WORD:
+        if answer.problem and answer.problem not in PROBLEMS_AT_A_WORD:
             assert answer.column == token.end + 1 + gap, line[: token.end]
             refused_count += 1
     assert refused_count > 0
@@ -249,7 +249,12 @@ def test_columns_from_255_on_are_255() -> None:
 
 
 def test_every_problem_has_its_test() -> None:
-    problems = {problem for problem, _ in WRONG.values()} | {"CHECKSUM", "LIMIT", "FULL", "LACKS"}
+    problems = {problem for problem, _ in PROBLEM_BY_LINE.values()} | {
+        "CHECKSUM",
+        "LIMIT",
+        "FULL",
+        "LACKS",
+    }
     assert problems == set(PROBLEMS)
 
 
@@ -267,7 +272,7 @@ def test_a_reader_without_defs_reads_all_else() -> None:
         assert small.read(text.encode()) == Answer(problem="LACKS", column=word.start + 1), text
     texts = ["END_DEF", "LOOP(2); END_DEF", "X=DEF", "ENDDEF=1"]
     cases = [case.parts.get("tiniscript", "S") for case in all_cases()]
-    for text in (*texts, *WRONG, *cases):
+    for text in (*texts, *PROBLEM_BY_LINE, *cases):
         answer, words = small.read(text.encode()), {token.text for token in scan(text).tokens}
         if text in texts or not (lacks | UNREAD_WORDS) & words:
             other = large.read(text.encode())  # on this robot, FOREVER waits for tasks
@@ -399,8 +404,12 @@ def test_a_forever_waits_for_the_tasks_that_let_it_last() -> None:
 
 
 def test_a_way_keeps_its_bracket_open() -> None:
-    assert read_lines(KIT, b"F(20 CM\n// cm\n,60)\n") == [MORE, MORE, one("F(20cm,60)")]
-    assert read_lines(KIT, b"R(90\xc2\xb0\n,60)\n") == [MORE, one("R(90 DEG,60)")]
+    assert read_lines(KIT, b"F(20 CM\n// cm\n,60)\n") == [
+        MORE_NEEDED,
+        MORE_NEEDED,
+        one("F(20cm,60)"),
+    ]
+    assert read_lines(KIT, b"R(90\xc2\xb0\n,60)\n") == [MORE_NEEDED, one("R(90 DEG,60)")]
 
 
 # -- code ---------------------------------------------------------------------------------------

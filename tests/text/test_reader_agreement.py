@@ -33,8 +33,8 @@ from tiniscript.base.kit import Kit
 MAX_MS, MAX_STEPS = 5_000, 5_000
 SHORT_BUFFER = 389 - 15
 # Numbers for the tests; a commit runs a part, a campaign more.
-PROGRAMS, BROKEN, SOUPS = 400, 4, 3000
-TRACED = 10  # a campaign runs one of so many programs
+PROGRAMS, BROKEN_TEXTS, SOUPS = 400, 4, 3000
+TRACED_ONE_OF = 10  # a campaign runs one of so many programs
 
 
 def texts_of(seed: int, broken_count: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
@@ -94,7 +94,7 @@ def test_case(case: Case) -> None:
 @pytest.mark.parametrize("first", range(0, PROGRAMS, 50))
 def test_random_programs(first: int) -> None:
     for seed in range(first, first + 50):
-        kit, data, senses, slips = texts_of(seed, BROKEN)
+        kit, data, senses, slips = texts_of(seed, BROKEN_TEXTS)
         check_program(data, kit, senses)
         for slip in slips:
             check_bytes(slip, kit)
@@ -104,7 +104,7 @@ def test_random_programs(first: int) -> None:
 @pytest.mark.parametrize("first", range(0, PROGRAMS, 50))
 def test_random_programs_with_tasks(first: int) -> None:
     for seed in range(first, first + 50):
-        kit, data, senses, slips = tasks_of(seed, BROKEN)
+        kit, data, senses, slips = tasks_of(seed, BROKEN_TEXTS)
         check_program(data, kit, senses)
         for slip in slips:
             check_bytes(slip, kit)
@@ -157,7 +157,7 @@ def test_little_room_is_full_and_nothing_else(room: int) -> None:
             assert answer.problem == "FULL" or answer == want
 
 
-FOUND: Counter[str] = Counter()  # problems found by a campaign in incomplete programs
+FOUND_PROBLEMS: Counter[str] = Counter()  # problems found by a campaign in incomplete programs
 
 
 def check_seed(seed: int) -> None:
@@ -166,16 +166,18 @@ def check_seed(seed: int) -> None:
     The behaviour is compared for one of TRACED programs: runs take longest.
     """
     kit, data, senses, slips = (tasks_of if seed % 4 == 0 else texts_of)(seed, 10)
-    if seed % TRACED:
+    if seed % TRACED_ONE_OF:
         check_bytes(data, kit)
     else:
         check_program(data, kit, senses)
     soups = [soup(10 * seed + k) for k in range(10)]
     for each_kit, line in [(kit, slip) for slip in slips] + soups:
         answer = check_bytes(line, each_kit)
-        FOUND["full" if answer is None else "program" if answer.is_program else "refused"] += 1
+        FOUND_PROBLEMS[
+            "full" if answer is None else "program" if answer.is_program else "refused"
+        ] += 1
 
 
 if __name__ == "__main__":
     each_seed(check_seed, make_options(100_000, 1_000_000))
-    print(f"of other texts {dict(FOUND)}")
+    print(f"of other texts {dict(FOUND_PROBLEMS)}")

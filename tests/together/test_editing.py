@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from tests.together.world import FIRST
+from tests.together.world import FIRST_PROGRAM
 from tiniscript.studio import page_together, worker
 from tiniscript.studio.block_reading import split_loose
 from tiniscript.together.form import change_of
@@ -23,8 +23,8 @@ from tiniscript.together.layout import parse_tree, text_of
 from tiniscript.together.ordering import SharedProgram
 
 Json = dict[str, Any]
-BACK = "\b"
-KEYS = [BACK] * 6 + list("1957;X \U0001f916")
+BACKSPACE = "\b"
+KEYS = [BACKSPACE] * 6 + list("1957;X \U0001f916")
 TURNS = 150
 
 
@@ -105,7 +105,7 @@ class Editor:
                 self.goes_to(len(self.text))
                 self.keys = list(f"\n/// F({chance.randint(1, 99)}, 50)")
         key, line = self.keys.pop(0) if self.keys else chance.choice(KEYS), self.line
-        if key == BACK:
+        if key == BACKSPACE:
             self.text, self.at = (
                 self.text[: max(0, self.at - 1)] + self.text[self.at :],
                 self.at - 1,
@@ -125,9 +125,9 @@ class Editor:
 @pytest.mark.parametrize("seed", range(6))
 def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
     chance, ids = Random(seed), count(1)
-    program = SharedProgram(parse_tree(FIRST, lambda: f"i.{next(ids)}"), "e")
+    program = SharedProgram(parse_tree(FIRST_PROGRAM, lambda: f"i.{next(ids)}"), "e")
     editors = [Editor(name, program) for name in ("m1", "m2")]
-    assert {editor.text for editor in editors} == {FIRST}
+    assert {editor.text for editor in editors} == {FIRST_PROGRAM}
     reloads = draft_count = 0
     for _ in range(TURNS):
         editor = chance.choice(editors)

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from tests.together.world import FIRST
+from tests.together.world import FIRST_PROGRAM
 from tiniscript.base import files
 from tiniscript.together import journal as journals
 from tiniscript.together.form import Change, Replace, Unwrap
@@ -26,7 +26,7 @@ from tiniscript.together.tree import START
 def begin_journal(path: Path) -> tuple[Journal, SharedProgram]:
     ids = count(1)
     journal = Journal(path)
-    return journal, journal.begin(parse_tree(FIRST, lambda: f"i.{next(ids)}"), "e1")
+    return journal, journal.begin(parse_tree(FIRST_PROGRAM, lambda: f"i.{next(ids)}"), "e1")
 
 
 def change_program(program: SharedProgram, value: int, page: str = "a") -> bool:

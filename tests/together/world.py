@@ -41,7 +41,7 @@ from tiniscript.together.tree import BLOCK, INSTRUCTION, ROOT, START, Tree
 
 Json = dict[str, Any]
 KIT = robots.load("tinibot").kit
-FIRST = """// Our robot.
+FIRST_PROGRAM = """// Our robot.
 SI|X = 0;
 LOOP(100001);
   F(100002, 50);
@@ -56,8 +56,8 @@ END_LOOP;
 BEEP(100007, 440);
 S;
 """
-ASKS_S = 0.5  # between the answer and the next request of a page
-SILENT_S = 9.0  # after which a page asks again
+REQUEST_INTERVAL_S = 0.5  # between the answer and the next request of a page
+RETRY_S = 9.0  # after which a page asks again
 
 
 class World:
@@ -65,7 +65,7 @@ class World:
 
     def __init__(
         self, pages: int, seed: int, delay: Callable[[Random], float] = lambda r: r.uniform(0, 5),
-        lost: float = 0.05, asks_s: float = ASKS_S, spread: float = 0.5,
+        lost: float = 0.05, asks_s: float = REQUEST_INTERVAL_S, spread: float = 0.5,
     ) -> None:  # fmt: skip
         self.chance = Random(seed)
         self.now_s = 0.0
@@ -78,7 +78,9 @@ class World:
         ids, numbers = count(1), count(200_000)
         self._rows: list[Json] = []  # the journal
         self.all_taken: list[TakenChange] = []
-        self.program = SharedProgram(parse_tree(FIRST, lambda: f"i.{next(ids)}"), "e0", self._keep)
+        self.program = SharedProgram(
+            parse_tree(FIRST_PROGRAM, lambda: f"i.{next(ids)}"), "e0", self._keep
+        )
         self._snapshot = self._send_and_parse(self.program.snapshot())
         self.first = set(self.program.tree.node_by_id)
         tree = self.program.tree
@@ -117,7 +119,7 @@ class World:
         if self.now_s < self.off_until_s[name]:
             self.at(0.5, self.ask, name, turn)
             return
-        self.at(SILENT_S, self._ask_again, name, turn)
+        self.at(RETRY_S, self._ask_again, name, turn)
         if self.chance.random() >= self._lost:
             sent = self._send_and_parse(
                 {"sent": [data_of_change(change) for change in page.pending_changes]}

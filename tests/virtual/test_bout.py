@@ -36,8 +36,10 @@ y_cm = 100
 radius_cm = 80
 edge_cm = 5
 """
-HEAD_ON = "[[rivals]]\nx_cm = 100\ny_cm = 100\nheading = 180\nspeed_cm_s = 45\npower_percent = {}\n"
-ASLEEP = HEAD_ON.format(0)
+HEAD_ON_RIVAL = (
+    "[[rivals]]\nx_cm = 100\ny_cm = 100\nheading = 180\nspeed_cm_s = 45\npower_percent = {}\n"
+)
+SLEEPING_RIVAL = HEAD_ON_RIVAL.format(0)
 
 
 def bout(text: str, robot: str = "sumo") -> Bout:
@@ -142,13 +144,13 @@ def test_no_body_is_ever_inside_another(seed: int) -> None:
 @pytest.mark.parametrize("heading", [0, 30, 90, 180])
 def test_a_rival_that_is_pushed_goes_where_it_is_pushed(heading: int, power: int) -> None:
     """This holds for any orientation: it moves most along its wheels, least sideways."""
-    driving = bout(RING + ASLEEP.replace("180", str(heading)))
+    driving = bout(RING + SLEEPING_RIVAL.replace("180", str(heading)))
     [pose_before] = driving.rivals
     driving.set_motors(0, power, power)
     driving.advance_to(6000 * 20 // power)
     [pose_after] = driving.rivals
     assert pose_after.x_cm > pose_before.x_cm + 2
-    free = bout(RING + ASLEEP.replace("x_cm = 100\ny_cm = 100", "x_cm = 100\ny_cm = 20"))
+    free = bout(RING + SLEEPING_RIVAL.replace("x_cm = 100\ny_cm = 100", "x_cm = 100\ny_cm = 20"))
     free.set_motors(0, power, power)
     assert driving.driven_cm < free.advance_to(6000 * 20 // power).x_cm - 60 - 2, (
         "it is slowed down"
@@ -160,7 +162,7 @@ def test_a_rival_that_is_pushed_goes_where_it_is_pushed(heading: int, power: int
 @pytest.mark.parametrize("its", [30, 55, 80])
 def test_the_stronger_one_pushes_the_other_back(mine: int, its: int, speed: int) -> None:
     """Head on: that of more power goes ahead, however fast each of them is alone."""
-    rival = HEAD_ON.format(its).replace("speed_cm_s = 45", f"speed_cm_s = {speed}")
+    rival = HEAD_ON_RIVAL.format(its).replace("speed_cm_s = 45", f"speed_cm_s = {speed}")
     driving = bout(RING.replace("x_cm = 60", "x_cm = 80") + rival)
     driving.set_motors(0, mine, mine)
     met_pose = driving.advance_to(900)
@@ -171,7 +173,9 @@ def test_the_stronger_one_pushes_the_other_back(mine: int, its: int, speed: int)
 
 def test_a_body_alone_goes_as_it_does_without_a_ring() -> None:
     """A rival that is far away, and asleep, changes nothing."""
-    far = RING.replace("x_cm = 60", "x_cm = 30") + ASLEEP.replace("x_cm = 100", "x_cm = 170")
+    far = RING.replace("x_cm = 60", "x_cm = 30") + SLEEPING_RIVAL.replace(
+        "x_cm = 100", "x_cm = 170"
+    )
     draw = random.Random(5)
     for _ in range(20):
         left, right = draw.randint(-100, 100), draw.randint(-100, 100)
@@ -182,7 +186,7 @@ def test_a_body_alone_goes_as_it_does_without_a_ring() -> None:
 
 
 def test_a_rival_begins_when_the_robot_first_moves() -> None:
-    driving = bout(RING + HEAD_ON.format(60))
+    driving = bout(RING + HEAD_ON_RIVAL.format(60))
     rivals_before = rivals_of(driving)
     driving.advance_to(3000)
     driving.set_motors(3000, 0, 0)
@@ -202,7 +206,7 @@ def test_a_rival_stays_in_a_ring_where_nobody_pushes_it() -> None:
     for _ in range(6):
         text = RING.replace("x_cm = 60", "x_cm = 8")  # the robot is outside, and seen
         heading, power = draw.randint(-180, 180), draw.choice([30, 60, 100])
-        driving = bout(text + HEAD_ON.format(power).replace("180", str(heading)))
+        driving = bout(text + HEAD_ON_RIVAL.format(power).replace("180", str(heading)))
         driving.has_fallen = True  # falling does not end this run
         driving.set_motors(0, 1, 0)
         for at in range(0, 20_000, 50):
@@ -241,7 +245,7 @@ def test_a_distance_sensor_sees_where_a_rival_is() -> None:
 
 def test_what_is_black_and_what_is_white() -> None:
     """A dark ring, its edge, and the floor around it; a line is black anywhere."""
-    world = read(RING + ASLEEP + "[[lines]]\npoints = [[20, 20], [195, 20]]\n", "ring")
+    world = read(RING + SLEEPING_RIVAL + "[[lines]]\npoints = [[20, 20], [195, 20]]\n", "ring")
     liner = robots.load("liner")
     for x_cm, is_black in ((100, True), (172, True), (177, False), (179, False), (190, False)):
         pose = Pose(x_cm, 100, 90)
@@ -294,7 +298,7 @@ def run_to_score(program: str, text: str, ms: int = 9000) -> dict[str, int]:
 
 
 def test_who_is_pushed_out_and_who_falls() -> None:
-    text = RING + ASLEEP + "[task]\nseconds = 20\n"
+    text = RING + SLEEPING_RIVAL + "[task]\nseconds = 20\n"
     won = run_to_score("F(9, 80)", text)
     assert (won["pushed"], won["rivals"], won["stars"], won["has_fallen"]) == (1, 1, 3, False)
     assert won["points"] > 100
@@ -323,9 +327,9 @@ def test_a_world_says_what_is_wrong_with_its_rivals(tmp_path: Path) -> None:
     from tiniscript.virtual.world import WorldRefused
 
     for wrong, message in (
-        (ASLEEP * 4, "rivals has 4 parts. Keep at most 3"),
+        (SLEEPING_RIVAL * 4, "rivals has 4 parts. Keep at most 3"),
         ("[[rivals]]\nx_cm = 5\n", "rivals[1].y_cm is missing"),
-        (ASLEEP + "lenght_cm = 7\n", "Did you mean length_cm?"),
+        (SLEEPING_RIVAL + "lenght_cm = 7\n", "Did you mean length_cm?"),
         ("[[rings]]\nx_cm = 5\ny_cm = 5\n", "rings[2].radius_cm is missing"),
     ):
         with pytest.raises(WorldRefused) as exception_info:
@@ -339,4 +343,6 @@ def test_a_robot_that_begins_in_a_rival_is_refused() -> None:
     from tiniscript.virtual.world import WorldRefused
 
     with pytest.raises(WorldRefused, match="start_blocked"):
-        robot_in(read(RING + ASLEEP.replace("x_cm = 100\n", "x_cm = 66\n"), "tight"), "sumo")
+        robot_in(
+            read(RING + SLEEPING_RIVAL.replace("x_cm = 100\n", "x_cm = 66\n"), "tight"), "sumo"
+        )

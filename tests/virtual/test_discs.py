@@ -38,8 +38,8 @@ TWO_CHANNELS = TWO._replace(
     )
 )
 WAY = "F(60 CM, 60)"
-ALONE = "F(20 CM, 60); R(90 DEG, 60); F(45 CM, 50) UNTIL(TIME > 2)"
-BESIDE = f"{ALONE}\nTASK\nW(0.3); B(4.5 CM, 100)\nEND_TASK"
+ONE_TASK = "F(20 CM, 60); R(90 DEG, 60); F(45 CM, 50) UNTIL(TIME > 2)"
+TWO_TASKS = f"{ONE_TASK}\nTASK\nW(0.3); B(4.5 CM, 100)\nEND_TASK"
 
 
 def started_robot(
@@ -513,7 +513,7 @@ def list_trace(text: str, name: str) -> list[str]:
 
 
 @pytest.mark.parametrize("name", ["grabber", "tinibot32"])
-@pytest.mark.parametrize("text", [ALONE, BESIDE])
+@pytest.mark.parametrize("text", [ONE_TASK, TWO_TASKS])
 def test_a_program_takes_as_long_as_the_profile_says(name: str, text: str) -> None:
     robot = robot_in(name=name)
     talk = Talk(robot)
@@ -533,7 +533,9 @@ def test_a_simulated_body_goes_and_turns_as_its_kit_says(name: str) -> None:
     assert move_pose(profile.body, START, 60, -60, turn_ms).heading == pytest.approx(-90, abs=0.3)
 
 
-@pytest.mark.parametrize(("text", "needs"), [(ALONE, GO), (BESIDE, GO | TASKS), ("W(0.1)", 0)])
+@pytest.mark.parametrize(
+    ("text", "needs"), [(ONE_TASK, GO), (TWO_TASKS, GO | TASKS), ("W(0.1)", 0)]
+)
 def test_the_robot_finds_out_what_code_needs(text: str, needs: int) -> None:
     """For a program in one frame, and for a live line, its image equals the compiler's."""
     robot = robot_in(name="tinibot32")

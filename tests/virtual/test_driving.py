@@ -30,23 +30,27 @@ LINER = robots.load("liner")
 GRABBER = robots.load("grabber")
 RIGHT, LEFT, DISTANCE = range(3)  # indexes of tinibot's sensors
 NOSE_CM = 13  # distance from its wheels to its distance sensor
-ACROSS = Segment(Point(10, -5), Point(10, 5))
+WALL_ACROSS = Segment(Point(10, -5), Point(10, 5))
 
 
 # -- geometry -------------------------------------------------------------------------------------
 
 
 def test_the_nearest_point_is_inside_or_an_end() -> None:
-    assert nearest_point(ACROSS, 3, 2) == (10, 2)
-    assert nearest_point(ACROSS, 3, 9) == (10, 5)
+    assert nearest_point(WALL_ACROSS, 3, 2) == (10, 2)
+    assert nearest_point(WALL_ACROSS, 3, 9) == (10, 5)
     assert nearest_point(Segment(Point(1, 1), Point(1, 1)), 4, 5) == (1, 1)
 
 
 def test_segments_cross_or_have_a_distance() -> None:
-    assert crosses(ACROSS, Segment(Point(0, 0), Point(20, 0)))
-    assert not crosses(ACROSS, Segment(Point(0, 0), Point(9, 0)))
-    assert gap_between(ACROSS, Segment(Point(0, 0), Point(20, 0)))[0] == 0
-    assert gap_between(ACROSS, Segment(Point(0, 0), Point(6, 3))) == (4, Point(10, 3), Point(6, 3))
+    assert crosses(WALL_ACROSS, Segment(Point(0, 0), Point(20, 0)))
+    assert not crosses(WALL_ACROSS, Segment(Point(0, 0), Point(9, 0)))
+    assert gap_between(WALL_ACROSS, Segment(Point(0, 0), Point(20, 0)))[0] == 0
+    assert gap_between(WALL_ACROSS, Segment(Point(0, 0), Point(6, 3))) == (
+        4,
+        Point(10, 3),
+        Point(6, 3),
+    )
 
 
 @pytest.mark.parametrize(
@@ -63,7 +67,7 @@ def test_segments_cross_or_have_a_distance() -> None:
 def test_a_cone_sees_the_nearest_point_inside(
     heading: float, half: float, distance_cm: float
 ) -> None:
-    least = nearest_seen([ACROSS], Point(0, 0), math.radians(heading), math.radians(half))
+    least = nearest_seen([WALL_ACROSS], Point(0, 0), math.radians(heading), math.radians(half))
     assert least == pytest.approx(distance_cm)
     for y in (-5, 5):  # walls that end on the border
         assert nearest_seen([Segment(Point(10, 0), Point(10, y))], Point(0, 0), 0, 0) == 10

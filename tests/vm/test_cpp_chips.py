@@ -46,7 +46,9 @@ def _run_emulated(name: str, image: bytes, kit: Kit, senses: Senses) -> Ran:
     return start_emulator(name).run(image, kit, senses)
 
 
-CHIPS = {name: Chip(avr.missing(), partial(avr.ran_on, name), 620) for name in avr.BUILT}
+CHIPS = {
+    name: Chip(avr.missing(), partial(avr.ran_on, name), 620) for name in avr.COMPILER_ARGUMENTS
+}
 CHIPS |= {name: Chip(emulator_missing(name), partial(_run_emulated, name)) for name in chips.CHIPS}
 
 
@@ -228,7 +230,7 @@ def test_programs_with_tasks(chip: str) -> None:
 
 
 @pytest.mark.sampled("chip")
-@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
+@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE_CHIP)
 def test_programs_with_tasks_on_an_avr(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(3000, 60)):
         same_on_the_chip(chip, image, cpp_checks.KIT, senses)
@@ -246,12 +248,12 @@ def test_assembly_and_its_twin_do_the_same(chip: str, first: int) -> None:
         begin_ms = (0, 2**31 - 100, 2**32 - 100)[number // 3 % 3]
         of_assembly, of_twin = (
             avr.ran_on(chip_name, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
-            for chip_name in (chip, avr.PORTABLE)
+            for chip_name in (chip, avr.PORTABLE_CHIP)
         )
         assert of_assembly == of_twin, image.hex(" ")
 
 
-@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
+@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE_CHIP)
 @pytest.mark.parametrize("name", avr_tasks.PROGRAMS)
 def test_hard_programs_with_tasks(chip: str, name: str) -> None:
     program = avr_tasks.PROGRAMS[name]
@@ -263,7 +265,7 @@ def test_hard_programs_with_tasks(chip: str, name: str) -> None:
         assert run.trace == cpp_checks.slow_run(image, senses, not_ready, late_ms), run.trace
 
 
-@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
+@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE_CHIP)
 def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
     """Only this ends a tick there. The calls have all low bytes of an address, in a long loop."""
     calls = "D;" * 130
@@ -275,7 +277,7 @@ def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
 
 
 @pytest.mark.sampled("chip")
-@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
+@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE_CHIP)
 def test_late_tasks_after_byte_256(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(0, 40, cpp_checks.FAR)):
         late_ms = (0, 7, 36)[number % 3]
@@ -292,7 +294,7 @@ def test_programs_with_ways(chip: str) -> None:
 
 
 @pytest.mark.sampled("chip")
-@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
+@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE_CHIP)
 def test_programs_with_ways_on_an_avr(chip: str) -> None:
     for image, kit, senses in cpp_checks.some_way_programs(3000, 60):
         if len(image) <= CHIPS[chip].most_bytes:

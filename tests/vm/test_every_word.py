@@ -45,8 +45,8 @@ ROBOT = with_wide_kit()
 KIT = ROBOT.kit
 ORACLE_KIT = WIDE_KIT._replace(speed=KIT.speed, turn=KIT.turn)
 SENSES = Senses({"DISTANCE": [50_000, 9_000]}, 3_000, 3_000)
-UNTIL = "UNTIL(DISTANCE < 10)"
-LONG = "A" * 31
+UNTIL_CLAUSE = "UNTIL(DISTANCE < 10)"
+LONG_NAME = "A" * 31
 
 
 def check(text: str) -> bool:
@@ -88,7 +88,7 @@ def in_defs(calls: int) -> str:
     return ";".join([*defs, f"D{calls}"])
 
 
-BLOCKS_OF = [
+BLOCK_HEADS_AND_ENDS = [
     ("IF(TRUE)", "ENDIF"),
     ("IF(FALSE);ELSEIF(TRUE)", "ENDIF"),
     ("IF(FALSE);ELSE", "END_IF"),
@@ -99,7 +99,7 @@ BLOCKS_OF = [
 def frames() -> Iterator[str]:
     loops = [nest("LOOP(1)", "END_LOOP", times) for times in (*range(BLOCKS - 2, BLOCKS + 2),)]
     yield from ("{}", "SI|{}", "SB|{}", "PING|{}", "X = 1;{};SHOW(X)")
-    for head, end in BLOCKS_OF:
+    for head, end in BLOCK_HEADS_AND_ENDS:
         yield from (nest(head, end, times) for times in (BLOCKS - 1, BLOCKS, BLOCKS + 1))
     yield from loops
     for task in ("TASK;{};END_TASK", "WHEN(DISTANCE < 10);{};END_WHEN"):
@@ -129,7 +129,9 @@ def uses_of(word: Word) -> list[str]:
     return {
         "setup": lambda: [text, f"{text}|S", f"PING|{text}", f"{text}|CHECK_CONNECTION"],
         "start": lambda: [text],
-        "until": lambda: [f"{text} {UNTIL}" for text in ("W(1)", "F(2, 80)", "S", "BEEP(1, 440)")],
+        "until": lambda: [
+            f"{text} {UNTIL_CLAUSE}" for text in ("W(1)", "F(2, 80)", "S", "BEEP(1, 440)")
+        ],
         "forever": lambda: [f"LOOP({text});{body};END_LOOP" for body in ("W(1)", "BREAK")],
         "block": lambda: [f"{header(text)};{BLOCK_ENDS[text]}"],
         "arm": lambda: [f"IF(FALSE);{word.example};SHOW(1);ENDIF"],
@@ -151,11 +153,11 @@ def calls_of(word: Word) -> list[str]:
     if word.role.lasts:
         forever = ", ".join(["FOREVER", *(argument.sample for argument in word.arguments[1:])])
         uses.append(f"{word.text}({forever})")
-    return [*uses, *(f"{use} {UNTIL}" for use in uses)]
+    return [*uses, *(f"{use} {UNTIL_CLAUSE}" for use in uses)]
 
 
 def header(word: str) -> str:
-    return f"DEF {LONG}" if word == "DEF" else WORDS[word].example
+    return f"DEF {LONG_NAME}" if word == "DEF" else WORDS[word].example
 
 
 def begin_of(end: str) -> str:
@@ -212,7 +214,7 @@ def edges(argument: Argument) -> Iterator[str]:
             yield f"0 < {deep(value, values - 1)}" if is_question else deep(value, values)
     for edge in (argument.low, argument.high):
         yield from (as_text(value) for value in (edge - 1, edge, edge + 1))
-    yield from ("TRUE", "V", LONG, "DISTANCE", "TOUCH", "V / 0", "-V", "FOREVER", "", "V, V")
+    yield from ("TRUE", "V", LONG_NAME, "DISTANCE", "TOUCH", "V / 0", "-V", "FOREVER", "", "V, V")
 
 
 def around(word: Word) -> str:
@@ -224,11 +226,13 @@ def around(word: Word) -> str:
     return f"{{}};BREAK;{end}" if name in ("LOOP", "WHILE") else f"{{}};{end}" if end else "{}"
 
 
-CALLED = [word for word in (*WORDS.values(), *(it.word for it in KIT.actuators)) if word.arguments]
+WORDS_WITH_ARGUMENTS = [
+    word for word in (*WORDS.values(), *(it.word for it in KIT.actuators)) if word.arguments
+]
 
 
 @pytest.mark.sampled("word", keep=8)
-@pytest.mark.parametrize("word", CALLED, ids=lambda word: word.text)
+@pytest.mark.parametrize("word", WORDS_WITH_ARGUMENTS, ids=lambda word: word.text)
 def test_every_argument_at_its_edges(word: Word) -> None:
     samples = [argument.sample for argument in word.arguments]
     answers = set()
@@ -236,11 +240,11 @@ def test_every_argument_at_its_edges(word: Word) -> None:
         for edge in edges(argument):
             values = ", ".join([*samples[:place], edge, *samples[place + 1 :]])
             call = around(word).format(f"{word.text}({values})")
-            for text in (call, f"{call} {UNTIL}") if word.role.is_instruction else (call,):
-                answers.add(check(f"V = 1;{LONG} = 2;{text}"))
+            for text in (call, f"{call} {UNTIL_CLAUSE}") if word.role.is_instruction else (call,):
+                answers.add(check(f"V = 1;{LONG_NAME} = 2;{text}"))
     assert answers == {True, False}
 
 
 def test_a_value_of_a_variable_at_its_edges() -> None:
-    answers = [check(f"V = 1;{LONG} = 2;X = {edge}") for edge in edges(VALUE)]
+    answers = [check(f"V = 1;{LONG_NAME} = 2;X = {edge}") for edge in edges(VALUE)]
     assert {*answers} == {True, False}

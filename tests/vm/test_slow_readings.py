@@ -16,7 +16,7 @@ import pytest
 
 from tests.machines import Senses, avr, host
 from tests.machines.host import host as host_machine
-from tests.machines.pace import ECHO, Pace, a_pace, trace_at
+from tests.machines.pace import ECHO_SENSORS, Pace, a_pace, trace_at
 from tests.oracle.interpreter import PAPER_KIT, run
 from tests.oracle.task_programs import rival_program, task_program
 from tests.support.campaign import each_seed, make_options
@@ -54,7 +54,7 @@ MACHINES: dict[str, tuple[Run, str]] = {
     "host": (run_host, host.missing()),
     "uno": (partial(run_avr, avr.UNO), avr.missing()),
     "mega": (partial(run_avr, avr.MEGA), avr.missing()),
-    "portable": (partial(run_avr, avr.PORTABLE), avr.missing()),
+    "portable": (partial(run_avr, avr.PORTABLE_CHIP), avr.missing()),
 }
 each_machine = pytest.mark.parametrize(
     "machine",
@@ -74,7 +74,7 @@ LIGHTS = {"LIGHT_R": [9000, 0, 9000, 0], "DISTANCE": [5000]}
 def test_a_look_that_waits_for_an_echo_is_over_when_the_motors_are_taken(machine: Run) -> None:
     """The echo that comes at 150 ms is of a look at 120: the task has the motors back at 260."""
     image = compile_text(TAKEN_AGAIN.format("F(FOREVER, 40) UNTIL(DISTANCE < 10)"), KIT).image
-    pace = Pace(slow=ECHO, period_ms=1000, from_ms=100, to_ms=150)
+    pace = Pace(slow=ECHO_SENSORS, period_ms=1000, from_ms=100, to_ms=150)
     actual = machine(pace, image, Senses(LIGHTS, 300))
     want = """\
 0 READ LIGHT_R 9
@@ -103,7 +103,7 @@ TASK;W(0.02);B(0.1, 50);END_TASK
 TASK;M(20, 30);F(FOREVER, 40) UNTIL(LIGHT_L > 5 AND DISTANCE < 10);SHOW(1);END_TASK""",
         KIT,
     ).image
-    pace = Pace(slow=ECHO, period_ms=1000, from_ms=0, to_ms=70)
+    pace = Pace(slow=ECHO_SENSORS, period_ms=1000, from_ms=0, to_ms=70)
     actual = machine(pace, image, Senses({"LIGHT_L": [9000], "DISTANCE": [5000]}, 300))
     want = """\
 0 MOTORS 20 30
@@ -127,7 +127,7 @@ TASK;W(FOREVER) UNTIL(DISTANCE < 10);SHOW(1);END_TASK
 F(0.01, 20);X = DISTANCE;SHOW(2);W(1)""",
         KIT,
     ).image
-    pace = Pace(slow=ECHO, period_ms=1000, from_ms=0, to_ms=70)
+    pace = Pace(slow=ECHO_SENSORS, period_ms=1000, from_ms=0, to_ms=70)
     actual = machine(pace, image, Senses({"DISTANCE": [5000]}, 100))
     want = """\
 0 MOTORS 20 20

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from statistics import median
 from typing import NamedTuple
 
-from tests.machines.board import BUILT_IN, Board, build_sketch
+from tests.machines.board import BUILT_IN_PROGRAM, Board, build_sketch
 from tests.support.board_states import START, STEADY
 from tests.support.sonar import (
     US_PER_CM,
@@ -55,7 +55,7 @@ def board_of(text: str, is_trusting: bool) -> Board:
     if is_trusting:
         header = firmware.header([robot], "the tests.").replace("#pragma once", TRUST_DEFINE, 1)
         elf = build_sketch(header, robot.board.chip)
-        built_in_image = compile_text(BUILT_IN, robot.kit).image
+        built_in_image = compile_text(BUILT_IN_PROGRAM, robot.kit).image
         own_image = compile_text(text, robot.kit).image
         offset = elf.index(built_in_image)
         board.elf = elf[:offset] + own_image + b"\0" * 4 + elf[offset + len(own_image) + 4 :]

@@ -16,7 +16,7 @@ from itertools import chain, product, repeat
 from typing import NamedTuple
 
 from tests.machines import Senses
-from tests.machines.pace import ECHO, Pace, a_pace
+from tests.machines.pace import ECHO_SENSORS, Pace, a_pace
 from tests.machines.python import lists_of
 from tests.oracle import programs
 from tests.oracle.task_programs import rival_program, task_program
@@ -281,7 +281,7 @@ def time_runs() -> Iterator[Run]:
 
 def late_runs() -> Iterator[Run]:
     """Return runs whose readings come late, and the actions of each task meanwhile."""
-    first_pace, echo_pace = Pace(1, ECHO, 1000, 0, 12), Pace(1, ECHO, 1000, 0, 30)
+    first_pace, echo_pace = Pace(1, ECHO_SENSORS, 1000, 0, 12), Pace(1, ECHO_SENSORS, 1000, 0, 30)
     rivals = "WHEN(LIGHT_R > 5);B(0.1, 50);END_WHEN;TASK;{};SHOW(TIME);END_TASK"
     looking_text = rivals.format("F(FOREVER, 40) UNTIL(DISTANCE < 10)")
     beginning_text = rivals.format(
@@ -294,18 +294,19 @@ def late_runs() -> Iterator[Run]:
          first_pace),
         ("the others do not wait",
          "WHEN(DISTANCE < 10);SHOW(1);END_WHEN;TASK;SHOW(2);W(0.005);SHOW(3);END_TASK", echo_pace),
-        ("a look is over when the motors are taken", looking_text, Pace(1, ECHO, 1000, 100, 150)),
-        ("a first look is, too", beginning_text, Pace(1, ECHO, 1000, 125, 150)),
+        ("a look is over when the motors are taken", looking_text, Pace(1, ECHO_SENSORS, 1000, 100, 150)),
+        ("a first look is, too", beginning_text, Pace(1, ECHO_SENSORS, 1000, 125, 150)),
         ("the UNTIL of a wait is looked at whoever has the motors",
          "TASK;W(0.01);B(0.1, 50);END_TASK;TASK;W(FOREVER) UNTIL(DISTANCE < 10);SHOW(TIME);"
          "END_TASK", echo_pace),
         ("a clock stays where it was",
          "TASK;LOOP(3);W(0.01);SHOW(DISTANCE);SHOW(TIME);END_LOOP;END_TASK",
-         Pace(1, ECHO, 1000, 8, 25)),
+         Pace(1, ECHO_SENSORS, 1000, 8, 25)),
         ("to wait for a reading is no wait",
          "TASK;LOOP(4);SHOW(DISTANCE);SHOW(TIME);END_LOOP;END_TASK", echo_pace),
         ("a move that is over does not wait for its look",
-         "F(0.05, 60) UNTIL(DISTANCE < 3);SHOW(TIME);F(0.05, 60)", Pace(1, ECHO, 1000, 15, 47)),
+         "F(0.05, 60) UNTIL(DISTANCE < 3);SHOW(TIME);F(0.05, 60)",
+         Pace(1, ECHO_SENSORS, 1000, 15, 47)),
         ("values stay on the stack", "SHOW(1 + MAX(DISTANCE, LIGHT_R) * 2);W(0.01);SHOW(TIME)",
          Pace(1, ("LIGHT_R",), 1000, 0, 7)),
     ):  # fmt: skip
