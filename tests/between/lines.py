@@ -9,7 +9,7 @@ from collections import deque
 from random import Random
 from typing import NamedTuple
 
-from tests.machines.host_firmware import EMPTY
+from tests.machines.host_firmware import EMPTY_EEPROM
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
@@ -159,7 +159,9 @@ class BehindBadLine(PtyRobot):
 class BadLine(BehindBadLine):
     """A bad line to an Uno."""
 
-    def __init__(self, fault: Fault, chance: Random, after: int, memory: bytes = EMPTY) -> None:
+    def __init__(
+        self, fault: Fault, chance: Random, after: int, memory: bytes = EMPTY_EEPROM
+    ) -> None:
         self._open_line(fault, chance, after)
         super().__init__(KIT, memory)
 

@@ -39,16 +39,16 @@ from tests.support.campaign import make_options
 from tests.support.command import FOREVER, LONG
 from tests.support.pty_robot import PtyRobot, on
 
-SILENT_S = 3.0  # longest silence allowed
-ROOM_S = 0.5  # tolerance before a message counts as late
+LONGEST_SILENCE_S = 3.0  # longest silence allowed
+TOLERANCE_S = 0.5  # tolerance before a message counts as late
 WORKERS = 8
-ENDS_S = 45.0  # the longest search for a robot, a request of 20 s, and a stop
-SLOW_ENDS_S = 240.0  # over a line that lets little through
-STOPS_S = 12.0  # time from Ctrl-C to the end
-DRIVES_ON_S = 3.0  # time after which a robot without a computer stops
-SHORT = "SI|F(0.3, 80)"
-CONFIRMED = re.compile(r"[Ss]topped the robot.*confirmed it|has confirmed|: stopped")
-UNCONFIRMED = re.compile(r"has not confirmed the stop")
+LONGEST_END_S = 45.0  # the longest search for a robot, a request of 20 s, and a stop
+LONGEST_SLOW_END_S = 240.0  # over a line that lets little through
+LONGEST_STOP_S = 12.0  # time from Ctrl-C to the end
+DEAD_MAN_S = 3.0  # time after which a robot without a computer stops
+SHORT_PROGRAM = "SI|F(0.3, 80)"
+CONFIRMED_STOP = re.compile(r"[Ss]topped the robot.*confirmed it|has confirmed|: stopped")
+UNCONFIRMED_STOP = re.compile(r"has not confirmed the stop")
 
 
 class Words(NamedTuple):
@@ -64,9 +64,9 @@ class Words(NamedTuple):
 
 
 COMMANDS = (
-    Words("upload", ("upload", "-e", SHORT)),
+    Words("upload", ("upload", "-e", SHORT_PROGRAM)),
     Words("upload, long", ("upload", "-e", f"SI|{LONG}")),
-    Words("upload --detach", ("upload", "--detach", "-e", SHORT)),
+    Words("upload --detach", ("upload", "--detach", "-e", SHORT_PROGRAM)),
     Words("upload, Ctrl-C", ("upload", "-e", FOREVER), stays=True),
     Words("start", ("start",)),
     Words("live LINE", ("live", "F(0.3, 80)")),
@@ -86,20 +86,23 @@ COMMANDS = (
     Words("doctor --selftest --yes", ("doctor", "--selftest", "--yes"), may_fail=True),
     Words("doctor --yes", ("doctor", "--yes"), may_fail=True),
 )
-BY_NAME = {words.name: words for words in COMMANDS}
-CLIENTS = tuple(
-    BY_NAME[name]._replace(name=f"{name}, beside monitor --hold", is_client=True)
+COMMANDS_BY_NAME = {words.name: words for words in COMMANDS}
+CLIENT_COMMANDS = tuple(
+    COMMANDS_BY_NAME[name]._replace(name=f"{name}, beside monitor --hold", is_client=True)
     for name in ("upload", "upload, Ctrl-C", "start", "live LINE", "stop", "doctor --yes")
 )
-ON_ESP32 = tuple(
+ESP32_COMMANDS = tuple(
     words._replace(name=f"{words.name}, ESP32", robot=("--robot", ESP32))
     for words in (
-        *(BY_NAME[name] for name in ("upload", "upload, long", "upload, Ctrl-C", "live LINE")),
+        *(
+            COMMANDS_BY_NAME[name]
+            for name in ("upload", "upload, long", "upload, Ctrl-C", "live LINE")
+        ),
         Words("live LONG LINE", ("live", "; ".join(f"SHOW(TIME * 1.234 + {k})" for k in range(6)))),
-        *(BY_NAME[name] for name in ("stop", "doctor --yes", "set name")),
+        *(COMMANDS_BY_NAME[name] for name in ("stop", "doctor --yes", "set name")),
     )
 )
-ALL_COMMANDS = (*COMMANDS, *CLIENTS, *ON_ESP32)
+ALL_COMMANDS = (*COMMANDS, *CLIENT_COMMANDS, *ESP32_COMMANDS)
 
 
 class TriedCommand(NamedTuple):
@@ -120,7 +123,7 @@ def with_program() -> bytes:
         for name, value in own_folders(folder).items():
             patch.setenv(name, value)
         with PtyRobot(KIT) as robot:
-            on(robot, "upload", "-e", SHORT).gives(0, out="Saved.")
+            on(robot, "upload", "-e", SHORT_PROGRAM).gives(0, out="Saved.")
             robot.switch_off()
             return robot._memory
 
@@ -143,7 +146,7 @@ def try_command(words: Words, fault: Fault, seed: int) -> TriedCommand:
         wrong = [] if has_ended else ["it has no end"]
         if not has_ended:
             teller.process.kill()
-            teller.wait(ENDS_S)
+            teller.wait(LONGEST_END_S)
         wrong += _contradictions(teller, line, words)
         if fault.has_end or not fault.pulls:
             wrong += _next_try(line, env, words)
@@ -164,7 +167,7 @@ def _holder(line: BehindBadLine, env: dict[str, str], stack: ExitStack) -> Telle
     """Start `tsc monitor --hold` on the port, which meets its robot before the fault."""
     holder = Teller(["monitor", "--hold", "--port", line.port], env)
     stack.callback(holder.end)
-    end_s = CLOCK.now_s + ENDS_S
+    end_s = CLOCK.now_s + LONGEST_END_S
     while not holder.has_said("Ctrl-C"):
         assert CLOCK.now_s < end_s, holder.text
         CLOCK.wait(0.05)
@@ -179,7 +182,9 @@ def _play(
     """
     fault = line.fault
     is_slow = fault.rate or fault.lost or fault.late_ms
-    limit_s = (SLOW_ENDS_S if is_slow else ENDS_S + fault.held_ms % 10**9 / 1000) + words.takes_s
+    limit_s = (
+        LONGEST_SLOW_END_S if is_slow else LONGEST_END_S + fault.held_ms % 10**9 / 1000
+    ) + words.takes_s
     end_s = CLOCK.now_s + limit_s
     leaves_s = chance.choice((1.0, 6.0, 15.0)) if words.stays else limit_s
     has_begun = teller.has_socket if words.is_client else lambda: line.is_used
@@ -198,7 +203,7 @@ def _play(
         slept_teller.process.send_signal(signal.SIGCONT)
     if words.stays and not teller.wait(leaves_s):
         teller.interrupt()
-        return teller.wait(STOPS_S + 2 * fault.late_ms / 1000 + (30 if fault.rate else 0))
+        return teller.wait(LONGEST_STOP_S + 2 * fault.late_ms / 1000 + (30 if fault.rate else 0))
     return teller.wait(max(0.1, end_s - CLOCK.now_s))
 
 
@@ -208,8 +213,8 @@ def _contradictions(teller: Teller, line: BehindBadLine, words: Words) -> list[s
     contradictions = [f"said twice: {sentence}" for sentence in teller.repeated_lines()]
     if "Traceback" in teller.text:
         contradictions.append("a traceback")
-    is_confirmed = any(map(CONFIRMED.search, lines))
-    is_unconfirmed = any(map(UNCONFIRMED.search, lines))
+    is_confirmed = any(map(CONFIRMED_STOP.search, lines))
+    is_unconfirmed = any(map(UNCONFIRMED_STOP.search, lines))
     if is_confirmed and is_unconfirmed:
         contradictions.append("a stop is both")
     if code and not lines:
@@ -220,7 +225,7 @@ def _contradictions(teller: Teller, line: BehindBadLine, words: Words) -> list[s
     if fault.pulls:
         return contradictions
     if not words.name.startswith("upload --detach"):
-        CLOCK.wait(0 if is_confirmed or not line.moves else DRIVES_ON_S)
+        CLOCK.wait(0 if is_confirmed or not line.moves else DEAD_MAN_S)
         if line.moves:
             contradictions.append("it moves")
     return contradictions
@@ -229,14 +234,14 @@ def _contradictions(teller: Teller, line: BehindBadLine, words: Words) -> list[s
 def _next_try(line: BehindBadLine, env: dict[str, str], words: Words) -> list[str]:
     line.mend()
     CLOCK.wait(0.2)
-    teller = Teller(["upload", "-e", SHORT, *words.robot, "--port", line.port], env)
-    teller.wait(ENDS_S)
+    teller = Teller(["upload", "-e", SHORT_PROGRAM, *words.robot, "--port", line.port], env)
+    teller.wait(LONGEST_END_S)
     code = teller.end()
     return [] if code == 0 else [f"the next try: {code}, {teller.shown_lines}"]
 
 
-def list_faults(command: TriedCommand, room_s: float = ROOM_S) -> list[str]:
-    silent = command.silence_s > SILENT_S + room_s
+def list_faults(command: TriedCommand, room_s: float = TOLERANCE_S) -> list[str]:
+    silent = command.silence_s > LONGEST_SILENCE_S + room_s
     return [*command.wrong, *([f"silent for {command.silence_s:.1f} s"] if silent else [])]
 
 
@@ -279,10 +284,10 @@ def test_a_sample_of_commands_keeps_the_laws_behind_bad_lines(
     from tests.support import sampling
 
     seed = Random(sampling.seed(request.config)).randrange(10**6)
-    commands = all_tried(draw_cases(SAMPLE, seed, is_whole=False))
+    commands = all_tried(draw_cases(SAMPLE_SIZE, seed, is_whole=False))
     wrong = {
         f"{tried_command.name}, {tried_command.fault}": (
-            list_faults(tried_command, ROOM_CI_S),
+            list_faults(tried_command, TOLERANCE_IN_CI_S),
             tried_command.output,
         )
         for tried_command in commands
@@ -309,34 +314,37 @@ def test_a_second_ctrl_c_ends_the_wait_and_is_no_second_word(
         teller.interrupt()
         CLOCK.wait(after_s)
         teller.interrupt()
-        assert teller.wait(STOPS_S)
+        assert teller.wait(LONGEST_STOP_S)
         outcomes = [
             line
             for line in teller.shown_lines
-            if CONFIRMED.search(line) or UNCONFIRMED.search(line)
+            if CONFIRMED_STOP.search(line) or UNCONFIRMED_STOP.search(line)
         ]
         assert len(outcomes) == 1 and not teller.repeated_lines(), teller.text
         line.until(lambda: not line.moves, "it stands")
 
 
-SAMPLE = 6
-ROOM_CI_S = 2.0  # processes start slowly when others run
+SAMPLE_SIZE = 6
+TOLERANCE_IN_CI_S = 2.0  # processes start slowly when others run
 
 
 if __name__ == "__main__":
     options = make_options(100, 1, "whole", "clients", "esp32")
-    among = CLIENTS if options.clients else ON_ESP32 if options.esp32 else ALL_COMMANDS
+    candidates = (
+        CLIENT_COMMANDS if options.clients else ESP32_COMMANDS if options.esp32 else ALL_COMMANDS
+    )
     began_s = CLOCK.now_s
-    commands = all_tried(draw_cases(options.count, options.seed, options.whole, among))
+    commands = all_tried(draw_cases(options.count, options.seed, options.whole, candidates))
     print_table(commands)
-    wrong = [(tried_command, list_faults(tried_command)) for tried_command in commands]
-    for tried_command, why in wrong:
-        if why:
+    faults_by_command = [(tried_command, list_faults(tried_command)) for tried_command in commands]
+    for tried_command, reasons in faults_by_command:
+        if reasons:
             print(
-                f"\n{tried_command.name}, {tried_command.fault}: {'; '.join(why)}\n"
+                f"\n{tried_command.name}, {tried_command.fault}: {'; '.join(reasons)}\n"
                 f"{tried_command.output}"
             )
-    times = os.times()
-    print(f"\n{len(commands)} tried, {sum(bool(why) for _, why in wrong)} wrong; "
-          f"{CLOCK.now_s - began_s:.0f} s, {sum(times[:4]):.0f} s of a processor")  # fmt: skip
-    sys.exit(any(why for _, why in wrong))
+    process_times = os.times()
+    print(f"\n{len(commands)} tried, {sum(bool(why) for _, why in faults_by_command)} wrong; "
+          f"{CLOCK.now_s - began_s:.0f} s, "
+          f"{sum(process_times[:4]):.0f} s of a processor")  # fmt: skip
+    sys.exit(any(why for _, why in faults_by_command))

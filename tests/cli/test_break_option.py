@@ -27,11 +27,11 @@ ENDIF
 N = N + 4.5
 SHOW(N)
 """
-KEYS = "  s: step   g: continue   Ctrl-C: stop"
-BEFORE_4 = ["Halted before line 4: F(0.1, 80)", "  N = 1, FAR = TRUE"]
-BEFORE_6 = ["Halted before line 6: N = N + 4.5", "  N = 1, FAR = TRUE"]
-BEFORE_7 = ["Halted before line 7: SHOW(N)", "  N = 5.5, FAR = TRUE"]
-END = ["N 5.5", "Done."]
+KEYS_LINE = "  s: step   g: continue   Ctrl-C: stop"
+HALT_BEFORE_4 = ["Halted before line 4: F(0.1, 80)", "  N = 1, FAR = TRUE"]
+HALT_BEFORE_6 = ["Halted before line 6: N = N + 4.5", "  N = 1, FAR = TRUE"]
+HALT_BEFORE_7 = ["Halted before line 7: SHOW(N)", "  N = 5.5, FAR = TRUE"]
+END_LINES = ["N 5.5", "Done."]
 TASKS = """SI|TASK; W(0.5); END_TASK
 TASK; F(0.5, 50); END_TASK
 TASK; W(0.05); B(0.5, 60); END_TASK
@@ -68,7 +68,7 @@ def test_without_a_terminal_it_tells_each_halt_and_goes_on(
     result = on(pty_robot, "upload", program, "--no-save", "--break", "7", "--break", "4").gives(
         0, ""
     )
-    assert result.out.splitlines()[1:] == [*BEFORE_4, *BEFORE_7, *END]
+    assert result.out.splitlines()[1:] == [*HALT_BEFORE_4, *HALT_BEFORE_7, *END_LINES]
     assert pty_robot.actions[-1] == "FINISHED"
 
 
@@ -90,7 +90,7 @@ def test_a_line_without_an_instruction_halts_before_the_next_one(
     pty_robot: PtyRobot, program: Path
 ) -> None:
     result = on(pty_robot, "upload", program, "--no-save", "--break", "5").gives(0)
-    assert result.out.splitlines()[1:] == [*BEFORE_6, *END]
+    assert result.out.splitlines()[1:] == [*HALT_BEFORE_6, *END_LINES]
 
 
 def test_it_tells_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
@@ -122,10 +122,18 @@ def test_a_key_steps_one_instruction_of_the_text(
     keys: str, pty_robot: PtyRobot, program: Path
 ) -> None:
     terminal = at_a_terminal(pty_robot, program, 4)
-    for halted_text, *_ in (BEFORE_4, BEFORE_6, BEFORE_7):
+    for halted_text, *_ in (HALT_BEFORE_4, HALT_BEFORE_6, HALT_BEFORE_7):
         terminal.until(rf"(?s){halted_text.split(':')[0]}.*Ctrl-C: stop\n*$")
         terminal.type(keys)
-    assert halt_output(terminal) == [*BEFORE_4, KEYS, *BEFORE_6, KEYS, *BEFORE_7, KEYS, *END]
+    assert halt_output(terminal) == [
+        *HALT_BEFORE_4,
+        KEYS_LINE,
+        *HALT_BEFORE_6,
+        KEYS_LINE,
+        *HALT_BEFORE_7,
+        KEYS_LINE,
+        *END_LINES,
+    ]
     assert pty_robot.actions == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
@@ -135,7 +143,13 @@ def test_a_key_goes_on_to_the_next_place(key: str, pty_robot: PtyRobot, program:
     for line in (4, 7):
         terminal.until(rf"(?s)before line {line}.*Ctrl-C: stop\n*$")
         terminal.type(key)
-    assert halt_output(terminal) == [*BEFORE_4, KEYS, *BEFORE_7, KEYS, *END]
+    assert halt_output(terminal) == [
+        *HALT_BEFORE_4,
+        KEYS_LINE,
+        *HALT_BEFORE_7,
+        KEYS_LINE,
+        *END_LINES,
+    ]
 
 
 def test_a_key_counts_once_and_others_do_nothing(pty_robot: PtyRobot, program: Path) -> None:
@@ -145,7 +159,13 @@ def test_a_key_counts_once_and_others_do_nothing(pty_robot: PtyRobot, program: P
     terminal.type("x?ssg")
     terminal.until(r"(?s)before line 6.*Ctrl-C: stop\n*$")
     terminal.type("1g")
-    assert halt_output(terminal) == [*BEFORE_4, KEYS, *BEFORE_6, KEYS, *END]
+    assert halt_output(terminal) == [
+        *HALT_BEFORE_4,
+        KEYS_LINE,
+        *HALT_BEFORE_6,
+        KEYS_LINE,
+        *END_LINES,
+    ]
 
 
 def test_a_loop_is_stepped_one_instruction_at_a_time(pty_robot: PtyRobot, tmp_path: Path) -> None:
@@ -198,7 +218,7 @@ def test_an_image_whose_text_nobody_knows_has_no_lines(
     image = tmp_path / "drive.bin"
     tsc("compile", program, "-o", image).gives(0)
     result = on(pty_robot, "upload", image, "--no-save", "--break", "7").gives(0)
-    assert result.out.splitlines()[1:] == [*BEFORE_7, *END], "its map is in the cache"
+    assert result.out.splitlines()[1:] == [*HALT_BEFORE_7, *END_LINES], "its map is in the cache"
     monkeypatch.setattr("tiniscript.library.source_map.recall", lambda checksum: None)
     on(pty_robot, "upload", image, "--break", "7").gives(2, "an image has no lines")
 

@@ -19,7 +19,7 @@ import pytest
 from tests.support.command import FOREVER, PROGRAM, TSC, Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.robot_fleet import RobotFleet
-from tests.support.waiting import HANGS_S, until
+from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript import robots
 from tiniscript.cli import EXIT_OF_CLOSED_PIPE, streams
 from tiniscript.cli.robot import connect, fleet
@@ -41,7 +41,7 @@ def after_lines(count: int, *words: str, both: bool = False) -> tuple[int, str]:
             assert running.stdout.readline()
         running.stdout.close()
         err_text = running.stderr.read().decode() if running.stderr else ""
-        return running.wait(HANGS_S), err_text
+        return running.wait(HANG_LIMIT_S), err_text
 
 
 @pytest.mark.parametrize(("lines", "extra"), [(0, []), (1, ["--json"]), (3, [])])
@@ -79,9 +79,9 @@ def test_a_slow_reader_and_a_file_are_none_that_has_gone(
 ) -> None:
     words = ["upload", "-e", "SI|F(1, 80)", "--port", pty_robot.port]
     with (tmp_path / "said").open("wb") as file:
-        assert subprocess.run([*TSC, *words], stdout=file, timeout=HANGS_S).returncode == 0
+        assert subprocess.run([*TSC, *words], stdout=file, timeout=HANG_LIMIT_S).returncode == 0
     with subprocess.Popen([*TSC, *words], stdout=subprocess.PIPE) as running:
-        assert running.wait(HANGS_S) == 0
+        assert running.wait(HANG_LIMIT_S) == 0
         assert running.stdout and b"Done." in running.stdout.read()
 
 
@@ -161,7 +161,8 @@ def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
         pytest.skip("this system has no full device")
     with Path("/dev/full").open("wb") as full:
         completed = subprocess.run([*TSC, "upload", "-e", SHOWS, "--port", pty_robot.port],
-                              stdout=full, stderr=subprocess.PIPE, timeout=HANGS_S)  # fmt: skip
+                                   stdout=full, stderr=subprocess.PIPE,
+                                   timeout=HANG_LIMIT_S)  # fmt: skip
     assert completed.returncode == 2
     err = completed.stderr.decode()
     assert "stopped the robot" in err and "cannot write the output" in err
@@ -179,7 +180,7 @@ def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
     os.close(ours)
     try:
         completed = subprocess.run([*TSC, *words], stdin=subprocess.DEVNULL, stdout=theirs,
-                              stderr=theirs, timeout=HANGS_S)  # fmt: skip
+                              stderr=theirs, timeout=HANG_LIMIT_S)  # fmt: skip
     finally:
         os.close(theirs)
     assert completed.returncode == EXIT_OF_CLOSED_PIPE
@@ -261,7 +262,7 @@ def test_a_fleet_whose_output_nobody_reads_ends_with_ctrl_c(extra: list[str]) ->
         command = unread("upload", "-e", TALKS, *port_options, *extra)
         assert any(pupil.moves for pupil in room.pupils)
         command.signal(signal.SIGINT)
-        assert command.process.wait(HANGS_S) == 2
+        assert command.process.wait(HANG_LIMIT_S) == 2
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
         assert all(bytes(STOP_ZEROS) in pupil.heard for pupil in room.pupils)
         result = command.wait_for_result()
@@ -278,7 +279,7 @@ def test_a_command_whose_output_nobody_reads_ends_with_ctrl_c(
         assert on(pty_robot, "upload", "-e", TALKS, "--detach").code == 0
     command = unread(verb, *port_option, *(("-e", TALKS) if verb == "upload" else ()))
     command.signal(signal.SIGINT)
-    assert command.process.wait(HANGS_S) in (0, 2)
+    assert command.process.wait(HANG_LIMIT_S) in (0, 2)
     if verb == "upload":
         pty_robot.until(lambda: not pty_robot.moves, "it stands")
     assert "Traceback" not in command.wait_for_result().err

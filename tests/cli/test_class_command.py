@@ -33,7 +33,7 @@ from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto
 from tests.support.pty_robot import on
 from tests.support.rows import each_row
-from tests.support.waiting import HANGS_S, until
+from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.options import Options
 from tiniscript.cli.robot import classroom, robot_broker
@@ -340,7 +340,7 @@ def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
     stranger = broker.connect_client()
     for robot, data in (("00000001", b"+\x1b[2Jtsc: ok\n"), ("00000002", b"-\x9b2J\r")):
         stranger._client.publish(f"{ROOT}/class/{robot}", data, retain=True)
-    stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)
+    stranger._client.publish("last", b"", qos=1).wait_for_publish(HANG_LIMIT_S)
     result = process("class", *broker_option).gives(3)
     assert not set(result.out + result.err) & set("\x1b\x9b\r")
     assert "is no longer connected to the broker: it is" in result.out
@@ -387,7 +387,7 @@ def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
 
 def keep(client: Broker, topic: str, payload: bytes) -> None:
     """Make a broker retain a message."""
-    client._client.publish(topic, payload, qos=1, retain=True).wait_for_publish(HANGS_S)
+    client._client.publish(topic, payload, qos=1, retain=True).wait_for_publish(HANG_LIMIT_S)
     client.close()
 
 

@@ -24,12 +24,12 @@ OBSTACLES = (
     "SI|START;LOOP(FOREVER);F(1, 80) UNTIL(DISTANCE < 10);IF(DISTANCE < 10);STOP;R(1, 60);"
     "ENDIF;END_LOOP"
 )
-SEEN = ["--sensor", "DISTANCE=50,9,50,30,8,50", "--max-time", "4"]
+SENSOR_OPTIONS = ["--sensor", "DISTANCE=50,9,50,30,8,50", "--max-time", "4"]
 GRABBER = (
     "SI|LED(TRUE);GRIPPER(90);M(50, 80);W(1);TEMPERATURE;BUTTON;SHOW(1.5);SHOW(BUTTON);"
     "BEEP(5, 440);B(0.5, 30)"
 )
-HIDE, REVEAL = b"\x1b[?25l", b"\x1b[?25h"
+HIDE_CURSOR, SHOW_CURSOR = b"\x1b[?25l", b"\x1b[?25h"
 
 
 def run_to_end(
@@ -66,13 +66,13 @@ def picture(lines: list[str]) -> list[str]:
 def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) -> None:
     """The picture shows the path in color, and the values next to it or below; the cursor
     reappears."""
-    terminal = run_to_end("-e", OBSTACLES, *SEEN, "--pace", pace, size=size)
+    terminal = run_to_end("-e", OBSTACLES, *SENSOR_OPTIONS, "--pace", pace, size=size)
     written_bytes, lines = terminal.written, terminal.whole()
     if pace != "0":  # in that case the picture is drawn once
-        assert written_bytes.count(HIDE) == 1 and written_bytes.rindex(
-            REVEAL
-        ) > written_bytes.rindex(HIDE)
-    trace = plain("-e", OBSTACLES, *SEEN).splitlines()
+        assert written_bytes.count(HIDE_CURSOR) == 1 and written_bytes.rindex(
+            SHOW_CURSOR
+        ) > written_bytes.rindex(HIDE_CURSOR)
+    trace = plain("-e", OBSTACLES, *SENSOR_OPTIONS).splitlines()
     top = next(k for k in range(len(lines)) if lines[k].startswith("0 "))
     assert lines[top : top + len(trace)] == trace
     drawn = picture(lines)
@@ -89,8 +89,8 @@ def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) ->
 
 def test_a_file_gets_the_trace_byte_for_byte(tmp_path: Path) -> None:
     file = tmp_path / "trace"
-    terminal = run_to_end("-e", OBSTACLES, *SEEN, "--pace", "20", output=file)
-    assert file.read_bytes() == plain("-e", OBSTACLES, *SEEN).encode()
+    terminal = run_to_end("-e", OBSTACLES, *SENSOR_OPTIONS, "--pace", "20", output=file)
+    assert file.read_bytes() == plain("-e", OBSTACLES, *SENSOR_OPTIONS).encode()
     assert b"MOTORS" not in terminal.written
     assert picture(terminal.whole())[0].startswith("── TiniBot")
 
@@ -109,7 +109,7 @@ def test_actuators_shown_values_and_yes_no_are_drawn() -> None:
 
 def test_a_terminal_without_color_or_braille_gets_plain_signs_in_its_language() -> None:
     env = {"PYTHONIOENCODING": "latin-1", "NO_COLOR": "1"}
-    terminal = run_to_end("-e", OBSTACLES, *SEEN, "--pace", "10", "--lang", "es", env=env)
+    terminal = run_to_end("-e", OBSTACLES, *SENSOR_OPTIONS, "--pace", "10", "--lang", "es", env=env)
     output = terminal.written.decode("latin-1")
     assert "[36m" not in output and "\\u28" not in output and "*" in output
     assert "en el límite" in output and "sensor de distancia" in output
@@ -123,8 +123,8 @@ def test_a_fault_is_in_the_picture_and_explained_below_it() -> None:
 
 
 def test_without_a_terminal_there_is_no_picture() -> None:
-    result = inside("run", "-e", OBSTACLES, *SEEN, "--show")
-    assert (result.code, result.out) == (0, plain("-e", OBSTACLES, *SEEN))
+    result = inside("run", "-e", OBSTACLES, *SENSOR_OPTIONS, "--show")
+    assert (result.code, result.out) == (0, plain("-e", OBSTACLES, *SENSOR_OPTIONS))
     assert "TiniBot" not in result.err
 
 
@@ -139,7 +139,7 @@ def test_ctrl_c_leaves_a_clean_terminal(to_a_file: bool, tmp_path: Path) -> None
     terminal.until("↑")
     terminal.interrupt()
     assert terminal.end() == 2
-    assert terminal.written.rindex(REVEAL) > terminal.written.rindex(HIDE)
+    assert terminal.written.rindex(SHOW_CURSOR) > terminal.written.rindex(HIDE_CURSOR)
     lines = terminal.whole()
     assert lines[-lines[::-1].index("Stopped.") - 1 :].count("Stopped.") == 1
     assert not any("Traceback" in line for line in lines)

@@ -22,10 +22,10 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.support.command import TSC, CommandResult, Tsc
 from tests.support.copies import link_copy
-from tests.support.flashed_boards import ENDS, copy_package
+from tests.support.flashed_boards import CHILD_ENDS, copy_package
 from tests.support.needs import need
 from tests.support.terminal import Terminal
-from tests.support.waiting import HANGS_S, has_ended, until
+from tests.support.waiting import HANG_LIMIT_S, has_ended, until
 from tiniscript.base.files import cache_folder
 from tiniscript.cli import fetching, page_build
 from tiniscript.cli.errors import CommandError
@@ -147,7 +147,8 @@ class Clone:
     def run_without_terminal(self, command: list[str]) -> CommandResult:
         """Return the result of a command without a terminal."""
         completed = subprocess.run(command, env=self.variables(), capture_output=True,
-                              stdin=subprocess.DEVNULL, text=True, timeout=HANGS_S)  # fmt: skip
+                                   stdin=subprocess.DEVNULL, text=True,
+                                   timeout=HANG_LIMIT_S)  # fmt: skip
         return CommandResult(completed.returncode, completed.stdout, completed.stderr)
 
 
@@ -421,7 +422,7 @@ def test_what_must_not_end_in_the_middle_is_waited_for(
     assert (tmp_path / "whole").exists() == (expected == fetching.INSTALLING_MESSAGE)
 
 
-@pytest.mark.parametrize("end", [*ENDS, None])
+@pytest.mark.parametrize("end", [*CHILD_ENDS, None])
 def test_what_does_not_end_well_has_not_done_it(tmp_path: Path, end: str | None) -> None:
     """The same holds for a process killed by the system, without an exit code."""
     code = f"import os, signal, sys; print('Compiling a', flush=True); {end or ''}"

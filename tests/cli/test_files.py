@@ -23,7 +23,7 @@ from tiniscript.cli import outputs
 from tiniscript.library import source_map
 from tiniscript.link.sharing import registry
 
-HERE = Path(files.__file__).parent
+LIBRARY_FOLDER = Path(files.__file__).parent
 
 
 def test_the_folders_are_where_platformdirs_has_them(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -208,7 +208,7 @@ def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
 
 
 def test_one_place_replaces_files() -> None:
-    for path in HERE.rglob("*.py"):
+    for path in LIBRARY_FOLDER.rglob("*.py"):
         text = path.read_text(encoding="utf-8")
         # One builds in a folder of its own, the other has its files in the memory of a browser.
         if path.name not in ("files.py", "building.py", "worker.py"):

@@ -17,7 +17,7 @@ import pytest
 
 from tests.support.command import inside
 from tests.support.robot_fleet import RobotFleet, known_fleet
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript import robots
 from tiniscript.cli import streams
 from tiniscript.cli.robot import fleet as fleet_of
@@ -47,7 +47,7 @@ class Room:
     def at(self, stage: int, port: str) -> None:
         if self.stages[port] == stage and not self.pressed.is_set():
             self.waiting_ports.add(port)
-            assert self.pressed.wait(HANGS_S), "nobody presses Ctrl-C"
+            assert self.pressed.wait(HANG_LIMIT_S), "nobody presses Ctrl-C"
 
     def may_press(self) -> bool:
         return all(

@@ -13,11 +13,11 @@ import pytest
 from tests.support.command import TSC, Tsc, inside
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.rows import each_row
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.cli.paths import is_foreign
 
 PROGRAM = "SI|F(0.1, 50)"
-FOREIGN = (
+FOREIGN_CONTENTS = (
     b"a letter", b"\0", b"TS", b"TSV\tfile", b"\x89PNG\r\n\x1a\n a photo", b"\xff\xd8\xff\xe0 JPEG",
     b"// by hand", b"{}", b'{"version": "1"}', b"ms;event;value\n", b"<!DOCTYPE html><p>mine</p>",
     b"F(1,2)~1234567", b"a\nF(1,2)~12345678\n",
@@ -25,7 +25,7 @@ FOREIGN = (
     "\ufefffile,verdict,seed,sentence,mark\r\n".encode(),
     "\ufefffile,mistakes,warnings,repaired,line,code,message;\n".encode(),
 )  # fmt: skip
-WRITERS = [
+WRITING_COMMANDS = [
     (("compile", "-e", PROGRAM, "-o"), "-o"),
     (("compile", "-e", PROGRAM, "--text", "-o"), "-o"),
     (("compile", "-e", PROGRAM, "-o", "a.bin", "--map"), "--map"),
@@ -35,7 +35,7 @@ WRITERS = [
 ]
 
 
-@pytest.mark.parametrize(("words", "option"), WRITERS, ids=lambda value: str(value))
+@pytest.mark.parametrize(("words", "option"), WRITING_COMMANDS, ids=lambda value: str(value))
 def test_a_foreign_file_stays_and_an_own_one_is_replaced(
     tsc: Tsc, working_folder: Path, words: tuple[str, ...], option: str
 ) -> None:
@@ -47,7 +47,7 @@ def test_a_foreign_file_stays_and_an_own_one_is_replaced(
     target.write_bytes(b"")
     assert tsc(*words, target).code == 0  # there is nothing to lose
     assert target.read_bytes() == bytes_before
-    for content in FOREIGN:
+    for content in FOREIGN_CONTENTS:
         target.write_bytes(content)
         for lang, expected in (("en", "tsc did not write it."), ("es", "no lo hizo tsc")):
             tsc(*words, target, "--lang", lang).gives(2, expected, option)
@@ -99,7 +99,7 @@ def test_a_pipe_in_a_folder_is_no_file(words: list[str], tmp_path: Path) -> None
         os.mkfifo(tmp_path / name)
     given_words = [word.format(pipe=tmp_path / "pipe", lesson=tmp_path) for word in words]
     completed = subprocess.run(
-        [*TSC, *given_words], capture_output=True, text=True, timeout=HANGS_S
+        [*TSC, *given_words], capture_output=True, text=True, timeout=HANG_LIMIT_S
     )
     assert (
         completed.returncode == 2 and completed.stderr.startswith("tsc: ")
@@ -110,7 +110,7 @@ def test_a_pipe_in_a_folder_is_no_file(words: list[str], tmp_path: Path) -> None
 def test_a_pipe_of_the_shell_is_read() -> None:
     line = f"{sys.executable} -m tiniscript check <(echo 'SI|S')"
     completed = subprocess.run(
-        ["bash", "-c", line], capture_output=True, text=True, timeout=HANGS_S
+        ["bash", "-c", line], capture_output=True, text=True, timeout=HANG_LIMIT_S
     )
     assert (completed.returncode, completed.stderr) == (0, "")
 

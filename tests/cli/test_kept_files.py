@@ -33,8 +33,8 @@ from tiniscript.robots import given
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are made with fork")
 
-FIRST, SECOND, THIRD = 1, 2, 3
-LONG = "x" * 5000  # a disk that is full cuts it in its middle
+FIRST_NUMBER, SECOND_NUMBER, THIRD_NUMBER = 1, 2, 3
+LONG_TEXT = "x" * 5000  # a disk that is full cuts it in its middle
 LINES = 8  # lines at which a commit kills each action; --whole tries all
 
 
@@ -52,7 +52,7 @@ def key_file() -> KeyFile:
 
 
 def add_key(number: int) -> None:
-    key_file().add([RobotKey(number, 0, bytes((number,)) * 16, LONG[:16])])
+    key_file().add([RobotKey(number, 0, bytes((number,)) * 16, LONG_TEXT[:16])])
 
 
 def met_file() -> Path:
@@ -64,7 +64,7 @@ def program(number: int) -> bytes:
 
 
 def found_maps() -> list[int]:
-    numbers = (FIRST, SECOND, THIRD)
+    numbers = (FIRST_NUMBER, SECOND_NUMBER, THIRD_NUMBER)
     return [number for number in numbers if source_map.recall(images.checksum(program(number)))]
 
 
@@ -76,20 +76,20 @@ def output() -> Path:
 def found_output() -> list[int]:
     with suppress(FileNotFoundError):
         data = output().read_bytes()
-        assert data == data[:1] * len(LONG), "it is neither the old one nor the new"
+        assert data == data[:1] * len(LONG_TEXT), "it is neither the old one nor the new"
         return [data[0]]
     return []
 
 
-KEPT = {
+KEPT_FILES = {
     "ports": Kept(
-        lambda number: known_ports.remember(f"/dev/ttyUSB{number}", LONG),
+        lambda number: known_ports.remember(f"/dev/ttyUSB{number}", LONG_TEXT),
         lambda: [int(name[-1]) for name in known_ports.remembered_ports().name_by_port],
         known_ports,
     ),
     "keys": Kept(add_key, lambda: [key.id for key in key_file().all()], keys),
     "robots that were met": Kept(
-        lambda number: met_robots.remember_robot(met_file(), f"{number}{LONG}", number),
+        lambda number: met_robots.remember_robot(met_file(), f"{number}{LONG_TEXT}", number),
         lambda: [*met_robots.read_met_robots(met_file()).id_by_place.values()],
         met_robots,
     ),
@@ -99,23 +99,23 @@ KEPT = {
         met_robots,
     ),
     "profiles": Kept(
-        lambda number: given.remember(f"/{LONG}{number}", number),
+        lambda number: given.remember(f"/{LONG_TEXT}{number}", number),
         lambda: [number for number, _ in given._remembered_profiles()],
         given,
     ),
     "maps": Kept(
-        lambda number: source_map.remember(program(number), SourceMap(LONG, (), ())),
+        lambda number: source_map.remember(program(number), SourceMap(LONG_TEXT, (), ())),
         found_maps,
         source_map,
     ),
     "a program": Kept(
-        lambda number: outputs.write_output(str(output()), bytes((number,)) * len(LONG)),
+        lambda number: outputs.write_output(str(output()), bytes((number,)) * len(LONG_TEXT)),
         found_output,
         outputs,
         is_alone=True,
     ),
 }
-each_kept = pytest.mark.parametrize("name", KEPT)
+each_kept_file = pytest.mark.parametrize("name", KEPT_FILES)
 
 
 @pytest.fixture(autouse=True)
@@ -187,19 +187,19 @@ def fresh(kept_memory: Kept, tmp_path: Path) -> list[int]:
     for folder in tmp_path.iterdir():
         for path in sorted(folder.rglob("*"), reverse=True):
             path.unlink() if path.is_file() else path.rmdir()
-    kept_memory.add(FIRST)
-    assert kept_memory.all() == [FIRST]
-    return [FIRST]
+    kept_memory.add(FIRST_NUMBER)
+    assert kept_memory.all() == [FIRST_NUMBER]
+    return [FIRST_NUMBER]
 
 
 @pytest.mark.sampled("name", keep=3)
-@each_kept
+@each_kept_file
 def test_a_kill_at_any_line_leaves_what_was_kept(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
-    kept_memory = KEPT[name]
+    kept_memory = KEPT_FILES[name]
     fresh(kept_memory, tmp_path)
-    lines = lines_of(kept_memory, SECOND)
+    lines = lines_of(kept_memory, SECOND_NUMBER)
     assert lines > 10
     lines_reached = set()
     for line in some_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
@@ -207,14 +207,16 @@ def test_a_kill_at_any_line_leaves_what_was_kept(
 
         def kill_at_line(line: int = line) -> None:
             at_line(kept_memory, line, lambda: os.kill(os.getpid(), signal.SIGKILL))()
-            kept_memory.add(SECOND)
+            kept_memory.add(SECOND_NUMBER)
 
         assert wait_for_child(fork_child(kill_at_line)) == -signal.SIGKILL, line
         all_after = kept_memory.all()
-        assert sorted(all_after) in (before, with_more(kept_memory, before, SECOND)), line
+        assert sorted(all_after) in (before, with_more(kept_memory, before, SECOND_NUMBER)), line
         lines_reached.add(len(all_after))
-        kept_memory.add(THIRD)
-        assert sorted(kept_memory.all()) == with_more(kept_memory, sorted(all_after), THIRD), line
+        kept_memory.add(THIRD_NUMBER)
+        assert sorted(kept_memory.all()) == with_more(
+            kept_memory, sorted(all_after), THIRD_NUMBER
+        ), line
     assert lines_reached
 
 
@@ -222,33 +224,33 @@ def with_more(kept_memory: Kept, counts_before: list[int], number: int) -> list[
     return [number] if kept_memory.is_alone else [*counts_before, number]
 
 
-@each_kept
+@each_kept_file
 def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_path: Path) -> None:
-    kept_memory = KEPT[name]
+    kept_memory = KEPT_FILES[name]
     for most in (0, 1, 10, 60):
         before = fresh(kept_memory, tmp_path)
 
         def cut(most: int = most) -> None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
             with suppress(BadKeys, CommandError, OSError):
-                kept_memory.add(SECOND)
+                kept_memory.add(SECOND_NUMBER)
 
         assert wait_for_child(fork_child(cut)) == 0
         assert kept_memory.all() == before, most
         assert not [*tmp_path.rglob(f"*{files.NEW_ENDING}")], "nothing is left of what did not fit"
-        kept_memory.add(SECOND)
-        assert sorted(kept_memory.all()) == with_more(kept_memory, before, SECOND), most
+        kept_memory.add(SECOND_NUMBER)
+        assert sorted(kept_memory.all()) == with_more(kept_memory, before, SECOND_NUMBER), most
 
 
 @pytest.mark.sampled("name", keep=2)
-@pytest.mark.parametrize("name", [name for name, kept in KEPT.items() if not kept.is_alone])
+@pytest.mark.parametrize("name", [name for name, kept in KEPT_FILES.items() if not kept.is_alone])
 def test_of_two_at_once_neither_loses_what_the_other_keeps(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     """One is paused at a line; the other one ends meanwhile, or waits for it."""
-    kept_memory = KEPT[name]
+    kept_memory = KEPT_FILES[name]
     fresh(kept_memory, tmp_path)
-    lines = lines_of(kept_memory, SECOND)
+    lines = lines_of(kept_memory, SECOND_NUMBER)
     for line in some_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
         before = fresh(kept_memory, tmp_path)
         arrived, holds = os.pipe(), os.pipe()
@@ -256,11 +258,11 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
 
         def pause_at_line(line: int = line, arrived: Any = arrived, holds: Any = holds) -> None:
             at_line(kept_memory, line, lambda: (os.write(arrived[1], b"1"), os.read(holds[0], 1)))()
-            kept_memory.add(SECOND)
+            kept_memory.add(SECOND_NUMBER)
 
         def other(say: Any = say) -> None:
             vars(files)["sleep"] = lambda _: os.write(say[1], b"w")
-            kept_memory.add(THIRD)
+            kept_memory.add(THIRD_NUMBER)
             os.write(say[1], b"e")
 
         first = fork_child(pause_at_line)
@@ -269,17 +271,17 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
         assert os.read(say[0], 1) in (b"w", b"e")
         os.write(holds[1], b"1")
         assert (wait_for_child(first), wait_for_child(second)) == (0, 0), line
-        assert sorted(kept_memory.all()) == [*before, SECOND, THIRD], line
+        assert sorted(kept_memory.all()) == [*before, SECOND_NUMBER, THIRD_NUMBER], line
         for end in (*arrived, *holds, *say):
             os.close(end)
 
 
-@pytest.mark.parametrize("name", [name for name, kept in KEPT.items() if not kept.is_alone])
+@pytest.mark.parametrize("name", [name for name, kept in KEPT_FILES.items() if not kept.is_alone])
 def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The other one keeps it without the lock, or says that it cannot, or leaves it as it was."""
-    kept_memory = KEPT[name]
+    kept_memory = KEPT_FILES[name]
     before = fresh(kept_memory, tmp_path)
     now_s = 0.0
 
@@ -298,7 +300,10 @@ def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
         for _ in range(2):  # the second pass finds the existing files
             now_s = 0.0
             with suppress(BadKeys, OSError):
-                kept_memory.add(SECOND)
-            assert sorted(kept_memory.all()) in (before, with_more(kept_memory, before, SECOND))
-    kept_memory.add(THIRD)
-    assert THIRD in kept_memory.all()
+                kept_memory.add(SECOND_NUMBER)
+            assert sorted(kept_memory.all()) in (
+                before,
+                with_more(kept_memory, before, SECOND_NUMBER),
+            )
+    kept_memory.add(THIRD_NUMBER)
+    assert THIRD_NUMBER in kept_memory.all()

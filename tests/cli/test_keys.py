@@ -20,8 +20,8 @@ from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, STATUSES
 from tiniscript.link.payloads import EmptyReply, HelloReply
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 
-ONE = RobotKey(0x12345678, KEY_OWNER, bytes(range(16)), "TINI")
-SECRET = ONE.key.hex()
+OWNER_KEY = RobotKey(0x12345678, KEY_OWNER, bytes(range(16)), "TINI")
+SECRET = OWNER_KEY.key.hex()
 
 
 @pytest.fixture
@@ -42,11 +42,13 @@ def test_only_this_person_reads_the_file(key_file: KeyFile) -> None:
     "data",
     [b"", b"{", b"[]", b"null", b'{"tiniscript_keys": 2, "keys": []}', b"\xff\xfe",
      b'{"tiniscript_keys": 1, "keys": [{}]}', b'{"tiniscript_keys": 1, "keys": 3}',
-     encode_keys([ONE]).replace(b"owner", b"boss"),
-     encode_keys([ONE]).replace(SECRET[:2].encode(), b"zz"),
-     encode_keys([ONE._replace(key=bytes(16))]), encode_keys([ONE._replace(key=bytes(3))]),
-     encode_keys([ONE]).replace(b"12345678", b"1234567"), b"[" * 100_000,
-     encode_keys([ONE]).replace(b"12345678", b"-1234567"), encode_keys([ONE] * (MOST_KEYS + 1))],
+     encode_keys([OWNER_KEY]).replace(b"owner", b"boss"),
+     encode_keys([OWNER_KEY]).replace(SECRET[:2].encode(), b"zz"),
+     encode_keys([OWNER_KEY._replace(key=bytes(16))]),
+     encode_keys([OWNER_KEY._replace(key=bytes(3))]),
+     encode_keys([OWNER_KEY]).replace(b"12345678", b"1234567"), b"[" * 100_000,
+     encode_keys([OWNER_KEY]).replace(b"12345678", b"-1234567"),
+     encode_keys([OWNER_KEY] * (MOST_KEYS + 1))],
 )  # fmt: skip
 def test_a_file_that_is_none_is_left_as_it_is(key_file: KeyFile, data: bytes) -> None:
     key_file.path.parent.mkdir()
@@ -56,40 +58,45 @@ def test_a_file_that_is_none_is_left_as_it_is(key_file: KeyFile, data: bytes) ->
     assert SECRET not in repr(exception_info.value)
     assert key_file.keys_of_robot(1) == []
     assert key_file.create_pending_key(1, KEY_OWNER, "A") is None
-    key_file.settle_key(ONE)
-    key_file.drop_key(ONE)
+    key_file.settle_key(OWNER_KEY)
+    key_file.drop_key(OWNER_KEY)
     assert key_file.path.read_bytes() == data
 
 
 def test_what_is_known_of_a_robots_seals_outlives_a_list_that_does_not_say_it(
     key_file: KeyFile,
 ) -> None:
-    key_file.settle_key(ONE._replace(uses_seals=True))
-    key_file.settle_key(ONE._replace(id=7))
+    key_file.settle_key(OWNER_KEY._replace(uses_seals=True))
+    key_file.settle_key(OWNER_KEY._replace(id=7))
     assert [key.uses_seals for key in key_file.keys_of_robot(None)] == [True, False]
-    key_file.add([ONE, ONE._replace(id=7)])
-    assert [key.uses_seals for key in key_file.keys_of_robot(ONE.id)] == [True]
-    assert KeyFile(key_file.path, serves_virtual_robots=True).keys_of_robot(ONE.id) == [ONE]
-    key_file.add([ONE._replace(key=b"\2" * 16)])  # a different key, so nothing is known about it
-    assert [key.uses_seals for key in key_file.keys_of_robot(ONE.id)] == [False]
+    key_file.add([OWNER_KEY, OWNER_KEY._replace(id=7)])
+    assert [key.uses_seals for key in key_file.keys_of_robot(OWNER_KEY.id)] == [True]
+    assert KeyFile(key_file.path, serves_virtual_robots=True).keys_of_robot(OWNER_KEY.id) == [
+        OWNER_KEY
+    ]
+    # a different key, so nothing is known about it
+    key_file.add([OWNER_KEY._replace(key=b"\2" * 16)])
+    assert [key.uses_seals for key in key_file.keys_of_robot(OWNER_KEY.id)] == [False]
 
 
 def test_the_keys_of_one_robot_are_forgotten(tsc: Tsc) -> None:
     ring = KeyFile()
-    teacher = ONE._replace(which=KEY_TEACHER)
-    ring.add([ONE, teacher, ONE._replace(id=7, name="A"), ONE._replace(id=8, name="A")])
+    teacher = OWNER_KEY._replace(which=KEY_TEACHER)
+    ring.add(
+        [OWNER_KEY, teacher, OWNER_KEY._replace(id=7, name="A"), OWNER_KEY._replace(id=8, name="A")]
+    )
     for robot in ("tini", "A", "", "00000009"):  # two are called A
         assert tsc("set", "owner", "--forget", robot).code == 2
         assert len(ring.all()) == 4
     for robot in ("TINI", "12345678"):
-        ring.add([ONE, teacher])
+        ring.add([OWNER_KEY, teacher])
         tsc("set", "owner", "--forget", robot).gives(0, out=robot)
         assert {key.id for key in ring.all()} == {7, 8}
     assert tsc("set", "owner", "--forget", "12345678").code == 2
     assert tsc("set", "owner", "--forget", "7", "--export", "f").code == 2
 
 
-CLAIMS = """
+CLAIM_CODE = """
 import sys
 from pathlib import Path
 from tiniscript.base import files
@@ -106,7 +113,9 @@ for robot in range(first, first + 25):
 
 def test_many_claims_at_once_lose_no_key(key_file: KeyFile) -> None:
     """Each is a process of its own, as each `tsc set owner` is."""
-    commands = [[sys.executable, "-c", CLAIMS, str(key_file.path), str(100 * k)] for k in range(4)]
+    commands = [
+        [sys.executable, "-c", CLAIM_CODE, str(key_file.path), str(100 * k)] for k in range(4)
+    ]
     running = [subprocess.Popen(command) for command in commands]
     assert [process.wait() for process in running] == [0] * 4
     robot_keys = key_file.all()
@@ -120,24 +129,24 @@ def test_many_claims_at_once_lose_no_key(key_file: KeyFile) -> None:
 def test_a_command_that_stands_still_keeps_no_other_one_waiting_for_ever(
     key_file: KeyFile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    key_file.add([ONE])
+    key_file.add([OWNER_KEY])
     monkeypatch.setattr(files, "LOCK_WAIT_S", 0.1)
     with files.lock_file(key_file.path):
         assert key_file.create_pending_key(1, KEY_OWNER, "A") is None
         with pytest.raises(BadKeys):
-            key_file.add([ONE._replace(id=2)])
-        key_file.drop_key(ONE)
-        assert key_file.all() == [ONE]
+            key_file.add([OWNER_KEY._replace(id=2)])
+        key_file.drop_key(OWNER_KEY)
+        assert key_file.all() == [OWNER_KEY]
     assert key_file.create_pending_key(1, KEY_OWNER, "A")
 
 
 def test_no_text_of_a_key_has_its_bytes() -> None:
-    assert SECRET not in repr(ONE) + str(ONE) + f"{[ONE]}"
+    assert SECRET not in repr(OWNER_KEY) + str(OWNER_KEY) + f"{[OWNER_KEY]}"
 
 
 def test_the_command_lists_names_and_no_key(tsc: Tsc) -> None:
     assert "tsc set owner" in tsc("set", "owner", "--list").out
-    KeyFile().add([ONE, ONE._replace(which=KEY_TEACHER, key=b"\1" * 16)])
+    KeyFile().add([OWNER_KEY, OWNER_KEY._replace(which=KEY_TEACHER, key=b"\1" * 16)])
     for language, word in (("en", "teacher"), ("es", "docente")):
         listed_result = tsc("set", "owner", "--list", "--lang", language).gives(
             0, out=(word, "12345678", "TINI")
@@ -152,7 +161,7 @@ def test_a_class_list_goes_out_and_in(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "one"))
-    KeyFile().add([ONE])
+    KeyFile().add([OWNER_KEY])
     KeyFile().create_pending_key(7, KEY_OWNER, "not confirmed")
     listed_path = tmp_path / "class.json"
     output = tsc("set", "owner", "--export", str(listed_path)).out
@@ -166,7 +175,7 @@ def test_a_class_list_goes_out_and_in(
         "class.json: 1. New here, or changed: 1."
         in tsc("set", "owner", "--import", str(listed_path)).out
     )
-    assert KeyFile().all() == [ONE]
+    assert KeyFile().all() == [OWNER_KEY]
     listed_path.write_text("nothing")
     tsc("set", "owner", "--import", str(listed_path)).gives(2, "--export")
     assert tsc("set", "owner", "--import", str(tmp_path / "none")).code == 2
@@ -178,22 +187,22 @@ def test_a_class_list_goes_out_and_in(
 def test_keys_that_do_not_fit_leave_those_that_are_there(tsc: Tsc, tmp_path: Path) -> None:
     """The keys of a stranger would remove a person's own robots."""
     key_file, many = KeyFile(), tmp_path / "many.json"
-    key_file.add([ONE])
+    key_file.add([OWNER_KEY])
     others = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST_KEYS)]
     many.write_bytes(encode_keys(others))
     for language, words in (("en", "2000 keys"), ("es", "2000 llaves")):
         tsc("set", "owner", "--import", str(many), "--lang", language).gives(2, words, out="")
-    assert key_file.all() == [ONE]
+    assert key_file.all() == [OWNER_KEY]
     assert key_file.add(others[1:]) == MOST_KEYS - 1
     assert key_file.create_pending_key(5_000, KEY_OWNER, "A") is None, (
         "no key is dropped for a new one"
     )
-    assert ONE in key_file.all() and len(key_file.all()) == MOST_KEYS
+    assert OWNER_KEY in key_file.all() and len(key_file.all()) == MOST_KEYS
 
 
 def test_a_broken_file_and_one_that_others_may_read_are_told(tsc: Tsc) -> None:
     path = KeyFile().path
-    KeyFile().add([ONE])
+    KeyFile().add([OWNER_KEY])
     path.chmod(0o644)
     assert "chmod 600" in tsc("set", "owner", "--list").err
     path.write_text("broken")
@@ -205,12 +214,12 @@ def test_claims_that_were_left_leave_few_keys() -> None:
     """Each key that is shown takes time: of pending ones the last two are kept, of each kind."""
     key_file = KeyFile()
     for _ in range(6):
-        key_file.create_pending_key(ONE.id, ONE.which, "TINI")
-        last = key_file.create_pending_key(ONE.id, 1 - ONE.which, "TINI")
+        key_file.create_pending_key(OWNER_KEY.id, OWNER_KEY.which, "TINI")
+        last = key_file.create_pending_key(OWNER_KEY.id, 1 - OWNER_KEY.which, "TINI")
     other = key_file.create_pending_key(7, 0, "")
     assert last and other
     key_file.mark_stale(last)
-    robot_keys = key_file.keys_of_robot(ONE.id)
+    robot_keys = key_file.keys_of_robot(OWNER_KEY.id)
     assert sorted(key.which for key in robot_keys) == [0, 0, 1, 1]
     assert robot_keys[-1] == last._replace(is_stale=True) and key_file.keys_of_robot(7) == [other]
 
@@ -220,34 +229,34 @@ def test_claims_that_were_left_leave_few_keys() -> None:
 def test_what_a_robot_gives_up_is_one_key_of_it(key_file: KeyFile, which: int, status: int) -> None:
     """The other one it still has, and so has this computer; a refused one stays."""
     ring = [
-        ONE._replace(id=robot, which=kind, key=bytes([robot % 256, kind] * 8))
-        for robot in (ONE.id, 7)
+        OWNER_KEY._replace(id=robot, which=kind, key=bytes([robot % 256, kind] * 8))
+        for robot in (OWNER_KEY.id, 7)
         for kind in (KEY_OWNER, KEY_TEACHER)
     ]
     key_file.add(ring)
-    robot = DeviceInfo("TINI", ONE.id, (2, 1), 0, 389, cast(HelloReply, None))
+    robot = DeviceInfo("TINI", OWNER_KEY.id, (2, 1), 0, 389, cast(HelloReply, None))
     exchange = disown(key_file, robot, which)
     next(exchange)
     with pytest.raises(StopIteration):
         exchange.send(Reply(status, 0, EmptyReply()))
     key_ids = {(key.id, key.which) for key in key_file.all()}
     gone = {(key.id, key.which) for key in ring} - key_ids
-    assert gone == ({(ONE.id, which)} if status == OK else set())
+    assert gone == ({(OWNER_KEY.id, which)} if status == OK else set())
 
 
-PLACE = "tcp://ana"
+ROBOT_ADDRESS = "tcp://ana"
 
 
 def test_where_a_robot_was_met_is_kept_for_this_person_alone(key_file: KeyFile) -> None:
-    key_file.remember_robot(PLACE, ONE.id)
+    key_file.remember_robot(ROBOT_ADDRESS, OWNER_KEY.id)
     key_file.remember_robot("/dev/ttyUSB0", 7)
-    key_file.remember_robot(PLACE, 8)
+    key_file.remember_robot(ROBOT_ADDRESS, 8)
     path = key_file.path.with_name("robots.json")
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
     reopened_key_file = KeyFile(key_file.path)
     assert (
-        reopened_key_file.robot_at(PLACE),
+        reopened_key_file.robot_at(ROBOT_ADDRESS),
         reopened_key_file.robot_at("/dev/ttyUSB0"),
         reopened_key_file.robot_at(""),
     ) == (
@@ -257,10 +266,10 @@ def test_where_a_robot_was_met_is_kept_for_this_person_alone(key_file: KeyFile) 
     )
     assert not reopened_key_file.accepts(9)
     key_file.accept(9)
-    assert reopened_key_file.accepts(9) and reopened_key_file.robot_at(PLACE) == 8
+    assert reopened_key_file.accepts(9) and reopened_key_file.robot_at(ROBOT_ADDRESS) == 8
     assert KeyFile(key_file.path, accepts_all=True).accepts(10)
-    KeyFile(key_file.path, serves_virtual_robots=True).remember_robot(PLACE, 11)
-    assert reopened_key_file.robot_at(PLACE) == 8
+    KeyFile(key_file.path, serves_virtual_robots=True).remember_robot(ROBOT_ADDRESS, 11)
+    assert reopened_key_file.robot_at(ROBOT_ADDRESS) == 8
 
 
 @pytest.mark.parametrize(
@@ -271,15 +280,15 @@ def test_where_a_robot_was_met_is_kept_for_this_person_alone(key_file: KeyFile) 
 def test_a_file_of_places_that_is_none_is_made_anew(key_file: KeyFile, data: bytes) -> None:
     key_file.path.parent.mkdir()
     key_file.path.with_name("robots.json").write_bytes(data)
-    assert key_file.robot_at(PLACE) is None and not key_file.accepts(7)
-    key_file.remember_robot(PLACE, 7)
-    assert key_file.robot_at(PLACE) == 7
+    assert key_file.robot_at(ROBOT_ADDRESS) is None and not key_file.accepts(7)
+    key_file.remember_robot(ROBOT_ADDRESS, 7)
+    assert key_file.robot_at(ROBOT_ADDRESS) == 7
 
 
 def test_places_that_cannot_be_kept_end_nothing(key_file: KeyFile) -> None:
     key_file.path.parent.write_bytes(b"a file where the folder should be")
-    key_file.remember_robot(PLACE, 7)
-    assert key_file.robot_at(PLACE) is None
+    key_file.remember_robot(ROBOT_ADDRESS, 7)
+    assert key_file.robot_at(ROBOT_ADDRESS) is None
     with pytest.raises(BadKeys):
         key_file.accept(7)
 

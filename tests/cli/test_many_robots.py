@@ -25,10 +25,10 @@ from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import BY_NAME
 
 TINIBOT, LINER = robots.load("tinibot").kit, robots.load("liner").kit
-SHORT = "SI|F(0.3, 80);SHOW(DISTANCE)"
-ROBOTS = 30
-SILENT, OTHER_KIT, DEAF = 3, 7, 11  # robots with which something is wrong
-NOISY = (5, 13, 17, 21)
+SHORT_PROGRAM = "SI|F(0.3, 80);SHOW(DISTANCE)"
+ROBOT_COUNT = 30
+SILENT_ROBOT, OTHER_KIT_ROBOT, DEAF_ROBOT = 3, 7, 11  # robots with which something is wrong
+NOISY_ROBOTS = (5, 13, 17, 21)
 
 
 @pytest.fixture
@@ -44,42 +44,42 @@ def results(result: CommandResult) -> dict[str, dict[str, object]]:
 
 @pytest.mark.sampled(of="slow commands")
 def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
-    kits = [LINER if number == OTHER_KIT else TINIBOT for number in range(ROBOTS)]
+    kits = [LINER if number == OTHER_KIT_ROBOT else TINIBOT for number in range(ROBOT_COUNT)]
     with RobotFleet(kits) as room:
         pupils = room.pupils
-        pupils[SILENT].deaf_after = 0
-        pupils[DEAF].deaf_after = 30  # the robot fails in the middle of the program
-        for number in NOISY:
+        pupils[SILENT_ROBOT].deaf_after = 0
+        pupils[DEAF_ROBOT].deaf_after = 30  # the robot fails in the middle of the program
+        for number in NOISY_ROBOTS:
             pupils[number].damages = 97
         for pupil in pupils:
             known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
-        result = inside("upload", "-e", SHORT, "--all", "--json").gives(3)
+        result = inside("upload", "-e", SHORT_PROGRAM, "--all", "--json").gives(3)
         rows = results(result)
-        bad = {pupils[number].port for number in (SILENT, OTHER_KIT, DEAF)}
+        bad = {pupils[number].port for number in (SILENT_ROBOT, OTHER_KIT_ROBOT, DEAF_ROBOT)}
         named = {port: row for port, row in rows.items() if not row["is_absent"]}
         assert set(named) == {pupil.port for pupil in pupils}
         assert {port for port, row in named.items() if not row["is_done"]} == bad
-        assert "nothing responds" in str(rows[pupils[SILENT].port]["said"])
-        assert "--robot liner" in str(rows[pupils[OTHER_KIT].port]["said"])
+        assert "nothing responds" in str(rows[pupils[SILENT_ROBOT].port]["said"])
+        assert "--robot liner" in str(rows[pupils[OTHER_KIT_ROBOT].port]["said"])
         for pupil in pupils:
             if pupil.port not in bad:
                 assert pupil.actions == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
         events = [json.loads(line) for line in result.out.splitlines()]
         receipts = [row["port"] for row in events if row["event"] == "RECEIPT"]
-        assert len(receipts) == len(set(receipts)) >= ROBOTS - 3
+        assert len(receipts) == len(set(receipts)) >= ROBOT_COUNT - 3
         shown = [row["port"] for row in events if row["event"] == "SHOW"]
-        noisy = {pupils[number].port for number in NOISY}  # the damaged event may be theirs
+        noisy = {pupils[number].port for number in NOISY_ROBOTS}  # the damaged event may be theirs
         assert set(named) - bad - noisy <= set(shown) <= set(named) - bad
         # the silent one is over last
         assert events[-1]["port"] in bad | {port for port, row in rows.items() if row["is_absent"]}
 
         inside("upload", "-e", FOREVER, "--all", "--detach").gives(3)
         # The program uses no device of a kit.
-        assert sum(pupil.moves for pupil in pupils) == ROBOTS - 2
+        assert sum(pupil.moves for pupil in pupils) == ROBOT_COUNT - 2
         result = inside("stop", "--all").gives(3)
         assert not any(pupil.moves for pupil in pupils)
         assert (
-            result.out.count("the robot has confirmed the stop") == ROBOTS - 2
+            result.out.count("the robot has confirmed the stop") == ROBOT_COUNT - 2
         )  # the other kit, too
 
 

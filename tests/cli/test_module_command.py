@@ -19,13 +19,13 @@ from tiniscript.doctor.findings import CAUSES, WRONG, sure_finding
 from tiniscript.link.modules import set_up, talk
 from tiniscript.link.ports import open_port
 
-ENDS = {
+MESSAGES_BY_CAUSE = {
     set_up.DONE: ("module_done", "module_done_baud", "module_done_later"),
     set_up.UNSEEN: ("module_unseen",), set_up.REFUSED: ("module_refused",),
     set_up.SILENT: ("module_lost_midway",), set_up.DIFFERS: ("module_differs",),
     set_up.ELSEWHERE: ("module_elsewhere",), set_up.LOST: ("module_lost",),
 }  # fmt: skip
-UNSEEN = [
+UNSEEN_LINES = [
     "       Seen: it cannot confirm the value",
     "       Try:  Pair the module, and see whether it has the new value.",
 ]
@@ -51,9 +51,9 @@ def test_a_module_gets_name_pin_and_speed(tsc: Tsc, module: Simulated) -> None:
     assert result.out.splitlines() == [
         f"HC-06 3.x on {port_of(module)}, version 3.0-20170609; it listens at 9600 baud.",
         "?      name ANA: the module reports that it has done this",
-        *UNSEEN,
+        *UNSEEN_LINES,
         "?      PIN 4711: the module reports that it has done this",
-        *UNSEEN,
+        *UNSEEN_LINES,
         "ok     57600 baud: done; the module responds at this speed",
         "Now switch the module off, connect it to the robot as before, switch it on and"
         " pair it again.",
@@ -157,7 +157,7 @@ def test_a_port_that_does_not_open_is_what_the_doctor_says_of_it(
 
 def test_how_a_step_ends_is_a_cause_of_the_doctors_table() -> None:
     """No other cause concerns a setting."""
-    named = {cause: how for how, causes in ENDS.items() for cause in causes}
+    named = {cause: how for how, causes in MESSAGES_BY_CAUSE.items() for cause in causes}
     assert {*named} == {cause for cause, row in CAUSES.items() if row.part == "setting"}
     assert {cause for cause, how in named.items() if how not in set_up.GOOD_OUTCOMES} == {
         cause for cause in named if CAUSES[cause].verdict == WRONG

@@ -27,24 +27,28 @@ from tiniscript.cli.texts.verbs import (
 )
 from tiniscript.cli.verbless import is_help
 
-OLD = "|".join(FORMER_COMMANDS)
+OLD_VERBS = "|".join(FORMER_COMMANDS)
 # `tsc name`, as a command or in a list of words; the changelog may mention former names.
-NAMED = re.compile(
-    rf"(?:\btsc|-m tiniscript)(?:['\", ]+--lang['\", ]+\w\w)?['\", ]+(?:{OLD})\b(?!=)"
+OLD_USE = re.compile(
+    rf"(?:\btsc|-m tiniscript)(?:['\", ]+--lang['\", ]+\w\w)?['\", ]+(?:{OLD_VERBS})\b(?!=)"
 )
-HISTORY = ("CHANGELOG.md", "tests/cli/test_old_verbs.py")
+FILES_WITH_OLD_VERBS = ("CHANGELOG.md", "tests/cli/test_old_verbs.py")
 MISSPELLED = "complie "  # the misspelling that a document shows
-KINDS = ("c", "cpp", "h", "html", "ini", "ino", "js", "json", "md", "mjs", "ps1", "py", "sh", "svg",
-         "toml", "txt", "yml", "yaml")  # fmt: skip
-NOT_OURS = {".git", ".venv", ".pio", "node_modules", "__pycache__", "build", "dist"}
+FILE_ENDINGS = ("c", "cpp", "h", "html", "ini", "ino", "js", "json", "md", "mjs", "ps1", "py", "sh",
+                "svg", "toml", "txt", "yml", "yaml")  # fmt: skip
+FOREIGN_FOLDERS = {".git", ".venv", ".pio", "node_modules", "__pycache__", "build", "dist"}
 
 
 def files() -> Iterator[Path]:
     """Yield the texts of the repository, and of its generated files."""
     for path in ROOT.rglob("*"):
         name = path.relative_to(ROOT)
-        if not NOT_OURS & {*name.parts} and path.suffix[1:] in KINDS and path.is_file():
-            if name.as_posix() not in HISTORY and ".mypy_cache" not in name.parts:
+        if (
+            not FOREIGN_FOLDERS & {*name.parts}
+            and path.suffix[1:] in FILE_ENDINGS
+            and path.is_file()
+        ):
+            if name.as_posix() not in FILES_WITH_OLD_VERBS and ".mypy_cache" not in name.parts:
                 yield path
 
 
@@ -54,7 +58,7 @@ def test_no_file_names_an_old_verb() -> None:
     for path in files():
         count += 1
         text = path.read_text(encoding="utf-8", errors="replace")
-        old_uses += [f"{path.relative_to(ROOT)}: {match[0]}" for match in NAMED.finditer(text)]
+        old_uses += [f"{path.relative_to(ROOT)}: {match[0]}" for match in OLD_USE.finditer(text)]
     assert count > 1000 and not old_uses, "\n".join(old_uses)
 
 
@@ -62,9 +66,9 @@ def test_what_is_searched_for_is_found() -> None:
     for name in FORMER_COMMANDS:
         for words in ("Try:  tsc {}", "`tsc {} x`", '["tsc", "{}"]', "python -m tiniscript {}",
                       '"-m tiniscript", "--lang", "es", "{}"'):  # fmt: skip
-            assert NAMED.search(words.format(name)), words
+            assert OLD_USE.search(words.format(name)), words
     for command in COMMANDS:
-        assert not NAMED.search(f"tsc {command_words(command)}"), command
+        assert not OLD_USE.search(f"tsc {command_words(command)}"), command
 
 
 # -- commands in texts ----------------------------------------------------------------------------

@@ -12,13 +12,13 @@ import pytest
 from tests.support import edited_robots
 from tests.support.command import PROGRAM, TSC, CommandResult, Tsc
 from tests.support.verbs import parsers, values_of, words_of
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.cli import paths
 from tiniscript.cli.texts.options import options_of
 from tiniscript.robots import DEFAULT
 from tiniscript.virtual import worlds
 
-HERE = Path(sys.modules["tiniscript"].__file__ or "").parent
+PACKAGE_FOLDER = Path(sys.modules["tiniscript"].__file__ or "").parent
 PROFILE = edited_robots.TEXTS[DEFAULT]
 WORLD = (worlds.FOLDER / "obstacles.toml").read_text(encoding="utf-8")
 TEXTS = {"program": PROGRAM, "robot": PROFILE, "world": WORLD, "memory": "m" * 1024}
@@ -89,7 +89,7 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
         'path.open("w"': "record",
     }
     known_options = set()
-    for file in sorted((HERE / "cli").rglob("*.py")):
+    for file in sorted((PACKAGE_FOLDER / "cli").rglob("*.py")):
         for line in file.read_text(encoding="utf-8").splitlines():
             words = ("outputs.write(", "outputs.write_output(", '.open("w', '.open("a',
                      "write_text(", "write_bytes(")  # fmt: skip
@@ -161,7 +161,7 @@ def test_a_file_after_a_standard_stream_is_a_file(tmp_path: Path, words: str) ->
     (tmp_path / "a.ts").write_text(PROGRAM)
     command = ["sh", "-c", f"{' '.join(TSC)} {words}"]
     completed = subprocess.run(
-        command, cwd=tmp_path, capture_output=True, text=True, timeout=HANGS_S
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=HANG_LIMIT_S
     )
     assert CommandResult(completed.returncode, completed.stdout, completed.stderr).code == 2
     assert (tmp_path / "a.ts").read_text() == PROGRAM
@@ -179,7 +179,7 @@ def test_devices_and_pipes_may_be_written(tsc: Tsc, tmp_path: Path) -> None:
         if result.code:
             reader.kill()  # otherwise it would wait for a reader of the pipe
         assert result.code == 0
-        assert reader.communicate(timeout=HANGS_S)[0].startswith(b"TS\x02")
+        assert reader.communicate(timeout=HANG_LIMIT_S)[0].startswith(b"TS\x02")
     assert pipe.is_fifo()
     if Path("/dev/full").exists():
         tsc("compile", program, "-o", "/dev/full").gives(2, "-o")

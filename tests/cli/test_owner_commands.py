@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from tests.machines.host_firmware import EMPTY
+from tests.machines.host_firmware import EMPTY_EEPROM
 from tests.support.claimed_robots import as_another, claim_with_button
 from tests.support.command import FOREVER, Command, inside
 from tests.support.pty_robot import PtyRobot, on
@@ -23,7 +23,7 @@ from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
 from tiniscript.link.sharing.requests import ClientRequests
 
-DRIVES = "SI|F(0.2, 80)"
+DRIVE_PROGRAM = "SI|F(0.2, 80)"
 
 
 def test_a_slow_computer_has_asked_the_robot_when_it_says_hold(
@@ -48,7 +48,7 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
 ) -> None:
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["owner"] == "free"
     claim_with_button(pty_robot).gives(0, out="yours")
-    assert on(pty_robot, "upload", "-e", DRIVES).code == 0
+    assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0
     assert ", yours" in on(pty_robot, "doctor").out
     assert ", yours" in on(pty_robot, "doctor", "--count", "1").out
     assert "(yours)" in on(pty_robot, "doctor", "--ports", "--ask").out
@@ -56,7 +56,7 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
     as_another(monkeypatch, tmp_path)
     assert ", owned by somebody else" in on(pty_robot, "doctor").out
     assert "(de otro dueño)" in on(pty_robot, "doctor", "--ports", "--ask", "--lang", "es").out
-    on(pty_robot, "upload", "-e", DRIVES).gives(3, "10 s")
+    on(pty_robot, "upload", "-e", DRIVE_PROGRAM).gives(3, "10 s")
     assert "dueño" in on(pty_robot, "live", "F(1, 80)", "--lang", "es").err
     refused_result = on(pty_robot, "set", "owner")
     assert (
@@ -85,9 +85,9 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
         on(pty_robot, "doctor").gives(0, "claimed the robot again.", "10 s")
     assert "lo hizo suyo" in on(pty_robot, "doctor", "--identify", "--lang", "es").err
     assert [key.is_stale for key in KeyFile().all()] == [True]
-    on(pty_robot, "upload", "-e", DRIVES).gives(3, "is not the one that this computer has")
+    on(pty_robot, "upload", "-e", DRIVE_PROGRAM).gives(3, "is not the one that this computer has")
     as_another(monkeypatch, tmp_path)
-    result = on(pty_robot, "upload", "-e", DRIVES)
+    result = on(pty_robot, "upload", "-e", DRIVE_PROGRAM)
     assert result.code == 0 and "claimed the robot again." not in result.err
 
 
@@ -139,7 +139,7 @@ def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
     assert claim_with_button(pty_robot, "--teacher").code == 0
     as_another(monkeypatch, tmp_path, "pupil")
     assert claim_with_button(pty_robot).code == 0
-    assert on(pty_robot, "upload", "-e", DRIVES).code == 0
+    assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0
     assert "teacher's key" in on(pty_robot, "stop", "--teacher").err  # a pupil does not get one
     as_another(monkeypatch, tmp_path, "settings")
     assert "will only run again after" in on(pty_robot, "stop", "--teacher").out
@@ -160,13 +160,13 @@ def test_a_shared_port_has_the_authority_and_its_messages_no_key(
     )  # the key is made by the command that holds the port
     assert [key.which for key in KeyFile().all()] == [KEY_OWNER]
     as_another(monkeypatch, tmp_path)  # removes the key from this command
-    assert on(pty_robot, "upload", "-e", DRIVES).code == 0
+    assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0
     assert ", yours" in on(pty_robot, "doctor").out
     driving = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
     driving.until("running")
     assert on(pty_robot, "stop").code == 0
     driving.wait_for_result()
-    assert on(pty_robot, "upload", "-e", DRIVES).code == 0  # also after a stop
+    assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0  # also after a stop
     link.kill()
     client: Any = ClientRequests()
     for request in (client.claim(KEY_OWNER), client.disown(KEY_OWNER)):
@@ -179,12 +179,12 @@ def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
     """An attacker who redirects the connection has a robot, but no key."""
     claim_with_button(pty_robot).gives(0)
     pty_robot.switch_off()
-    pty_robot._memory = EMPTY
+    pty_robot._memory = EMPTY_EEPROM
     pty_robot.switch_on()  # another robot, with its own id
     refused_result = on(pty_robot, "upload", "-e", FOREVER, "--detach")
     refused_result.gives(3, "a different robot", "tsc set owner --accept")
     for words in (
-        ["upload", "-e", DRIVES],
+        ["upload", "-e", DRIVE_PROGRAM],
         ["live", "F(0.2, 80)"],
         ["show"],
         ["set", "name", "ANA"],
@@ -197,14 +197,14 @@ def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
     assert set(motor_lines) <= {"MOTORS 0 0"}
     [robot] = re.findall("--accept ([0-9a-f]{8})", refused_result.err)
     inside("set", "owner", "--accept", robot.upper()).gives(0, "", out=robot)
-    assert on(pty_robot, "upload", "-e", DRIVES).code == 0
+    assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0
     assert on(pty_robot, "stop").code == 0
 
 
 def test_who_claims_many_robots_at_one_cable_is_not_asked(pty_robot: PtyRobot) -> None:
     for _ in range(2):
         claim_with_button(pty_robot).gives(0, out="yours")
-        assert on(pty_robot, "upload", "-e", DRIVES).code == 0
+        assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0
         pty_robot.switch_off()
-        pty_robot._memory = EMPTY
+        pty_robot._memory = EMPTY_EEPROM
         pty_robot.switch_on()  # another robot

@@ -17,7 +17,7 @@ from unittest import mock
 
 import pytest
 
-from tests.machines.host_firmware import EMPTY, HostFirmware
+from tests.machines.host_firmware import EMPTY_EEPROM, HostFirmware
 from tests.support.command import Command, inside
 from tests.support.flicker import Flicker
 from tests.support.pty_end import PtyEnd
@@ -105,7 +105,7 @@ def test_a_robot_that_has_restarted(pty_robot: PtyRobot, reset: str, finding: st
     with pty_robot._lock:
         pty_robot._take_power()
         number = [name for name, _ in RESETS].index(reset)
-        pty_robot._robot = HostFirmware(pty_robot.kit, EMPTY, number)
+        pty_robot._robot = HostFirmware(pty_robot.kit, EMPTY_EEPROM, number)
     code, parts = found_by(pty_robot)
     assert code == 3
     assert (parts["supply"]["verdict"], parts["supply"]["cause"]) == ("wrong", finding)

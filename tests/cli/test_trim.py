@@ -9,7 +9,7 @@ from typing import cast
 
 import pytest
 
-from tests.machines.host_firmware import EMPTY, HostFirmware
+from tests.machines.host_firmware import EMPTY_EEPROM, HostFirmware
 from tests.support import pty_robot as pty_robots
 from tests.support.command import Command, CommandResult, inside
 from tests.support.pty_robot import PtyRobot
@@ -44,7 +44,7 @@ def keeps(pty_robot: PtyRobot) -> Trim:
     return trim._replace(pace=pace and Pace(**pace))
 
 
-def switched_on(memory: bytes = EMPTY) -> HostFirmware:
+def switched_on(memory: bytes = EMPTY_EEPROM) -> HostFirmware:
     robot = HostFirmware(KIT, memory)
     robot.wait(200)
     return robot

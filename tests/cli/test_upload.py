@@ -151,7 +151,7 @@ def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) 
 
 # -- stored programs, and failures to store them ---------------------------------------------------
 
-WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
+WAITING_PROGRAM = "SI|LOOP(FOREVER);W(1);END_LOOP"
 
 
 def interrupt(command: Command) -> CommandResult:
@@ -160,7 +160,7 @@ def interrupt(command: Command) -> CommandResult:
 
 
 def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyRobot) -> None:
-    command = Command("upload", "-e", WAITS, "--port", pty_robot.port)
+    command = Command("upload", "-e", WAITING_PROGRAM, "--port", pty_robot.port)
     command.until("Saved. The button starts it.")
     pty_robot.switch_off_and_on()
     command.kill()
@@ -214,7 +214,7 @@ def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
 def test_a_supply_that_is_enough_again_saves_what_runs(pty_robot: PtyRobot) -> None:
     """Somebody plugs the USB cable in."""
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
-    command = Command("upload", "-e", WAITS, "--port", pty_robot.port, "--json")
+    command = Command("upload", "-e", WAITING_PROGRAM, "--port", pty_robot.port, "--json")
     command.until('"saved": "LOW_SUPPLY"')
     pty_robot.ask(lambda robot: robot.supply(is_low=False))
     command.until('"event": "SAVED"')
@@ -223,12 +223,14 @@ def test_a_supply_that_is_enough_again_saves_what_runs(pty_robot: PtyRobot) -> N
 
 # -- the program before comes back, or cannot -----------------------------------------------------
 
-FIRST, SECOND = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
+FIRST_PROGRAM, SECOND_PROGRAM = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
 
 
 def with_two(pty_robot: PtyRobot) -> list[str]:
     """Send two programs; return their checksums."""
-    results = [on(pty_robot, "upload", "--json", "-e", text) for text in (FIRST, SECOND)]
+    results = [
+        on(pty_robot, "upload", "--json", "-e", text) for text in (FIRST_PROGRAM, SECOND_PROGRAM)
+    ]
     assert [result.code for result in results] == [0, 0]
     return [json.loads(result.out.splitlines()[0])["checksum"] for result in results]
 
@@ -258,14 +260,14 @@ def test_the_file_of_the_program_is_named_where_it_is_known(
     pty_robot: PtyRobot, tmp_path: Path
 ) -> None:
     name = tmp_path / "square.ts"
-    name.write_text(FIRST + "\n", encoding="utf-8")
+    name.write_text(FIRST_PROGRAM + "\n", encoding="utf-8")
     assert on(pty_robot, "upload", name).code == 0
-    assert on(pty_robot, "upload", "-e", SECOND).code == 0
+    assert on(pty_robot, "upload", "-e", SECOND_PROGRAM).code == 0
     assert "square.ts)" in on(pty_robot, "start", "--previous").out
 
 
 def test_where_there_is_none_before_the_next_step_is_said(pty_robot: PtyRobot) -> None:
-    assert on(pty_robot, "upload", "-e", FIRST).code == 0
+    assert on(pty_robot, "upload", "-e", FIRST_PROGRAM).code == 0
     for language, expected, advice in (
         ("en", "no earlier program that it can run.", "Send the program that you want"),
         ("es", "ningún programa anterior que pueda", "Envía el programa que quieras"),

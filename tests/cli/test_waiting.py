@@ -18,7 +18,7 @@ from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.simulated_ends import Nobody
 from tests.support.terminal import Terminal
-from tests.support.waiting import HANGS_S, until
+from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript.cli import main
 from tiniscript.cli.commands import firmware, studio
 from tiniscript.cli.robot import connect
@@ -55,7 +55,7 @@ def test_who_waits_for_a_robot_is_told(
     looks_on(monkeypatch)
     result = tsc("doctor", "--identify", "--port", silent, "--lang", "es").gives(3)
     assert result.err.startswith(f"Esperando al robot en {silent} …\n")
-    monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANGS_S)
+    monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANG_LIMIT_S)
     assert "Waiting" not in tsc("doctor", "--identify", "--port", silent).err
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: False)
@@ -94,7 +94,7 @@ def test_a_robot_that_is_silent_after_hello_is_said_to_be_waited_for_once(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str]
 ) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANGS_S)
+    monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANG_LIMIT_S)
     monkeypatch.setattr("tiniscript.library.client.REQUEST_TIMEOUT_MS", 500)
     real = connect.Connection.meet
 
@@ -233,7 +233,7 @@ def test_nothing_is_said_of_a_wait_that_is_over(
 ) -> None:
     """Even where the moment is over at the same time."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANGS_S)
+    monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANG_LIMIT_S)
     silence = progress.WaitNotice("waits")
     silence.cancel()
     silence._print_wait()

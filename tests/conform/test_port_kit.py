@@ -103,7 +103,7 @@ def with_status(number: int, status: int) -> Change:
     return change
 
 
-CHANGES: dict[str, tuple[Change, str]] = {
+FRAME_CHANGES: dict[str, tuple[Change, str]] = {
     "a value is one more": (
         alter_payload("SHOW", payload=lambda p: bytes([p[0] ^ 1]) + p[1:]), "programs: values"),
     "a value is a number, not TRUE": (
@@ -133,10 +133,10 @@ CHANGES: dict[str, tuple[Change, str]] = {
 }  # fmt: skip
 
 
-@pytest.mark.sampled("what", keep=len(CHANGES) // 4)
-@pytest.mark.parametrize("what", CHANGES)
+@pytest.mark.sampled("what", keep=len(FRAME_CHANGES) // 4)
+@pytest.mark.parametrize("what", FRAME_CHANGES)
 def test_what_is_changed_on_its_way_is_named(what: str, pty_robot: PtyRobot) -> None:
-    change, named_text = CHANGES[what]
+    change, named_text = FRAME_CHANGES[what]
     checks = [
         check for check in all_checks(link_test_suite()) if check.name.startswith(named_text)
     ][:3]

@@ -153,7 +153,7 @@ def test_who_uses_a_port_of_macos(tmp_path: Path) -> None:
 
 
 PNPUTIL = ("pnputil", "/enum-devices", "/connected")
-CH340_HERE = r"""
+CH340_OUTPUT = r"""
 Id. de instancia:           USB\VID_1A86&PID_7523\5&2C8F&0&1
 Descripción del dispositivo: USB2.0-Serial
 Estado:                     Iniciado
@@ -164,7 +164,7 @@ def test_windows_in_any_language(tmp_path: Path) -> None:
     system = FakeComputer(tmp_path, "win32")
     computer = diagnosis.inspect_computer(system)
     assert (computer.adapters, computer.bluetooth, computer.has_module) == (None, UNKNOWN, None)
-    system.outputs[PNPUTIL] = CH340_HERE
+    system.outputs[PNPUTIL] = CH340_OUTPUT
     system.outputs[(*PNPUTIL, "/class", "Bluetooth")] = (
         "Instance ID: USB\\VID_8087&PID_0A2B\\5\n"
         "Instance ID: BTHENUM\\DEV_98D331F50001\\7&1\nDevice Description: HC-05\n"
@@ -176,7 +176,7 @@ def test_windows_in_any_language(tmp_path: Path) -> None:
         ("HC-05",),
         True,
     )
-    system.outputs[(*PNPUTIL, "/problem")] = CH340_HERE
+    system.outputs[(*PNPUTIL, "/problem")] = CH340_OUTPUT
     system.outputs[(*PNPUTIL, "/class", "Bluetooth")] = "No devices were found.\n"
     computer = diagnosis.inspect_computer(system)
     assert computer.adapters == (Adapter("CH340", "", "", False),)

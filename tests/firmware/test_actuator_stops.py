@@ -20,8 +20,8 @@ from tiniscript.virtual.robot import VirtualRobot
 
 GRABBER = robots.load("grabber")
 KIT = GRABBER.kit
-WAITS = "SI|LED(TRUE);GRIPPER(90);W(60)"
-SET = ["SET 1 1", "SET 0 90000"]
+WAITING_PROGRAM = "SI|LED(TRUE);GRIPPER(90);W(60)"
+SET_ACTIONS = ["SET 1 1", "SET 0 90000"]
 
 
 def start_program(text: str, **how: bool) -> tuple[HostFirmware, Session]:
@@ -47,7 +47,7 @@ def replace_program(robot: HostFirmware, session: Session) -> None:
     assert robot.until(session, session.upload(image_of("SI|W(60)"))) == OK
 
 
-ENDS: dict[str, Callable[[HostFirmware, Session], object]] = {
+END_ACTIONS: dict[str, Callable[[HostFirmware, Session], object]] = {
     "the stop sequence": sequence,
     "a stop of the computer": message,
     "the button": lambda robot, session: robot.push(),
@@ -58,13 +58,16 @@ ENDS: dict[str, Callable[[HostFirmware, Session], object]] = {
 }
 
 
-@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize("end", END_ACTIONS)
 def test_what_does_not_come_to_its_own_end_lets_go(end: str) -> None:
-    robot, session = start_program(WAITS)
-    ENDS[end](robot, session)
+    robot, session = start_program(WAITING_PROGRAM)
+    END_ACTIONS[end](robot, session)
     robot.wait(5)
     actions = [line.split(" ", 1)[1] for line in robot.did]
-    assert [line for line in actions if "SET" in line or "ACT" in line] == [*SET, "ACTUATORS OFF"]
+    assert [line for line in actions if "SET" in line or "ACT" in line] == [
+        *SET_ACTIONS,
+        "ACTUATORS OFF",
+    ]
 
 
 @pytest.mark.parametrize(("text", "lets_go"), [
@@ -82,7 +85,7 @@ def test_its_own_end_leaves_them_and_a_fault_does_not(text: str, lets_go: bool) 
 
 # -- the virtual robot
 
-HOLDS = read(TEXTS["grabber"].replace('at_stop = "release"', 'at_stop = "hold"'), "holds")
+HOLDING_GRABBER = read(TEXTS["grabber"].replace('at_stop = "release"', 'at_stop = "hold"'), "holds")
 
 
 @pytest.mark.parametrize(("robot_name", "sentences", "drawn"), [
@@ -92,10 +95,10 @@ HOLDS = read(TEXTS["grabber"].replace('at_stop = "release"', 'at_stop = "hold"')
 def test_the_virtual_robot_says_and_draws_it(
     robot_name: str, sentences: list[str], drawn: dict[int, int]
 ) -> None:
-    profile = {"grabber": GRABBER, "holds": HOLDS}[robot_name]
+    profile = {"grabber": GRABBER, "holds": HOLDING_GRABBER}[robot_name]
     robot = VirtualRobot(profile, worlds.load("obstacles"))
     talk = Talk(robot)
-    assert talk.upload(WAITS).status == 0
+    assert talk.upload(WAITING_PROGRAM).status == 0
     talk.wait(100)
     robot.press()
     robot.let_go()

@@ -126,7 +126,7 @@ def test_a_car_is_over_black_from_250_on(sensor: str, channel: int) -> None:
         assert is_black == says
 
 
-DIM = (
+DIM_SENSOR = (
     (
         "[[kit.sensors]]",
         '[[kit.sensors]]\nname = "DIM"\nkind = "number"\nunit = "%"\nrange = [0, 1023]\n\n'
@@ -135,8 +135,10 @@ DIM = (
     ("[body]\n", '[board.sensors.DIM]\ndriver = "analog"\npin = "A2"\n\n[body]\n'),
 )
 # The time of every reading, and the number of readings.
-READS = "BEGUN_{0} = TIME;X = {1};LONGEST = MAX(LONGEST, TIME - BEGUN_{0});COUNT = COUNT + 1;"
-SEEN_AT_THE_END = """
+READING_CODE = (
+    "BEGUN_{0} = TIME;X = {1};LONGEST = MAX(LONGEST, TIME - BEGUN_{0});COUNT = COUNT + 1;"
+)
+SHOW_RESULTS_CODE = """
 WHEN(TIME > 0.5)
 M(MIN(100, 10000 * LONGEST), MIN(100, COUNT / 10));W(5)
 END_WHEN
@@ -151,14 +153,14 @@ def test_each_task_gets_its_readings_in_time(seed: int) -> None:
     draw = random.Random(seed)
     tasks = []
     for number in range(draw.randint(2, 4)):
-        reads = [READS.format(number, draw.choice(["LIGHT_R", "LIGHT_L", "DIM"]))
+        reads = [READING_CODE.format(number, draw.choice(["LIGHT_R", "LIGHT_L", "DIM"]))
                  for _ in range(draw.randint(1, 3))]  # fmt: skip
         pause = draw.choice(["", "W(0.001)", "W(0.003)", "W(0.01)"])
         tasks.append(f"LOOP(FOREVER)\n{''.join(reads)}{pause}\nEND_LOOP")
     own, *others = tasks[:3]
     text = f"SI|LONGEST = 0;COUNT = 0\n{own}\n"
-    text += "".join(f"TASK\n{other}\nEND_TASK\n" for other in others) + SEEN_AT_THE_END
-    board = start_board(on_board("tinibot", "mega", *DIM), text).run_for(START + 530)
+    text += "".join(f"TASK\n{other}\nEND_TASK\n" for other in others) + SHOW_RESULTS_CODE
+    board = start_board(on_board("tinibot", "mega", *DIM_SENSOR), text).run_for(START + 530)
     longest, count = (int(board.motors(START + 529)[pin].removeprefix("pwm ")) for pin in (0, 3))
     assert 0 < longest <= 3 * 26 and count > 20
 

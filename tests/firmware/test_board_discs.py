@@ -29,8 +29,9 @@ from tools.uno import CYCLES_PER_MS, Uno
 BOARDS = ("uno", "mega")
 each_board = pytest.mark.parametrize("name", BOARDS)
 MOTORS = "D5", "D6"  # their PWM
-LEFT, RIGHT = 0x88, 0x8A  # OCR1A and OCR1B are free on this robot: the counts are copied there
-COPIED = """
+# OCR1A and OCR1B are free on this robot: the counts are copied there
+LEFT_COUNT_REGISTER, RIGHT_COUNT_REGISTER = 0x88, 0x8A
+COPY_COUNTS_CODE = """
 #include "firmware/board.h"
 extern "C" void test_turn() {
   using Port = volatile unsigned char*;
@@ -41,8 +42,8 @@ extern "C" void test_turn() {
 
 
 def counting(robot: Robot) -> Board:
-    board = Board(robot, more=COPIED)
-    board.watched |= {LEFT, RIGHT}
+    board = Board(robot, more=COPY_COUNTS_CODE)
+    board.watched |= {LEFT_COUNT_REGISTER, RIGHT_COUNT_REGISTER}
     assert robot.board.discs
     for pin in robot.board.discs.pins.values():
         board.level(0, pin, False)
@@ -56,8 +57,8 @@ def pins(robot: Robot) -> tuple[int, int]:
 
 def counts(board: Board, ms: float) -> tuple[int, int]:
     """Return the counts at a time, measured from 20 ms on."""
-    begun = (board.register(LEFT, 20), board.register(RIGHT, 20))
-    then = (board.register(LEFT, ms), board.register(RIGHT, ms))
+    begun = (board.register(LEFT_COUNT_REGISTER, 20), board.register(RIGHT_COUNT_REGISTER, 20))
+    then = (board.register(LEFT_COUNT_REGISTER, ms), board.register(RIGHT_COUNT_REGISTER, ms))
     return (then[0] - begun[0]) % 256, (then[1] - begun[1]) % 256
 
 

@@ -19,7 +19,7 @@ from tiniscript import robots
 from tiniscript.robots.profile import Robot
 
 SPACING_MS, FRESH_MS = 30.0, 60.0
-FIRST = 3  # samples of a run's first value
+FIRST_SAMPLES = 3  # samples of a run's first value
 DELAY_US = 460  # time from the trigger to the echo
 
 
@@ -64,8 +64,10 @@ def test_pings_leave_30_ms_apart_and_hear_how_far_it_is(name: str, distance_cm: 
 
 def test_a_reading_is_used_again_until_the_next_ping_may_leave() -> None:
     text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.01);END_LOOP"
-    board = looking(text, *[20] * FIRST, 60).run_for(START + 160)
-    first, second, third = ping_starts_ms(board, sonar_pins(board.robot)[0])[FIRST - 1 : FIRST + 2]
+    board = looking(text, *[20] * FIRST_SAMPLES, 60).run_for(START + 160)
+    first, second, third = ping_starts_ms(board, sonar_pins(board.robot)[0])[
+        FIRST_SAMPLES - 1 : FIRST_SAMPLES + 2
+    ]
     assert SPACING_MS <= second - first < SPACING_MS + 11  # the program asks every 10 ms
     assert read_power_cm(board, first + 5) == read_power_cm(board, second) == 20
     assert SPACING_MS <= third - second < SPACING_MS + 2, "it waits for what it has asked"
@@ -76,7 +78,7 @@ def test_a_reading_is_used_again_until_the_next_ping_may_leave() -> None:
 def test_until_looks_again_every_40_ms() -> None:
     """The check runs every 20 ms, with a fresh reading every second time."""
     text = "SI|F(1, 20)UNTIL(DISTANCE < 10)"
-    board = looking(text, *[50] * FIRST, 50, 8).run_for(START + 250)
+    board = looking(text, *[50] * FIRST_SAMPLES, 50, 8).run_for(START + 250)
     left = [ms - START for ms in ping_starts_ms(board, sonar_pins(board.robot)[0])]
     assert [round(ms / 10) for ms in left] == [0, 3, 6, 10, 14, 17]
     assert board.motors(START + 173)[0] == "pwm 51"
@@ -116,7 +118,7 @@ def test_a_start_forgets_readings_but_not_the_spacing(after_ms: float) -> None:
     assert {read_power_cm(board, ms) for ms in drive_starts_ms if ms > second} == {70}
 
 
-TWO = (
+SECOND_SONAR = (
     (
         "[[kit.sensors]]",
         '[[kit.sensors]]\nname = "BEHIND"\nkind = "number"\nunit = "cm"\nrange = [0, 400]\n\n'
@@ -138,7 +140,7 @@ TWO = (
 def test_two_sensors_never_hear_each_other(text: str) -> None:
     """The pings of both are far enough apart, none is forgotten, and no reading is older than 60
     ms."""
-    robot = on_board("tinibot", "uno", *TWO)
+    robot = on_board("tinibot", "uno", *SECOND_SONAR)
     board = start_board(robot, text)
     rows = [(3, range(20, 60)), (0, range(60, 100))]  # obstacles that come nearer with each ping
     for number, distances in rows:
@@ -184,9 +186,9 @@ def find_glitches(width_us: float) -> list[tuple[int, int]]:
     trigger, echo = sonar_pins(robot)
     board = start_board(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.032);END_LOOP")
     board.watch(trigger)
-    rows = [(0.0, 0.0)] * FIRST + [(phase, width_us) for phase in PHASES]
+    rows = [(0.0, 0.0)] * FIRST_SAMPLES + [(phase, width_us) for phase in PHASES]
     board.echoes(trigger, echo, [ECHO_US] * (len(rows) + 1), rows)
-    times = ping_starts_ms(board.run_for(START + 33 * len(rows)), trigger)[FIRST:]
+    times = ping_starts_ms(board.run_for(START + 33 * len(rows)), trigger)[FIRST_SAMPLES:]
     gaps = [b - a for a, b in pairwise(times)]
     assert max(gaps) < 33  # no reading came late
     return [
@@ -222,7 +224,7 @@ def test_a_glitch_without_an_echo_is_far_away() -> None:
 
 # -- an echo that stays high
 
-HUNG_MS = 300.0  # time from the ping
+HANG_END_MS = 300.0  # time from the ping
 
 
 @pytest.mark.sampled("high_ms")
@@ -244,19 +246,19 @@ def test_an_echo_that_stays_high_is_read_as_0_until_it_answers(chip: str) -> Non
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
     robot = on_board("tinibot", chip)
     echo = sonar_pins(robot)[1]
-    board = looking(text, *[50] * FIRST, 1_000_000 / US_PER_CM, 50, robot=robot)
+    board = looking(text, *[50] * FIRST_SAMPLES, 1_000_000 / US_PER_CM, 50, robot=robot)
     board.watch(echo)
     board.run_for(START + 1300)
-    hangs = ping_starts_ms(board, sonar_pins(robot)[0])[FIRST]
+    hangs = ping_starts_ms(board, sonar_pins(robot)[0])[FIRST_SAMPLES]
     assert read_power_cm(board, hangs) == 10
-    assert read_power_cm(board, hangs + HUNG_MS - 1) == 10, "it may be one that hears nothing"
-    assert read_power_cm(board, hangs + HUNG_MS + 35) == 90
+    assert read_power_cm(board, hangs + HANG_END_MS - 1) == 10, "it may be one that hears nothing"
+    assert read_power_cm(board, hangs + HANG_END_MS + 35) == 90
     assert read_power_cm(board, hangs + 990) == 90
     assert read_power_cm(board, hangs + 1100) == 10, "it answers again"
     port, bit = board.bit(echo)
     pulled = [change.cycle / MS for change in board.changes
               if change.address == PORTS[port] - 1 and change.value >> bit & 1]  # fmt: skip
-    assert pulled and hangs + HUNG_MS - 1 < min(pulled) and max(pulled) < hangs + 1010
+    assert pulled and hangs + HANG_END_MS - 1 < min(pulled) and max(pulled) < hangs + 1010
     assert board.pin(echo, hangs + 1100) == "in"
 
 
@@ -294,9 +296,9 @@ def test_one_wrong_sample_in_fifty_is_never_a_reading(seed: int) -> None:
 
 @pytest.mark.sampled("number", keep=2)
 @pytest.mark.parametrize("wrong_cm", [3, 400])
-@pytest.mark.parametrize("number", range(FIRST))
+@pytest.mark.parametrize("number", range(FIRST_SAMPLES))
 def test_a_first_value_is_the_middle_of_three(number: int, wrong_cm: float) -> None:
-    heard_cm: list[float] = [50] * (FIRST + 1)
+    heard_cm: list[float] = [50] * (FIRST_SAMPLES + 1)
     heard_cm[number] = wrong_cm
     board = looking("SI|LOOP(FOREVER);M(DISTANCE / 10, 0);END_LOOP", *heard_cm).run_for(START + 200)
     assert {read_power_cm(board, ms) for ms in driven_ms(board, 1)} == {5}

@@ -10,13 +10,13 @@ from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import Robot
 
 GRIPPER, LED = 11, 30  # pins of grabber
-HOLD = ('at_stop = "release"', 'at_stop = "hold"')
+HOLD_AT_STOP = ('at_stop = "release"', 'at_stop = "hold"')
 WIRE = 53  # a pin of a Mega whose change is an interrupt
-HANGS = "ISR(PCINT0_vect) { sei(); for (;;) {} }"
+HANGING_HANDLER = "ISR(PCINT0_vect) { sei(); for (;;) {} }"
 
 
 def grabber(holds: bool = False) -> Robot:
-    return on_board("grabber", "mega", *([HOLD] if holds else []))
+    return on_board("grabber", "mega", *([HOLD_AT_STOP] if holds else []))
 
 
 def busy(robot: Robot, text: str, more: str = "") -> Board:
@@ -81,7 +81,7 @@ def test_a_program_that_is_being_stopped_sets_nothing() -> None:
 @pytest.mark.parametrize("holds", [False, True])
 def test_a_main_loop_that_hangs_lets_everything_go(holds: bool) -> None:
     """This includes outputs that a profile holds, because nothing controls them any more."""
-    board = busy(grabber(holds), "SI|GRIPPER(90);LED(TRUE);W(5)", interrupt(HANGS))
+    board = busy(grabber(holds), "SI|GRIPPER(90);LED(TRUE);W(5)", interrupt(HANGING_HANDLER))
     board.level(START + 50, WIRE, True)
     board.run_for(START + 170)
     assert board.pin(LED, START + 140) == "high"

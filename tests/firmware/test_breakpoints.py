@@ -30,9 +30,9 @@ from tiniscript.link.requests import OK
 from tiniscript.vm.machine import Machine
 
 # The instructions start at 0, 2, 5, 7, 10 and 11.
-DRIVE = "SI|N = 1;F(1, 80);N = 5;B(1, 60);SHOW(N)"
-SECOND = 2  # offset of F
-MAIN = 4  # the last task
+DRIVE_PROGRAM = "SI|N = 1;F(1, 80);N = 5;B(1, 60);SHOW(N)"
+SECOND_MOVE_OFFSET = 2  # offset of F
+MAIN_TASK = 4  # the last task
 BAD_VALUE = STATUSES["BAD_VALUE"]
 
 
@@ -47,8 +47,8 @@ def test_a_robot_says_that_it_halts() -> None:
 
 
 def test_a_program_halts_before_an_instruction_and_goes_on() -> None:
-    it = debug(DRIVE, SECOND)
-    assert it.halt() == Halt(SECOND, MAIN)
+    it = debug(DRIVE_PROGRAM, SECOND_MOVE_OFFSET)
+    assert it.halt() == Halt(SECOND_MOVE_OFFSET, MAIN_TASK)
     assert it.variables()[:2] == [1000, 0]
     assert drives(it.robot.did) == [], "nothing of the instruction is done"
     it.talk(3000)
@@ -65,8 +65,8 @@ def test_a_program_halts_before_an_instruction_and_goes_on() -> None:
 
 
 def test_a_step_is_a_statement() -> None:
-    it = debug(DRIVE, 0)
-    assert it.halt() == Halt(0, MAIN)
+    it = debug(DRIVE_PROGRAM, 0)
+    assert it.halt() == Halt(0, MAIN_TASK)
     lines = []
     while it.step():
         halt = it.halt()
@@ -80,7 +80,7 @@ def test_a_step_is_a_statement() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        DRIVE,
+        DRIVE_PROGRAM,
         "SI|N = 1;F(1, 80) UNTIL(DISTANCE < 9 AND LIGHT_L > 5);IF(N > 2 OR LIGHT_R < 3);STOP;ENDIF",
         "SI|WHEN(LIGHT_R > 5);B(0.1, 50);END_WHEN;TASK;F(9, 40) UNTIL(DISTANCE < 10);END_TASK;W(1)",
         "SI|DEF SIDE(SIZE, SPEED);F(SIZE, SPEED);R(9 DEG, 50);END_DEF;LOOP(3);SIDE(2, 60);END_LOOP",
@@ -98,7 +98,7 @@ def test_what_begins_no_statement_is_no_place(text: str) -> None:
 def test_places_are_even_bytes_of_a_program_that_is_there() -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.break_at((0,))) == STATUSES["NO_PROGRAM"]
-    it = Debugged(DRIVE)
+    it = Debugged(DRIVE_PROGRAM)
     for payload in (b"\0", b"\0\0\0", b"\0" * 10):
         assert bytes((STATUSES["BAD_LENGTH"],)) in answer(it, "BREAK", payload)
     assert it.robot.until(it.session, it.session.resume(2)) == BAD_VALUE
@@ -121,16 +121,16 @@ TASK_FROM_OPERAND = (
 
 def test_a_start_finds_the_tasks_of_the_program_and_no_others() -> None:
     it = debug(TASK_FROM_OPERAND, 0)
-    assert it.halt() == Halt(0, MAIN)
-    assert [state for state, _, _ in it.tasks()[:MAIN]] == [0] * MAIN
+    assert it.halt() == Halt(0, MAIN_TASK)
+    assert [state for state, _, _ in it.tasks()[:MAIN_TASK]] == [0] * MAIN_TASK
     it.go()
     it.start()
-    assert it.halt() == Halt(0, MAIN), "the next start, with places set"
-    assert [state for state, _, _ in it.tasks()[:MAIN]] == [0] * MAIN
+    assert it.halt() == Halt(0, MAIN_TASK), "the next start, with places set"
+    assert [state for state, _, _ in it.tasks()[:MAIN_TASK]] == [0] * MAIN_TASK
 
 
 def test_who_fetches_a_program_that_is_halted_gets_it_as_it_was_sent() -> None:
-    it = debug(DRIVE, 0, SECOND, 5, 7)
+    it = debug(DRIVE_PROGRAM, 0, SECOND_MOVE_OFFSET, 5, 7)
     assert it.halt()
     assert fetch_image(it.robot, it.session)[15:] == it.image.code
     it.step()
@@ -140,9 +140,9 @@ def test_who_fetches_a_program_that_is_halted_gets_it_as_it_was_sent() -> None:
 
 def test_a_program_that_is_halted_is_saved_as_it_was_sent() -> None:
     robot, session = switched_on(), computer()
-    image = image_of(DRIVE)
+    image = image_of(DRIVE_PROGRAM)
     assert robot.until(session, session.upload(image, runs=False)) == OK
-    assert robot.until(session, session.break_at((0, SECOND, 5, 7))) == OK
+    assert robot.until(session, session.break_at((0, SECOND_MOVE_OFFSET, 5, 7))) == OK
     assert robot.until(session, session.start()) == OK
     wait_until_saved(robot, session)
     assert robot.complete(session, session.read_tasks()).is_halted
@@ -152,18 +152,20 @@ def test_a_program_that_is_halted_is_saved_as_it_was_sent() -> None:
 
 
 def test_a_place_is_told_with_the_programs_checksum() -> None:
-    it = debug(DRIVE, SECOND)
+    it = debug(DRIVE_PROGRAM, SECOND_MOVE_OFFSET)
     assert it.halt()
     it.session.tells_places = True
     events = it.talk(1000)
-    assert [(e.program, e.at) for e in events if e.name == "PLACE"] == [(it.image.checksum, SECOND)]
+    assert [(e.program, e.at) for e in events if e.name == "PLACE"] == [
+        (it.image.checksum, SECOND_MOVE_OFFSET)
+    ]
 
 
 def test_a_fault_is_that_of_the_programs_image() -> None:
-    it = debug("SI|N = 0;SHOW(1 / N)", 0, SECOND)
-    assert it.halt() == Halt(0, MAIN)
+    it = debug("SI|N = 0;SHOW(1 / N)", 0, SECOND_MOVE_OFFSET)
+    assert it.halt() == Halt(0, MAIN_TASK)
     it.step()
-    assert it.halt() == Halt(SECOND, MAIN)
+    assert it.halt() == Halt(SECOND_MOVE_OFFSET, MAIN_TASK)
     it.go()
     fault = it.until(lambda event: event.name == "FAULT")
     assert isinstance(fault, FaultEvent) and fault.program == it.image.checksum
@@ -171,7 +173,7 @@ def test_a_fault_is_that_of_the_programs_image() -> None:
 
 def test_the_board_finds_the_same_code_at_each_start_and_while_it_runs() -> None:
     """The robot for tests looks at the code that runs after each tick: CHANGED, UNVERIFIED."""
-    it = debug("SI|LOOP(5);F(0.1, 50) UNTIL(DISTANCE < 5);SHOW(1);END_LOOP", 0, SECOND)
+    it = debug("SI|LOOP(5);F(0.1, 50) UNTIL(DISTANCE < 5);SHOW(1);END_LOOP", 0, SECOND_MOVE_OFFSET)
     while it.halt():
         it.step()
     assert not [line for line in it.robot.did if "CHANGED" in line or "UNVERIFIED" in line]
@@ -179,14 +181,25 @@ def test_the_board_finds_the_same_code_at_each_start_and_while_it_runs() -> None
 
 # -- ends of a run ---------------------------------------------------------------------------------
 
-ENDS = ("stop", "button", "message", "lost", "undo", "program", "live", "start", "hello", "text")
+RUN_ENDS = (
+    "stop",
+    "button",
+    "message",
+    "lost",
+    "undo",
+    "program",
+    "live",
+    "start",
+    "hello",
+    "text",
+)
 
 
-@pytest.mark.parametrize("way", ENDS)
+@pytest.mark.parametrize("way", RUN_ENDS)
 def test_what_ends_a_run_ends_a_halted_one(way: str) -> None:
     it = debug("SI|LOOP(FOREVER);F(0.2, 80);SHOW(1);END_LOOP", 1)
     robot, session = it.robot, it.session
-    assert it.halt() == Halt(1, MAIN)
+    assert it.halt() == Halt(1, MAIN_TASK)
     expected = STATE_IDLE
     if way == "stop":
         session.stop(robot.now_ms)
@@ -213,7 +226,7 @@ def test_what_ends_a_run_ends_a_halted_one(way: str) -> None:
         assert it.until(lambda event: event.name == "DONE")
     elif way == "start":
         assert robot.until(session, session.start()) == OK
-        assert it.halt() == Halt(1, MAIN), "it begins anew, and halts there again"
+        assert it.halt() == Halt(1, MAIN_TASK), "it begins anew, and halts there again"
         expected = STATE_RUNNING
     elif way == "hello":
         it.session = computer(99)
@@ -232,7 +245,7 @@ def test_what_ends_a_run_ends_a_halted_one(way: str) -> None:
 @pytest.mark.parametrize("halted_ms", [100, 3000])
 def test_a_run_after_a_halted_one_has_a_clock_of_its_own(way: str, halted_ms: int) -> None:
     it = debug("SI|W(0.5);SHOW(TIME)", 0)
-    assert it.halt() == Halt(0, MAIN)
+    assert it.halt() == Halt(0, MAIN_TASK)
     it.talk(halted_ms)
     if way == "stop":
         it.session.stop(it.robot.now_ms)
@@ -251,12 +264,12 @@ def test_a_run_after_a_halted_one_has_a_clock_of_its_own(way: str, halted_ms: in
 
 def test_the_button_starts_what_was_verified_and_it_halts_again() -> None:
     it = debug("SI|F(0.2, 80);SHOW(1)", 0)
-    assert it.halt() == Halt(0, MAIN)
+    assert it.halt() == Halt(0, MAIN_TASK)
     it.robot.push()
     it.talk(100)
     assert state(it) == STATE_STOPPED
     it.robot.push()
-    assert it.halt() == Halt(0, MAIN)
+    assert it.halt() == Halt(0, MAIN_TASK)
     it.go()
     assert it.until(lambda event: event.name == "DONE")
     assert it.image.code == it.robot.codes()[-1]
@@ -286,7 +299,7 @@ def test_nothing_halts_where_nobody_is_there() -> None:
     it = Debugged("SI|LOOP(FOREVER);F(1.2, 80);END_LOOP", robot)
     assert it.places(1) == OK
     it.start(is_detached=True)
-    assert it.halt() == Halt(1, MAIN)
+    assert it.halt() == Halt(1, MAIN_TASK)
     it.go()
     robot.wait(5000)
     assert len(drives(robot.did)) == 9
@@ -318,7 +331,7 @@ def test_motors_stand_while_it_is_halted_and_a_move_has_the_rest_of_its_time() -
     assert it.places(show) == OK
     it.start()
     halted_halt = it.halt()
-    assert halted_halt is not None and halted_halt.task == MAIN
+    assert halted_halt is not None and halted_halt.task == MAIN_TASK
     assert [line.split(maxsplit=1)[1] for line in drives(it.robot.did)] == [
         "MOTORS 80 80",
         "MOTORS 0 0",
@@ -344,7 +357,7 @@ def test_a_way_that_discs_measure_goes_on_with_its_rest() -> None:
         assert it.places(*[show] * is_halted) == OK
         it.start()
         if is_halted:
-            assert it.halt() == Halt(show, MAIN)
+            assert it.halt() == Halt(show, MAIN_TASK)
             it.talk(1000)
             halted_at = robot.wheel_edges()[0]
             it.talk(500)
@@ -424,7 +437,7 @@ def test_a_loop_around_one_statement_halts_each_time() -> None:
 def test_a_show_without_room_halts_once() -> None:
     robot = switched_on()
     robot.pace(40)
-    it = debug("SI|LOOP(6);SHOW(1);END_LOOP", SECOND, robot=robot)
+    it = debug("SI|LOOP(6);SHOW(1);END_LOOP", SECOND_MOVE_OFFSET, robot=robot)
     show = statement_starts(it.image.code)[1]
     assert it.places(show) == OK
     count = 0
@@ -435,7 +448,7 @@ def test_a_show_without_room_halts_once() -> None:
 
 
 def test_a_halt_is_told_again_and_a_session_tells_it_once() -> None:
-    it = debug(DRIVE, SECOND)
+    it = debug(DRIVE_PROGRAM, SECOND_MOVE_OFFSET)
     assert it.halt()
     number = bytes((BY_NAME["HALTED"].number | 0x80,))
     sent_bytes = b""
@@ -447,7 +460,7 @@ def test_a_halt_is_told_again_and_a_session_tells_it_once() -> None:
     assert sent_bytes.count(number) >= 3
     assert not [event for event in it.session.events() if event.name == "HALTED"]
     it.step()
-    assert it.halt() == Halt(5, MAIN)
+    assert it.halt() == Halt(5, MAIN_TASK)
 
 
 def test_places_may_change_while_it_runs_and_while_it_is_halted() -> None:
@@ -455,12 +468,12 @@ def test_places_may_change_while_it_runs_and_while_it_is_halted() -> None:
     assert it.halt(300) is None
     _, _, _, add, show, _ = statement_starts(it.image.code)
     assert it.places(add) == OK
-    assert it.halt() == Halt(add, MAIN)
+    assert it.halt() == Halt(add, MAIN_TASK)
     assert it.places(show) == OK
     it.go()
-    assert it.halt() == Halt(show, MAIN)
+    assert it.halt() == Halt(show, MAIN_TASK)
     it.go()
-    assert it.halt() == Halt(show, MAIN)
+    assert it.halt() == Halt(show, MAIN_TASK)
     assert it.places() == OK
     it.go()
     assert it.halt(500) is None and state(it) == STATE_RUNNING
@@ -491,7 +504,7 @@ def test_a_program_that_is_typed_halts_as_well() -> None:
 
 
 def test_a_session_asks_no_robot_that_cannot_halt() -> None:
-    it = Debugged(DRIVE)
+    it = Debugged(DRIVE_PROGRAM)
     assert it.session.robot
     features = it.session.robot.values.features & ~BREAKPOINTS
     it.session._handshake._take_features(features)
@@ -501,12 +514,12 @@ def test_a_session_asks_no_robot_that_cannot_halt() -> None:
 
 def test_a_line_that_is_to_halt_does_so_before_its_first_statement() -> None:
     """It has no breakpoint when it runs again, and neither has the stored program."""
-    it = Debugged(DRIVE)
-    code = image_of(DRIVE).code
+    it = Debugged(DRIVE_PROGRAM)
+    code = image_of(DRIVE_PROGRAM).code
     assert it.robot.until(it.session, it.session.live(code, halts=True)) == OK
-    assert it.halt() == Halt(0, MAIN) and it.variables()[0] == 0
-    assert it.places(SECOND) == OK and it.go()
-    assert it.halt() == Halt(SECOND, MAIN) and it.step()
+    assert it.halt() == Halt(0, MAIN_TASK) and it.variables()[0] == 0
+    assert it.places(SECOND_MOVE_OFFSET) == OK and it.go()
+    assert it.halt() == Halt(SECOND_MOVE_OFFSET, MAIN_TASK) and it.step()
     assert it.halt() and it.places() == OK and it.go()
     assert it.halt() is None and len(drives(it.robot.did)) == 4
     assert it.robot.until(it.session, it.session.live(code)) == OK
@@ -525,7 +538,7 @@ def test_a_line_that_is_to_halt_does_so_before_its_first_statement() -> None:
 def test_a_line_that_has_halted_does_what_it_does_alone(text: str) -> None:
     variables = []
     for halts in (True, False):
-        it = Debugged(DRIVE)
+        it = Debugged(DRIVE_PROGRAM)
         request = it.session.live(image_of(f"SI|{text}").code, halts=halts)
         assert it.robot.until(it.session, request) == OK
         while it.halt(200):
@@ -540,6 +553,6 @@ def test_a_line_that_has_halted_does_what_it_does_alone(text: str) -> None:
     [("PROGRAM", b"\0"), ("BEGIN", bytes((ISA_MAJOR, 0, 0, 16, 0, 0, 1, 0))), ("START", b"")],
 )
 def test_nothing_but_a_line_is_to_halt(name: str, more: bytes) -> None:
-    it = Debugged(DRIVE)
+    it = Debugged(DRIVE_PROGRAM)
     mode = HALTS | RUN * (name != "START")
     assert bytes((BAD_VALUE,)) in answer(it, name, bytes((mode,)) + more)

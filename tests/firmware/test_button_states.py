@@ -14,12 +14,12 @@ from tests.support.button_signals import button_events
 from tests.support.button_states import LINE, OTHER, SAVED, STATES, TYPED, Table
 from tests.support.casefile import ROOT
 from tests.support.images import image_of
-from tests.support.owners import HELD, PRESSED, RELEASED
+from tests.support.owners import BUTTON_HELD, BUTTON_PRESSED, BUTTON_RELEASED
 from tests.support.text_robot import type_text
 from tiniscript.link.requests import OK
 
-FLAGS = {"P": PRESSED, "H": HELD, "R": RELEASED}
-EDGE, SHORT, LATE, TWO = range(4)  # columns of the table
+FLAGS = {"P": BUTTON_PRESSED, "H": BUTTON_HELD, "R": BUTTON_RELEASED}
+EDGE_COLUMN, SHORT_COLUMN, LATE_COLUMN, TWO_SECONDS_COLUMN = range(4)  # columns of the table
 
 
 def chatter(edge_ms: int) -> list[int]:
@@ -28,20 +28,26 @@ def chatter(edge_ms: int) -> list[int]:
 
 # Levels of the wire in us, and the table columns with the expected results.
 PRESSES: dict[str, tuple[list[int], tuple[int, ...]]] = {
-    "a spike": ([0, 150], (EDGE,)),
-    "many spikes": ([us for k in range(40) for us in (k * 17_000, k * 17_000 + 150)], (EDGE,)),
-    "chatter": ([*range(0, 20_000, 900)][:22], (EDGE,)),
-    "short": ([0, 200_000], (EDGE, SHORT)),
-    "the shortest": ([0, 34_000], (EDGE, SHORT)),
-    "short, with chatter": ([*chatter(0), *chatter(300), 305_000][:10], (EDGE, SHORT)),
-    "just short": ([0, 930_000], (EDGE, SHORT)),
-    "just long": ([0, 1_040_000], (EDGE, LATE)),
-    "long, with chatter": ([*chatter(0), *chatter(1500)], (EDGE, LATE)),
-    "held 2 s": ([0, 2_200_000], (EDGE, LATE, TWO)),
-    "released late": ([0, 5_000_000], (EDGE, LATE, TWO)),
-    "held for ever": ([0, 12_000_000], (EDGE, TWO)),
+    "a spike": ([0, 150], (EDGE_COLUMN,)),
+    "many spikes": (
+        [us for k in range(40) for us in (k * 17_000, k * 17_000 + 150)],
+        (EDGE_COLUMN,),
+    ),
+    "chatter": ([*range(0, 20_000, 900)][:22], (EDGE_COLUMN,)),
+    "short": ([0, 200_000], (EDGE_COLUMN, SHORT_COLUMN)),
+    "the shortest": ([0, 34_000], (EDGE_COLUMN, SHORT_COLUMN)),
+    "short, with chatter": (
+        [*chatter(0), *chatter(300), 305_000][:10],
+        (EDGE_COLUMN, SHORT_COLUMN),
+    ),
+    "just short": ([0, 930_000], (EDGE_COLUMN, SHORT_COLUMN)),
+    "just long": ([0, 1_040_000], (EDGE_COLUMN, LATE_COLUMN)),
+    "long, with chatter": ([*chatter(0), *chatter(1500)], (EDGE_COLUMN, LATE_COLUMN)),
+    "held 2 s": ([0, 2_200_000], (EDGE_COLUMN, LATE_COLUMN, TWO_SECONDS_COLUMN)),
+    "released late": ([0, 5_000_000], (EDGE_COLUMN, LATE_COLUMN, TWO_SECONDS_COLUMN)),
+    "held for ever": ([0, 12_000_000], (EDGE_COLUMN, TWO_SECONDS_COLUMN)),
 }
-FOR_EVER = "held for ever"
+HELD_FOR_EVER = "held for ever"
 
 
 @lru_cache
@@ -51,7 +57,7 @@ def letters() -> dict[str, list[tuple[int, str]]]:
     rows = {}
     for name, row in zip(PRESSES, event_rows, strict=True):
         rows[name] = [(us // 1000, letter) for us, letter in row]
-        if name == FOR_EVER:
+        if name == HELD_FOR_EVER:
             rows[name] = [row for row in rows[name] if row[1] != "R"]
     return rows
 
@@ -74,8 +80,8 @@ def test_the_presses_are_what_they_are_called() -> None:
         name: "".join(letter for _, letter in row) for name, row in letters().items()
     }
     for name, (_, columns) in PRESSES.items():
-        is_press = columns != (EDGE,)
-        expected = "PH" + "R" * (name != FOR_EVER)
+        is_press = columns != (EDGE_COLUMN,)
+        expected = "PH" + "R" * (name != HELD_FOR_EVER)
         assert (
             letters_by_name[name] == expected if is_press else set(letters_by_name[name]) <= {"P"}
         ), name
@@ -91,7 +97,7 @@ def press_button(table: Table, press: str) -> None:
         table.talk(max(0, at_ms - now_ms))
         table.talk(1, FLAGS[letter])
         now_ms = max(at_ms, now_ms) + 1
-    table.talk(13_000 if press == FOR_EVER else 700)
+    table.talk(13_000 if press == HELD_FOR_EVER else 700)
 
 
 @pytest.mark.sampled("press", keep=3)
@@ -107,10 +113,12 @@ def test_the_button(state: str, press: str) -> None:
     moves = [(int(ms) - begun_ms, what) for ms, what in rows if what.startswith("MOTORS")]
     wanted_texts, columns = read_table()[state], PRESSES[press][1]
     first_ms = letters()[press][0][0]
-    stops = wanted_texts[EDGE] == "stops it"
+    stops = wanted_texts[EDGE_COLUMN] == "stops it"
     assert was_latched != stops, "a robot that runs, or one that does not"
-    starts = SHORT in columns and wanted_texts[SHORT].startswith("starts")
-    assert not any(wanted_texts[event] not in ("-", "stops it") for event in (EDGE, LATE))
+    starts = SHORT_COLUMN in columns and wanted_texts[SHORT_COLUMN].startswith("starts")
+    assert not any(
+        wanted_texts[event] not in ("-", "stops it") for event in (EDGE_COLUMN, LATE_COLUMN)
+    )
     if stops:
         assert [what for _, what in moves] == ["MOTORS 0 0"]
         assert moves[0][0] <= first_ms + 2
@@ -124,9 +132,10 @@ def test_the_button(state: str, press: str) -> None:
         assert moves == []
         assert robot.is_latched
     beeps = [what for _, what in rows if what.startswith("BEEP 1568")]
-    is_forgotten = table.is_reset_down and press == FOR_EVER
+    is_forgotten = table.is_reset_down and press == HELD_FOR_EVER
     assert len(beeps) == (
-        is_forgotten or (TWO in columns and wanted_texts[TWO].startswith("beeps"))
+        is_forgotten
+        or (TWO_SECONDS_COLUMN in columns and wanted_texts[TWO_SECONDS_COLUMN].startswith("beeps"))
     )
 
 
@@ -138,7 +147,7 @@ def test_text_is_lost_by_a_start_alone(press: str, has_draft: bool) -> None:
     STATES["has an open block of text"](table)
     press_button(table, press)
     answers = " ".join(type_text(table.robot, "END_LOOP\n", 100))
-    if SHORT in PRESSES[press][1]:
+    if SHORT_COLUMN in PRESSES[press][1]:
         assert "MOTORS 80 80" in " ".join(table.robot.did)
         assert "MOTORS 40 40" not in " ".join(table.robot.did), answers
     else:
@@ -158,15 +167,15 @@ def test_an_upload_is_lost_by_a_start_alone(press: str) -> None:
         table.robot.wait(max(1, at_ms - now_ms))
         table.robot.step(flags=FLAGS[letter])
         now_ms = at_ms
-    if press != FOR_EVER and now_ms < 2500:
+    if press != HELD_FOR_EVER and now_ms < 2500:
         outcome = table.robot.until(table.session, request, 30_000)
         drives = f"MOTORS {OTHER} {OTHER}" in " ".join(table.robot.did)
-        assert (outcome == OK) == drives == (SHORT not in PRESSES[press][1])
+        assert (outcome == OK) == drives == (SHORT_COLUMN not in PRESSES[press][1])
 
 
 # The state changes while the button is down: only a robot that was stopped all the time starts at
 # the release.
-MEANWHILE: dict[str, Callable[[Table], object]] = {
+ACTIONS_DURING_PRESS: dict[str, Callable[[Table], object]] = {
     "nothing": lambda table: None,
     "a line": lambda table: table.session.live(image_of(f"SI|F(600, {LINE})").code),
     "a short line": lambda table: table.session.live(image_of(f"SI|F(0.05, {LINE})").code),
@@ -179,7 +188,7 @@ MEANWHILE: dict[str, Callable[[Table], object]] = {
 
 
 @pytest.mark.parametrize("is_sure", [True, False])
-@pytest.mark.parametrize("meanwhile", MEANWHILE)
+@pytest.mark.parametrize("meanwhile", ACTIONS_DURING_PRESS)
 def test_a_release_starts_nothing_where_something_ran_or_was_stopped_since(
     meanwhile: str, is_sure: bool
 ) -> None:
@@ -187,15 +196,15 @@ def test_a_release_starts_nothing_where_something_ran_or_was_stopped_since(
     table.upload_program(SAVED)
     if "text" in meanwhile:
         table.quiet()
-    table.talk(1, PRESSED)
+    table.talk(1, BUTTON_PRESSED)
     table.talk(31 if is_sure else 5)
     if is_sure:
-        table.talk(1, HELD)
-    MEANWHILE[meanwhile](table)
+        table.talk(1, BUTTON_HELD)
+    ACTIONS_DURING_PRESS[meanwhile](table)
     table.talk(300)
     if not is_sure:
-        table.talk(1, HELD)
-    table.talk(1, RELEASED)
+        table.talk(1, BUTTON_HELD)
+    table.talk(1, BUTTON_RELEASED)
     table.talk(700)
     starts = f"MOTORS {SAVED} {SAVED}" in " ".join(table.robot.did)
     assert starts == (meanwhile == "nothing")

@@ -269,9 +269,8 @@ def test_an_upload_that_something_has_come_between_is_over(
     line, rest = cut_by(kind, memory, cut, REQUESTS_THAT_END_UPLOAD[what])
     twin, _ = cut_by(kind, memory, cut, REQUESTS_THAT_END_UPLOAD[what])
     if what == "an upload":
-        rest = (
-            rest[1:] if cut == CUT_BEFORE_LAST_PIECE else [("COMMIT", bytes(4))]
-        )  # a shorter payload
+        # a shorter payload
+        rest = rest[1:] if cut == CUT_BEFORE_LAST_PIECE else [("COMMIT", bytes(4))]
     refused = [line.asks(*frame) for frame in rest]
     assert OK not in refused, (refused, rest)
     assert {twin.asks("PING") for _ in rest} == {OK}

@@ -37,13 +37,13 @@ from tiniscript.link.messages import (
 from tiniscript.link.outcomes import LOST, OTHER_ROBOT, UNPROVEN
 from tiniscript.link.session import Session
 
-TRIALS = 150
+TRIAL_COUNT = 150
 HELLO, AUTHENTICATE, STATUS, STOPPED = (
     BY_NAME[name].number for name in ("HELLO", "AUTHENTICATE", "STATUS", "STOPPED")
 )
 LIMIT_MS = 9000
-CLEARED = (OWNED, SEALS, OWNED | SEALS)
-PLACE, NAME = "tcp://ana", b"ANA"
+CLEARED_FLAGS = (OWNED, SEALS, OWNED | SEALS)
+ROBOT_PLACE, NAME = "tcp://ana", b"ANA"
 OTHER_ID, OTHER_SEED = 0x00C0FFEE, 0x0BADCAFE
 
 
@@ -192,7 +192,7 @@ def one_trial(end: End, seed: int) -> str:
     keys = Keys()
     keys.stored_keys = list(end.keys.stored_keys)
     session = end.session(draw.getrandbits(32), keys)
-    cleared = draw.choice((0, *CLEARED))
+    cleared = draw.choice((0, *CLEARED_FLAGS))
     greets = {HELLO} | ({AUTHENTICATE} if draw.random() < 0.5 else set())
     if draw.random() < 0.3:
         greets |= {STATUS, BY_NAME["PING"].number}
@@ -239,15 +239,15 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
     is_place = draw.random() < 0.5
     if is_place:  # the name is unknown, but the robot has answered here before
         keys.stored_keys = [key._replace(name="") for key in keys.stored_keys]
-    place = PLACE if is_place else draw.choice(("", "tcp://bob"))
+    place = ROBOT_PLACE if is_place else draw.choice(("", "tcp://bob"))
     session = end.session(draw.getrandbits(32), keys, place)
     honest(end, session, session.hello())
-    assert keys.id_by_place.get(PLACE) == (end.keys.stored_keys[0].id if is_place else None)
+    assert keys.id_by_place.get(ROBOT_PLACE) == (end.keys.stored_keys[0].id if is_place else None)
     if state_of(end) != STATE_RUNNING:
         start_long_drive(end, draw)
     if "greeted" not in how:
         session = end.session(draw.getrandbits(32), keys, place)
-    cleared = draw.choice((0, *CLEARED, OWNED | OWNERS))
+    cleared = draw.choice((0, *CLEARED_FLAGS, OWNED | OWNERS))
     if how.startswith("id"):
         greets = draw.choice(({HELLO}, {HELLO, AUTHENTICATE}, {HELLO, STATUS}))
         between = Between(end, draw, cleared, lambda f: f.number in greets, other_id=OTHER_ID)
@@ -283,16 +283,16 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
 
 def test_a_stranger_with_an_id_of_its_own_is_not_believed() -> None:
     end, strange = End(), Stranger()
-    outcomes = {one_stranger(end, strange, seed) for seed in range(1, TRIALS + 1)}
+    outcomes = {one_stranger(end, strange, seed) for seed in range(1, TRIAL_COUNT + 1)}
     assert len(outcomes) == 16  # each kind
 
 
 def test_who_is_accepted_or_has_a_key_here_is_believed() -> None:
     end, strange = End(), Stranger()
     keys = end.keys
-    session = end.session(1, keys, PLACE)
+    session = end.session(1, keys, ROBOT_PLACE)
     honest(end, session, session.hello())
-    session = strange.session(2, keys, PLACE)
+    session = strange.session(2, keys, ROBOT_PLACE)
     request = session.hello()
     honest(strange, session, request)
     assert request.outcome and request.outcome.status == OTHER_ROBOT
@@ -304,10 +304,10 @@ def test_who_is_accepted_or_has_a_key_here_is_believed() -> None:
         assert session.robot and session.robot.id == other
     strange.table.claim_session(keys)  # in another slot
     keys.accepted_ids.clear()
-    session = strange.session(3, keys, PLACE)
+    session = strange.session(3, keys, ROBOT_PLACE)
     honest(strange, session, request := session.hello())
     assert request.outcome and request.outcome.status == 0
-    assert keys.id_by_place[PLACE] == other
+    assert keys.id_by_place[ROBOT_PLACE] == other
 
 
 def test_a_robot_of_which_nothing_is_known_is_believed() -> None:
@@ -316,15 +316,15 @@ def test_a_robot_of_which_nothing_is_known_is_believed() -> None:
     for key in ([], [RobotKey(7, KEY_OWNER, bytes(15) + b"\7", NAME.decode())]):
         keys = Keys()
         keys.stored_keys = key
-        keys.remember_robot(PLACE, 7)
-        session = strange.session(4, keys, PLACE)
+        keys.remember_robot(ROBOT_PLACE, 7)
+        session = strange.session(4, keys, ROBOT_PLACE)
         honest(strange, session, request := session.hello())
         assert request.outcome and request.outcome.status == 0
 
 
 def test_nobody_between_takes_the_seals_away() -> None:
     end = End()
-    assert len({one_trial(end, seed) for seed in range(1, TRIALS + 1)}) == 10  # each kind
+    assert len({one_trial(end, seed) for seed in range(1, TRIAL_COUNT + 1)}) == 10  # each kind
 
 
 @pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])

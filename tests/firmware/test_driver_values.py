@@ -20,12 +20,12 @@ from tiniscript.robots.profile import Wiring
 
 SENSORS = [driver for driver in DEVICES if isinstance(driver, SensorDriver)]
 ACTUATORS = [driver for driver in DEVICES if driver not in SENSORS]
-MANY = robot_with("l298n", DEVICES)
-SHOWN = {
+ROBOT_WITH_ALL_DRIVERS = robot_with("l298n", DEVICES)
+SHOW_PROGRAMS = {
     "number": "SI|M({0} * 10, 0);W(5)",
     "yes/no": "SI|IF({0});M(50, 0);ELSE;M(0, 0);ENDIF;W(5)",
 }
-SET = {"number": ("0", "4"), "yes/no": ("FALSE", "TRUE")}  # values in a range up to 5
+SET_VALUES = {"number": ("0", "4"), "yes/no": ("FALSE", "TRUE")}  # values in a range up to 5
 SET_MS = 500
 
 
@@ -35,7 +35,7 @@ def _analog(board: Board, wiring: Wiring, is_much: bool) -> None:
 
 
 # The inputs of a sensor, small or large, by the use of its pin.
-FELT: dict[str, Callable[[Board, Wiring, bool], None]] = {
+INPUTS_BY_ABILITY: dict[str, Callable[[Board, Wiring, bool], None]] = {
     "analog": _analog,
     "input": lambda board, wiring, is_much: board.level(0, wiring.pins["pin"], is_much),
     "echo": lambda board, wiring, is_much: board.echoes(
@@ -46,9 +46,13 @@ FELT: dict[str, Callable[[Board, Wiring, bool], None]] = {
 
 def wired_as(driver: Driver) -> tuple[str, Wiring]:
     """Return the name and the wiring of a driver's device."""
-    board = MANY.board
+    board = ROBOT_WITH_ALL_DRIVERS.board
     wirings = board.sensors if isinstance(driver, SensorDriver) else board.actuators
-    devices = MANY.kit.sensors if isinstance(driver, SensorDriver) else MANY.kit.actuators
+    devices = (
+        ROBOT_WITH_ALL_DRIVERS.kit.sensors
+        if isinstance(driver, SensorDriver)
+        else ROBOT_WITH_ALL_DRIVERS.kit.actuators
+    )
     name = f"D{DEVICES.index(driver)}"
     return name, wirings[[device.name for device in devices].index(name)]
 
@@ -79,8 +83,10 @@ def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
     name, wiring = wired_as(driver)
     readings = set()
     for is_much in (False, True):
-        board = start_board(MANY, SHOWN[driver.used_by.split()[1]].format(name))
-        FELT[driver.pins[-1].ability](board, wiring, is_much)
+        board = start_board(
+            ROBOT_WITH_ALL_DRIVERS, SHOW_PROGRAMS[driver.used_by.split()[1]].format(name)
+        )
+        INPUTS_BY_ABILITY[driver.pins[-1].ability](board, wiring, is_much)
         readings.add(board.run_for(START + 100).motors(START + 95))
     assert len(readings) == 2, "its reading is the same whatever it feels"
 
@@ -89,8 +95,10 @@ def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
 @pytest.mark.parametrize("driver", ACTUATORS, ids=names(ACTUATORS))
 def test_what_an_actuator_is_set_to_is_at_its_pins(driver: Driver) -> None:
     name, wiring = wired_as(driver)
-    less, more = SET[driver.used_by.split()[1]]
-    board = start_board(MANY, f"SI|{name}({less});W({SET_MS / 1000});{name}({more});W(1)")
+    less, more = SET_VALUES[driver.used_by.split()[1]]
+    board = start_board(
+        ROBOT_WITH_ALL_DRIVERS, f"SI|{name}({less});W({SET_MS / 1000});{name}({more});W(1)"
+    )
     pins = wiring.pins.values()
     for pin in pins:
         board.watch(pin)

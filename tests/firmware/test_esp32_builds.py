@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.esp32 import HAS_TLS, STAND_INS, flags_of
+from tests.machines.esp32 import HAS_TLS, STAND_INS_FOLDER, flags_of
 from tests.machines.host import SOURCES, missing
 from tests.support.cpp_sources import code_of
 from tests.support.esp32_builds import BOARD, complaints
@@ -25,7 +25,7 @@ CODE = [
     *sorted(BOARD.glob("*.cpp")),
     *sorted((BOARD / "esp32").glob("*.cpp")),
     SOURCES / "src" / "main.cpp",
-    STAND_INS / "signatures.cpp",
+    STAND_INS_FOLDER / "signatures.cpp",
 ]
 ISA = {"esp32dev": "lx6", "esp32c3": "rv32imc"}
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -46,7 +46,7 @@ def test_it_compiles_for_both_cores(chip: str, major: int, standard: str) -> Non
 @pytest.mark.skipif(not HAS_TLS, reason="needs libmbedtls-dev")
 def test_what_it_asks_of_tls_is_what_mbedtls_has() -> None:
     """Debian's headers: in version 12 those of 2.28, as in ESP-IDF 4.4."""
-    flags, file = flags_of("esp32dev", 2), STAND_INS / "signatures.cpp"
+    flags, file = flags_of("esp32dev", 2), STAND_INS_FOLDER / "signatures.cpp"
     command = ["g++", "-std=gnu++11", *flags, "-dM", "-E", str(file)]
     macros = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     assert "tiniscript_no_mbedtls" not in macros and "MBEDTLS_SSL_MAX_HOST_NAME_LEN" in macros

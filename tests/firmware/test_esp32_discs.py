@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.esp32 import STAND_INS, Esp32Robot, flags_of
+from tests.machines.esp32 import STAND_INS_FOLDER, Esp32Robot, flags_of
 from tests.machines.host import missing
 from tests.support.esp32_builds import BOARD, complaints
 from tests.support.images import image_of
@@ -194,6 +194,10 @@ def test_pins_that_only_read_count(pins: dict[str, int]) -> None:
 def test_it_compiles_for_both_cores(profile: Robot, major: int, tmp_path: Path) -> None:
     own = tmp_path / "own.h"
     own.write_text(firmware.header([profile], "a test."), encoding="utf-8")
-    flags = (f'-Dtiniscript_own="{own}"', *flags_of("esp32dev", major), f"-I{STAND_INS / 'core'}")
+    flags = (
+        f'-Dtiniscript_own="{own}"',
+        *flags_of("esp32dev", major),
+        f"-I{STAND_INS_FOLDER / 'core'}",
+    )
     for standard in ("gnu++11", "gnu++23"):
         assert complaints(BOARD / "discs.cpp", *flags, standard=standard) == ""

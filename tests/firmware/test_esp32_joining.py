@@ -15,7 +15,7 @@ from tests.support.robot_on_esp32 import Ends, boot, wait_for_outcome
 
 drawn = pytest.mark.sampled(of="how an ESP32 joins", keep=2)
 
-TRY_MS = 15_000  # kJoinAgainMs
+JOIN_RETRY_MS = 15_000  # kJoinAgainMs
 
 
 @drawn
@@ -37,22 +37,22 @@ def test_a_robot_away_from_school_leaves_the_antenna_to_bluetooth() -> None:
     robot, owner = make_owned_robot(Keys())
     ends: Ends = [(None, owner)]
     assert wait_for_outcome(robot, ends, owner.join(SCHOOL)) == "OK"
-    robot.wait(20 * TRY_MS)
+    robot.wait(20 * JOIN_RETRY_MS)
     assert 20 <= radios(robot).joins <= 21
     school_in_reach(robot)
-    robot.wait(TRY_MS + 100)
+    robot.wait(JOIN_RETRY_MS + 100)
     assert state(robot, owner) == ("STATION", "READY")
 
 
 @drawn
 def test_a_network_that_comes_back_is_joined() -> None:
     robot, owner = join_network(Keys())
-    robot.wait(TRY_MS)
+    robot.wait(JOIN_RETRY_MS)
     for away_ms in (50, 1000, 100_000):
         in_reach(robot, "", "")
         robot.wait(away_ms)
         school_in_reach(robot)
-        robot.wait(TRY_MS + 100)
+        robot.wait(JOIN_RETRY_MS + 100)
         assert state(robot, owner) == ("STATION", "READY")
 
 
@@ -60,11 +60,11 @@ def test_a_network_that_comes_back_is_joined() -> None:
 def test_a_network_that_sends_the_robot_away_is_joined_again() -> None:
     """After an ended authentication the status stays "connected", and `begin` does nothing."""
     robot, owner = join_network(Keys())
-    robot.wait(2 * TRY_MS)
+    robot.wait(2 * JOIN_RETRY_MS)
     joins = radios(robot).joins
     for turn in range(3):
         robot.radio("X")
-        robot.wait(TRY_MS + 100)
+        robot.wait(JOIN_RETRY_MS + 100)
         assert state(robot, owner) == ("STATION", "READY")
         assert radios(robot).joins == joins + turn + 1
 

@@ -12,8 +12,8 @@ from tiniscript.link.payloads import ReadingEvent
 from tiniscript.link.session import Session
 
 LIGHT, LIGHT_PIN = 1, 35  # LIGHT_L of a tinibot32
-CHANGES = 8
-READS = "SI|LOOP(FOREVER);X = LIGHT_L;W(0.1);END_LOOP"
+CHANGE_COUNT = 8
+READING_PROGRAM = "SI|LOOP(FOREVER);X = LIGHT_L;W(0.1);END_LOOP"
 
 
 def readings(client: Session) -> list[ReadingEvent]:
@@ -30,7 +30,9 @@ def test_who_drives_has_all_readings_whatever_another_one_does(then: str) -> Non
     assert wait_for_outcome(robot, ends, other.tell_readings(True)) == "OK"
     talk(robot, ends, AUTHORITY_MS + 300)  # an idle open page gives way
     assert wait_for_outcome(robot, ends, driver.tell_readings(True)) == "OK"
-    assert wait_for_outcome(robot, ends, driver.upload(image_of(READS), saves=False)) == "OK"
+    assert (
+        wait_for_outcome(robot, ends, driver.upload(image_of(READING_PROGRAM), saves=False)) == "OK"
+    )
     talk(robot, ends, 300)
     if then == "asks again":
         assert wait_for_outcome(robot, ends, other.tell_readings(True)) == "OTHER_DRIVER"
@@ -41,9 +43,9 @@ def test_who_drives_has_all_readings_whatever_another_one_does(then: str) -> Non
         other = session(3, robot)
         ends = [(None, driver), (end, other)]
         assert wait_for_outcome(robot, ends, other.hello()) == "OK"
-    for number in range(1, CHANGES + 1):
+    for number in range(1, CHANGE_COUNT + 1):
         robot.analog(LIGHT_PIN, 400 * number)
         talk(robot, ends, 300)
     values = [event.value for event in readings(driver) if event.sensor == LIGHT]
-    assert len(values) >= CHANGES and values == sorted(values)
+    assert len(values) >= CHANGE_COUNT and values == sorted(values)
     assert not readings(other)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.machines.esp32 import BROWN_OUT, EMPTY, EXTERNAL, TASK_WATCHDOG, Esp32Robot, Kept
+from tests.machines.esp32 import BROWN_OUT, EMPTY_MEMORY, EXTERNAL, TASK_WATCHDOG, Esp32Robot, Kept
 from tests.support.edited_robots import TEXTS
 from tests.support.robot_on_host import (
     actions_of,
@@ -397,7 +397,9 @@ def test_the_cause_of_a_reset(reset: int, number: int) -> None:
     assert robot.complete(session, session.hello()).reset == number
 
 
-@pytest.mark.parametrize("take", [lambda kept: EMPTY, lambda kept: kept._replace(noinit=b"")])
+@pytest.mark.parametrize(
+    "take", [lambda kept: EMPTY_MEMORY, lambda kept: kept._replace(noinit=b"")]
+)
 def test_what_a_reset_leaves_alone_may_be_anything(take: Callable[[Kept], Kept]) -> None:
     robot = driving()
     robot.hang(1200)

@@ -41,13 +41,14 @@ from tiniscript.link.session import Session
 
 BROKER_KEY = b"broker"
 # The same network: its password was mistyped, as is usual.
-SECOND = SCHOOL._replace(password=b"another long password")
-OTHERS = SCHOOL._replace(password=b"that of somebody else")
+SECOND_NETWORK = SCHOOL._replace(password=b"another long password")
+WRONG_PASSWORD_NETWORK = SCHOOL._replace(password=b"that of somebody else")
 BROKER = wifi.BrokerSettings(bytes((127, 0, 0, 1)), 1883, "aula", b"pia", b"p" * 40, b"b.local")
-OTHER = wifi.BrokerSettings(bytes((10, 0, 0, 9)), 8883, "patio", b"robots-of-ana", b"q" * 63,
-                            b"a-longer.name", wifi.Tls(bytes(range(200)), 20261121))  # fmt: skip
+OTHER_BROKER = wifi.BrokerSettings(bytes((10, 0, 0, 9)), 8883, "patio",
+                                   b"robots-of-ana", b"q" * 63, b"a-longer.name",
+                                   wifi.Tls(bytes(range(200)), 20261121))  # fmt: skip
 LEASE_MS, SEARCH_MS = 40_000, 4000
-TRY_MS = 15_000  # kJoinAgainMs
+JOIN_RETRY_MS = 15_000  # kJoinAgainMs
 RETRY_MS = 4000  # between two tries at a broker, at most
 
 
@@ -56,7 +57,7 @@ RETRY_MS = 4000  # between two tries at a broker, at most
 
 def refused(robot: Esp32Robot, network: wifi.Network, reason: int = 15) -> None:
     robot.radio("x", bytes([reason]))
-    let_in(robot, OTHERS if network == SECOND else SECOND)
+    let_in(robot, WRONG_PASSWORD_NETWORK if network == SECOND_NETWORK else SECOND_NETWORK)
 
 
 def out_of_reach(robot: Esp32Robot, network: wifi.Network) -> None:
@@ -80,7 +81,7 @@ def let_in_late(robot: Esp32Robot, network: wifi.Network) -> None:
     let_in(robot, network, LEASE_MS)
 
 
-ENDS: dict[str, Callable[[Esp32Robot, wifi.Network], None]] = {
+CONNECTION_ENDS: dict[str, Callable[[Esp32Robot, wifi.Network], None]] = {
     "out of reach": out_of_reach,
     "joined": let_in,
     "joined late": let_in_late,
@@ -91,7 +92,7 @@ ENDS: dict[str, Callable[[Esp32Robot, wifi.Network], None]] = {
 
 # -- whatever was set before ---------------------------------------------------------------------
 
-NETWORKS = (SCHOOL, SECOND, HOTSPOT)
+NETWORKS = (SCHOOL, SECOND_NETWORK, HOTSPOT)
 RESETS = (POWER_ON, EXTERNAL, PANIC)
 LOOK_MS, FIRST_LOOK_MS = 730, 300  # no look is near the time of a try or of a lease
 
@@ -130,7 +131,7 @@ class Life:
     def move_to(self, end: str, network: wifi.Network) -> None:
         self.place = end, network
         let_in(self.robot, network)
-        ENDS[end](self.robot, network)
+        CONNECTION_ENDS[end](self.robot, network)
 
     def use(self, network: wifi.Network | None) -> None:
         owner = self.owner
@@ -141,12 +142,12 @@ class Life:
         """Something changes: the settings, the place, the memory, the power; or a client comes."""
         what, network = rng.randrange(10), rng.choice(NETWORKS)
         if what < 4:
-            self.move_to(rng.choice([*ENDS]), network)
+            self.move_to(rng.choice([*CONNECTION_ENDS]), network)
             self.use(network)
         elif what == 4:
             self.use(rng.choice((network, None)))
         elif what == 5:
-            self.move_to(rng.choice([*ENDS]), network)
+            self.move_to(rng.choice([*CONNECTION_ENDS]), network)
         elif what == 6:
             self.robot.radio("H", bytes([rng.randrange(2)]))
         elif what == 7:
@@ -156,7 +157,7 @@ class Life:
         elif port_of(self.robot):
             self.guests.append(Network(self.robot))
             self.guests[-1].send(rng.choice((b"", b"X", b"PING|check_connection\n")))
-        self.robot.wait(rng.choice((2, 50, 1000, TRY_MS, 25_000)))
+        self.robot.wait(rng.choice((2, 50, 1000, JOIN_RETRY_MS, 25_000)))
 
     def looks(self, count: int) -> list[object]:
         """Return all that can be seen of the radio, again and again, from new settings on."""
@@ -183,15 +184,16 @@ class Life:
 
 def check_radio(seed: int) -> str:
     rng = random.Random(seed)
-    before, end = [*ENDS][seed // 5 % 5], [*ENDS][seed % 5]  # each one after each
+    # each one after each
+    before, end = [*CONNECTION_ENDS][seed // 5 % 5], [*CONNECTION_ENDS][seed % 5]
     old = Life()
     for _ in range(rng.choice((1, 2, 5))):
         old.step(rng)
     old.robot.radio("H", b"\0")
     old.move_to(before, SCHOOL)
     old.use(rng.choice((SCHOOL, SCHOOL, HOTSPOT)))
-    old.robot.wait(rng.choice((50, 1000, TRY_MS)))
-    last = rng.choice((SECOND, SECOND, SECOND, HOTSPOT, None))
+    old.robot.wait(rng.choice((50, 1000, JOIN_RETRY_MS)))
+    last = rng.choice((SECOND_NETWORK, SECOND_NETWORK, SECOND_NETWORK, HOTSPOT, None))
     count = rng.choice((3, 3, 25, 60))  # up to 2 s, 18 s and 44 s
     seen = []
     for life in (old, Life()):
@@ -220,7 +222,7 @@ def test_who_is_let_in_at_last_was_not_refused(reason: int) -> None:
     talk(robot, [], 2)
     assert state(robot, owner) == ("STATION", "REFUSED")
     let_in_late(robot, SCHOOL)
-    robot.wait(TRY_MS + 1000)
+    robot.wait(JOIN_RETRY_MS + 1000)
     assert state(robot, owner) == ("STATION", "SEARCHING")
     robot.wait(LEASE_MS)
     assert state(robot, owner) == ("STATION", "READY")
@@ -233,7 +235,7 @@ REQUEST_MAKERS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
     "a network": lambda owner: owner.join(SCHOOL),
     "a hotspot": lambda owner: owner.join(HOTSPOT),
     "a broker": lambda owner: owner.use_broker(BROKER),
-    "a broker with TLS": lambda owner: owner.use_broker(OTHER),
+    "a broker with TLS": lambda owner: owner.use_broker(OTHER_BROKER),
     "no broker": lambda owner: owner.use_broker(None),
     "no network": lambda owner: owner.forget_wifi(),
 }
@@ -345,8 +347,10 @@ def test_no_setting_is_written_while_the_robot_drives(what: str) -> None:
 
 
 CONNECT_ANSWER, SUBSCRIBE_ANSWER, PING_ANSWER = b"\x20\2\0\0", b"\x90\4\0\1\0\0", b"\xd0\0"
-MESSAGE = b"\x30" + bytes((2 + len(b"tiniscript/aula/stop") + 5, 0, len(b"tiniscript/aula/stop")))
-MESSAGE += b"tiniscript/aula/stop" + b"hello"
+STOP_PUBLICATION = b"\x30" + bytes(
+    (2 + len(b"tiniscript/aula/stop") + 5, 0, len(b"tiniscript/aula/stop"))
+)
+STOP_PUBLICATION += b"tiniscript/aula/stop" + b"hello"
 CONNECT, SUBSCRIBE, PING = 1, 8, 12
 
 
@@ -398,7 +402,7 @@ class CutBroker:
     def _answer(self, kind: int) -> None:
         answers = {
             CONNECT: CONNECT_ANSWER,
-            SUBSCRIBE: SUBSCRIBE_ANSWER + MESSAGE * 3,
+            SUBSCRIBE: SUBSCRIBE_ANSWER + STOP_PUBLICATION * 3,
             PING: PING_ANSWER,
         }
         data = answers.get(kind, b"")
@@ -446,7 +450,7 @@ def comes_back(robot: Esp32Robot, owner: Session, broker: CutBroker, limit_ms: i
     return False
 
 
-LONGEST = len(CONNECT_ANSWER + SUBSCRIBE_ANSWER + MESSAGE * 3 + PING_ANSWER * 2)
+ALL_ANSWER_BYTES = len(CONNECT_ANSWER + SUBSCRIBE_ANSWER + STOP_PUBLICATION * 3 + PING_ANSWER * 2)
 
 
 @pytest.mark.parametrize("rest", [b"", b"\xff" * 9, b"\x30\xff\xff\xff\xff\xff"])
@@ -460,7 +464,7 @@ def test_a_connection_that_is_cut_anywhere_is_made_again(
     settings = wifi.BrokerSettings(bytes((127, 0, 0, 1)), cut_broker.port, "aula")
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
     assert comes_back(robot, owner, cut_broker, RETRY_MS)
-    for count, cut_after in enumerate(range(1 + part, LONGEST + 1, 6), 1):
+    for count, cut_after in enumerate(range(1 + part, ALL_ANSWER_BYTES + 1, 6), 1):
         cut_broker.part()
         cut_broker.cut_after, cut_broker.rest = cut_after, rest
         limit_ms = 3 * RETRY_MS + 6000

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.esp32 import STAND_INS, flags_of
+from tests.machines.esp32 import STAND_INS_FOLDER, flags_of
 from tests.machines.host import BUILD_CACHE, FLAGS, SOURCES, WARNINGS, compile_once
 
 STORE = SOURCES / "src" / "store" / "store.cpp"
@@ -21,8 +21,8 @@ NVS = SOURCES / "src" / "boards" / "esp32" / "nvs.cpp"
 OTHERS = [
     SOURCES / "src" / "vm" / "crc32.cpp",
     SOURCES / "extras" / "powercut" / "contents.cpp",
-    STAND_INS / "simulated_chip.cpp",
-    STAND_INS / "powercut.cpp",
+    STAND_INS_FOLDER / "simulated_chip.cpp",
+    STAND_INS_FOLDER / "powercut.cpp",
 ]
 PAGE_BYTES = 4096  # bytes of an NVS page
 MIN_SPIFFS_PAGES = 5  # NVS pages in min_spiffs.csv
@@ -82,7 +82,7 @@ def test_nvs_has_room_for_two_programs_and_a_third() -> None:
     assert places[0][0] >= FIRST_PARTITION and sum(places[-1][:2]) <= FLASH_BYTES
     assert all(a + size <= b for (a, size, _), (b, *_) in pairwise(places)), "two overlap"
     (nvs_bytes,) = (size for _, size, name in places if name == "nvs")
-    header = (STAND_INS / "simulated_chip.h").read_text(encoding="utf-8")
+    header = (STAND_INS_FOLDER / "simulated_chip.h").read_text(encoding="utf-8")
     (pages,) = map(int, re.findall(r"nvs_room = (\d+) \* kPageEntries", header))
     assert pages + 1 == nvs_bytes // PAGE_BYTES
 

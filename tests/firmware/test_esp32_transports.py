@@ -98,7 +98,7 @@ def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
     assert upload_text(robot, ends, driver) == "OK", "who drives goes on after it"
 
 
-ENDS: dict[str, tuple[str, str]] = {  # the program, and the events for everyone
+PROGRAM_ENDS: dict[str, tuple[str, str]] = {  # the program, and the events for everyone
     "by itself": ("SI|F(0.2, 80)", "DONE"),
     "its fault": ("SI|X = 0;F(0.2, 80);SHOW(1 / X)", "FAULT"),
     "its silent client": (AWAY_PROGRAM, "FAULT"),
@@ -109,7 +109,7 @@ ENDS: dict[str, tuple[str, str]] = {  # the program, and the events for everyone
     "a line of another one": (AWAY_PROGRAM, "STOPPED"),
     "the button": (AWAY_PROGRAM, "STOPPED"),
 }
-SAID = {
+HARMLESS_BYTES = {
     "its client's zeros": bytes(4),
     "another one's zeros": bytes(4),
     "a message of another one": b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0)),
@@ -118,10 +118,10 @@ SAID = {
 
 
 @pytest.mark.parametrize("driver", range(3))
-@pytest.mark.parametrize("how", ENDS)
+@pytest.mark.parametrize("how", PROGRAM_ENDS)
 def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) -> None:
     """Each is told once, and their later requests belong to the time after it."""
-    text, name = ENDS[how]
+    text, name = PROGRAM_ENDS[how]
     if (how, driver) == ("its client that leaves", 0):
         driver = 1  # a cable does not leave
     robot = boot()
@@ -140,8 +140,8 @@ def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) ->
         listening.remove(driver)
         if how == "its client that leaves" and (way := ways[driver]) is not None:
             way.leave()
-    elif how in SAID:
-        say(robot, ends[driver if how.startswith("its") else other], SAID[how])
+    elif how in HARMLESS_BYTES:
+        say(robot, ends[driver if how.startswith("its") else other], HARMLESS_BYTES[how])
     listening_ends = [ends[place] for place in listening]
     talk(robot, listening_ends, 1, flags=how == "the button")
     talk(robot, listening_ends, DEAD_MAN_MS + 300)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.esp32 import STAND_INS, TLS, flags_of
+from tests.machines.esp32 import STAND_INS_FOLDER, TLS, flags_of
 from tests.machines.host import BUILD_CACHE, SOURCES, compile_once
 
 CLANG = "clang++-22"
@@ -35,7 +35,7 @@ def program(sources: Path = SOURCES) -> Path:
         *(sources / "extras" / "esp32" / name for name in THREADS),
     ]
     headers = [path.read_bytes() for path in sorted((sources / "src").rglob("*.h"))]
-    headers += [path.read_bytes() for path in sorted(STAND_INS.rglob("*.h"))]
+    headers += [path.read_bytes() for path in sorted(STAND_INS_FOLDER.rglob("*.h"))]
     objects = []
     for path in code:
         texts = [*headers, path.name.encode(), path.read_bytes()]

@@ -17,7 +17,7 @@ from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import RADIOS, Ends, Make, boot, upload_text, wait_for_outcome
 from tests.support.robot_on_host import actions_of
-from tests.support.stop_spellings import ALL_PREFIXES, HELD_MS, SILENCE_MS, spellings_after
+from tests.support.stop_spellings import ALL_PREFIXES, SHORTEST_STOP_MS, SILENCE_MS, spellings_after
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.session import Session
@@ -46,7 +46,7 @@ def stops(robot: Esp32Robot, end: End | None, ends: Ends, data: bytes, what: str
     typed: Ends = [*ends, (end, Bytes(data))]
     talk(robot, typed, LATE_MS)
     if not stands(robot):
-        talk(robot, typed, HELD_MS)  # inside a started frame
+        talk(robot, typed, SHORTEST_STOP_MS)  # inside a started frame
     assert stands(robot), what
     talk(robot, [*ends, (end, Bytes(b"SI|F(1,80)\n"))], 50)  # before a second of silence
     assert stands(robot), what
@@ -171,7 +171,7 @@ def test_what_is_lost_stops_nobody(make: Make) -> None:
         frame = encode_frame(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1" + code))
         assert b"\nS\n" in frame
         end.send(b"\0" + frame)
-        talk(robot, ends, HELD_MS + 20)
+        talk(robot, ends, SHORTEST_STOP_MS + 20)
         assert not stands(robot)
     assert wait_for_outcome(robot, [*ends, (end, client)], client.status()) == "OK"
 

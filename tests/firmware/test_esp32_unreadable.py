@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from tests.machines.esp32 import BLOBS, CLOSED, EMPTY, NUMBERS, Esp32Robot, Kept
+from tests.machines.esp32 import (
+    EMPTY_MEMORY,
+    NVS_BLOBS_FAIL,
+    NVS_CLOSED,
+    NVS_NUMBERS_FAIL,
+    Esp32Robot,
+    Kept,
+)
 from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
 from tests.support.esp32_wifi import make_owned_robot, remote
 from tests.support.images import image_of
@@ -14,7 +21,7 @@ from tests.support.robot_on_host import actions_of
 from tiniscript.link.messages import SAVED_STATES, STOP_BYTES
 from tiniscript.link.session import Session
 
-FAULTS = pytest.mark.parametrize("fault", [CLOSED, NUMBERS, BLOBS])
+FAULTS = pytest.mark.parametrize("fault", [NVS_CLOSED, NVS_NUMBERS_FAIL, NVS_BLOBS_FAIL])
 
 
 def claimed_with_program(keys: Keys) -> Kept:
@@ -76,11 +83,11 @@ def test_its_owner_is_told_why_and_keeps_the_key(fault: int) -> None:
     assert upload_text(restarted_robot, [(None, owner)], owner) == "OK"
 
 
-@pytest.mark.parametrize("fault", [CLOSED, NUMBERS])  # a new chip has no blobs to read
+@pytest.mark.parametrize("fault", [NVS_CLOSED, NVS_NUMBERS_FAIL])  # a new chip has no blobs to read
 def test_a_new_robot_is_nobodys_until_its_memory_can_be_read(fault: int) -> None:
-    robot = boot(EMPTY, fault)
+    robot = boot(EMPTY_MEMORY, fault)
     anybody = session(2, robot)
     assert upload_text(robot, [(None, anybody)], anybody) == "NOT_OWNER"
-    robot = boot(EMPTY, 0)
+    robot = boot(EMPTY_MEMORY, 0)
     anybody = session(2, robot)
     assert upload_text(robot, [(None, anybody)], anybody) == "OK"

@@ -8,13 +8,13 @@ from struct import pack as struct_pack
 
 import pytest
 
-from tests.machines.host_firmware import EMPTY, HostFirmware
+from tests.machines.host_firmware import EMPTY_EEPROM, HostFirmware
 from tests.support.images import image_of
 from tests.support.kept_programs import (
-    EACH,
-    FIRST,
-    LATER_VERSION,
-    SECOND,
+    FIRST_SLOT,
+    LATER_VERSION_IMAGE,
+    RECORD_BYTES,
+    SECOND_SLOT,
     bytes_of,
     eeprom_with,
     later_version_image,
@@ -37,7 +37,7 @@ def open_session(memory: bytes) -> tuple[HostFirmware, Session]:
     return robot, session
 
 
-@pytest.mark.parametrize("place", [FIRST, SECOND])
+@pytest.mark.parametrize("place", [FIRST_SLOT, SECOND_SLOT])
 @pytest.mark.parametrize("length", [0, 3, 389])
 def test_a_robot_says_that_its_program_is_of_another_version(place: int, length: int) -> None:
     memory = eeprom_with((place, 7, later_version_image(random.Random(length).randbytes(length))))
@@ -55,7 +55,10 @@ def test_a_robot_says_that_its_program_is_of_another_version(place: int, length:
 
 def test_the_next_program_replaces_it() -> None:
     robot, session = open_session(
-        eeprom_with((FIRST, 0, later_version_image(bytes(20), "SB")), (SECOND, 1, LATER_VERSION))
+        eeprom_with(
+            (FIRST_SLOT, 0, later_version_image(bytes(20), "SB")),
+            (SECOND_SLOT, 1, LATER_VERSION_IMAGE),
+        )
     )
     assert read_saved_state(robot, session) == "OTHER_VERSION"
     image = image_of("SB|F(0.1, 60)")
@@ -67,7 +70,7 @@ def test_the_next_program_replaces_it() -> None:
     assert restarted_robot.complete(session, session.fetch()).image[15:] == image.code
 
 
-@pytest.mark.parametrize("place", [FIRST, SECOND])
+@pytest.mark.parametrize("place", [FIRST_SLOT, SECOND_SLOT])
 def test_a_program_of_version_1_counts_as_none(place: int) -> None:
     robot, session = open_session(eeprom_with((place, 7, VERSION_1)))
     assert read_saved_state(robot, session) == "NOTHING"
@@ -76,17 +79,21 @@ def test_a_program_of_version_1_counts_as_none(place: int) -> None:
 
 def test_one_of_this_version_before_it_counts() -> None:
     mine = bytes_of("SB|F(0.1, 60)")
-    robot, session = open_session(eeprom_with((FIRST, 3, mine), (SECOND, 4, LATER_VERSION)))
+    robot, session = open_session(
+        eeprom_with((FIRST_SLOT, 3, mine), (SECOND_SLOT, 4, LATER_VERSION_IMAGE))
+    )
     assert read_saved_state(robot, session) == "STORED"
     later = with_checksum(mine[:3] + b"\2" + mine[4:])  # a later minor version
-    robot, session = open_session(eeprom_with((FIRST, 3, later), (SECOND, 2, LATER_VERSION)))
+    robot, session = open_session(
+        eeprom_with((FIRST_SLOT, 3, later), (SECOND_SLOT, 2, LATER_VERSION_IMAGE))
+    )
     assert read_saved_state(robot, session) == "OTHER_VERSION"
 
 
 def test_a_program_with_a_longer_header_is_run() -> None:
     image = unpack(bytes_of("SB|F(0.1, 60)"))
     longer = pack("SB", image.devices, image.code, b"what a later version says")
-    robot, session = open_session(eeprom_with((FIRST, 3, longer)))
+    robot, session = open_session(eeprom_with((FIRST_SLOT, 3, longer)))
     assert read_saved_state(robot, session) == "STORED"
     assert robot.complete(session, session.fetch()).image == longer
     robot.push()
@@ -96,10 +103,10 @@ def test_a_program_with_a_longer_header_is_run() -> None:
 
 def test_name_and_trim_outlive_an_update() -> None:
     """Their places do not depend on the program's version."""
-    robot, session = open_session(eeprom_with((FIRST, 0, LATER_VERSION)))
+    robot, session = open_session(eeprom_with((FIRST_SLOT, 0, LATER_VERSION_IMAGE)))
     assert robot.until(session, session.name(b"Ada")) == OK
     memory = bytearray(robot.memory())
-    assert memory[4 : 4 + EACH] != EMPTY[4 : 4 + EACH]
+    assert memory[4 : 4 + RECORD_BYTES] != EMPTY_EEPROM[4 : 4 + RECORD_BYTES]
     restarted_robot, session = open_session(bytes(memory))
     assert session.robot is not None and session.robot.name == "Ada"
     assert read_saved_state(restarted_robot, session) == "OTHER_VERSION"
@@ -124,7 +131,7 @@ def test_a_pace_that_other_firmware_has_kept_is_none(pace: tuple[int, int]) -> N
     """Impossible values would end a move too early, so the kit's speed is used."""
     body = bytes(15) + struct_pack("<4H", *pace, *pace)
     record = struct_pack("<I", zlib.crc32(body)) + body
-    robot, session = open_session(eeprom_with((4 + 2 * EACH, 3, record)))
+    robot, session = open_session(eeprom_with((4 + 2 * RECORD_BYTES, 3, record)))
     values = robot.complete(session, session.trim())
     assert values.pace == struct_pack("<4H", *pace, *pace), "it is read"
     send(robot, session, "SI|F(20 CM, 60)", saves=False)

@@ -11,10 +11,10 @@ import pytest
 from tests.between.lines import Fault, Way
 from tests.support.images import image_of
 from tests.support.owners import (
+    BUTTON_HELD,
+    BUTTON_PRESSED,
+    BUTTON_RELEASED,
     FOREVER,
-    HELD,
-    PRESSED,
-    RELEASED,
     Keys,
     Owned,
     owner_of,
@@ -71,7 +71,7 @@ def spikes_on_the_wire(table: Owned, session: Session) -> PendingRequest[Any]:
     request = session.claim(KEY_OWNER)
     table.pass_time(session, 300)
     for _ in range(40):  # edges down that no press follows
-        table.pass_time(session, 1, PRESSED)
+        table.pass_time(session, 1, BUTTON_PRESSED)
         table.pass_time(session, 99)
     return request
 
@@ -112,15 +112,15 @@ class Late:
 
 
 LINE_STEP_MS = 5
-SAID_MS = 30_000  # "tsc waits 30 s"
+WAIT_LIMIT_MS = 30_000  # "tsc waits 30 s"
 
 
-CLAIMS = ["nothing", "cut", "cut, later not", "held", "held and cut", "taken and cut"]
+CLAIM_CASES = ["nothing", "cut", "cut, later not", "held", "held and cut", "taken and cut"]
 
 
 @pytest.mark.sampled("late_ms")
 @pytest.mark.parametrize("late_ms", [0, 40, 300, 700])
-@pytest.mark.parametrize("what", CLAIMS)
+@pytest.mark.parametrize("what", CLAIM_CASES)
 def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None:
     """However long answers take, and whatever the result of the press. A key that the robot may
     have taken is kept: it is shown the next time."""
@@ -130,12 +130,12 @@ def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None
     began_ms = table.robot.now_ms
     request = session.claim(KEY_OWNER)
     line.is_cut = what.startswith("cut")
-    line.pass_time(SAID_MS - 6000)
+    line.pass_time(WAIT_LIMIT_MS - 6000)
     line.is_cut = what == "cut"
     if what[:4] in ("held", "take"):
-        line.pass_time(1, PRESSED)
+        line.pass_time(1, BUTTON_PRESSED)
         line.pass_time(30)
-        line.pass_time(1970, HELD)
+        line.pass_time(1970, BUTTON_HELD)
         line.is_cut = what == "held and cut"
         while (
             what == "taken and cut" and keys.stored_keys[0].is_pending and request.outcome is None
@@ -143,8 +143,8 @@ def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None
             line.pass_time(LINE_STEP_MS)
         line.is_cut |= what == "taken and cut"
     line.until(request)
-    assert table.robot.now_ms <= began_ms + SAID_MS + 2 * LINE_STEP_MS
-    table.robot.step(flags=RELEASED)
+    assert table.robot.now_ms <= began_ms + WAIT_LIMIT_MS + 2 * LINE_STEP_MS
+    table.robot.step(flags=BUTTON_RELEASED)
     is_taken = owner_of(table, table.session(nonce=8)) != FREE
     assert is_taken or what not in ("held", "taken and cut")
     assert owner_of(table, table.session(keys, nonce=7)) == (OWNED_BY_YOU if is_taken else FREE)
@@ -181,9 +181,9 @@ def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
     session = table.claim_session(keys)
     session.claim(KEY_OWNER)
     table.pass_time(session, 300)
-    table.pass_time(session, 1, PRESSED)
+    table.pass_time(session, 1, BUTTON_PRESSED)
     table.pass_time(session, 31)
-    table.pass_time(session, 2100, HELD)
+    table.pass_time(session, 2100, BUTTON_HELD)
     table.pass_time(session, cut_ms)
     later = Owned(table.robot.memory(), seed=cut_ms)
     assert len(keys.stored_keys) in (1, 2)
@@ -201,11 +201,11 @@ def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None
     assert len(left) == 7
     session.claim(KEY_OWNER)
     table.pass_time(session, 300)
-    table.pass_time(session, 1, PRESSED)
+    table.pass_time(session, 1, BUTTON_PRESSED)
     table.pass_time(session, 30)
-    table.pass_time(session, 2100, HELD)
+    table.pass_time(session, 2100, BUTTON_HELD)
     table.pass_time(session, 400)
-    table.robot.step(flags=RELEASED)
+    table.robot.step(flags=BUTTON_RELEASED)
     keys.stored_keys = [left[0], keys.stored_keys[-1]._replace(is_pending=True)]
     later = table.session(keys, nonce=99)
     assert owner_of(table, later) == OWNED_BY_YOU
@@ -414,9 +414,9 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
     )
     for milliseconds, owner in ((9800, OWNED_BY_YOU), (10_800, FREE)):
         table = Owned(table.robot.memory(), seed=milliseconds)
-        table.pass_time(None, 1, HELD)  # a button that was down before the reset
+        table.pass_time(None, 1, BUTTON_HELD)  # a button that was down before the reset
         table.pass_time(None, milliseconds - 1)
-        table.pass_time(None, 1, RELEASED)
+        table.pass_time(None, 1, BUTTON_RELEASED)
         session = table.session(keys)
         # Our own keys still have the old owner until they are forgotten.
         if owner == FREE and table.seals:

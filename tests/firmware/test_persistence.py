@@ -13,9 +13,9 @@ import pytest
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tests.support.kept_programs import (
-    DRIVES,
-    EACH,
-    FIRST,
+    DRIVE_PROGRAM,
+    FIRST_SLOT,
+    RECORD_BYTES,
     bytes_of,
     name_after_power_off,
     program_after_power_off,
@@ -63,14 +63,14 @@ def test_what_stands_is_saved_while_it_runs() -> None:
 
 def test_a_program_that_drives_without_a_pause_is_saved_when_it_ends() -> None:
     robot, session = switched_on(), computer()
-    send(robot, session, DRIVES)
+    send(robot, session, DRIVE_PROGRAM)
     robot.talk(session, 5000)
     assert read_saved_state(robot, session) == "SAVING"
     assert program_after_power_off(robot) == b""
     session.stop(robot.now_ms)
     robot.talk(session, 300)
     assert read_saved_state(robot, session) == "STORED"
-    assert program_after_power_off(robot) == bytes_of(DRIVES)
+    assert program_after_power_off(robot) == bytes_of(DRIVE_PROGRAM)
 
 
 @pytest.mark.parametrize("wait", [1, 2, 3, 4, 5, 7])
@@ -116,7 +116,7 @@ def test_a_name_is_ok_when_it_is_kept_and_told_to_be_kept_later_while_it_drives(
         assert robot.until(session, session.name(name)) == OK
         assert name_after_power_off(robot) == name.decode()
         assert session.robot is not None and session.robot.name == name.decode()
-    send(robot, session, DRIVES, saves=False)
+    send(robot, session, DRIVE_PROGRAM, saves=False)
     begun_ms = robot.now_ms
     assert robot.until(session, session.name(b"NEW")) == STATUSES["SAVING"]
     assert robot.now_ms - begun_ms < 6000  # time that a command waits
@@ -146,7 +146,7 @@ def test_a_trim_is_ok_when_it_is_kept() -> None:
         restarted_robot, other = switched_on(robot.memory()), computer(2)
         values = restarted_robot.complete(other, other.trim())
         assert bytes((values.wheels, values.balance, values.least)) == trim
-    send(robot, session, DRIVES, saves=False)
+    send(robot, session, DRIVE_PROGRAM, saves=False)
     assert robot.until(session, session.trim(b"\1\2\3")) == STATUSES["SAVING"]
 
 
@@ -240,7 +240,7 @@ def test_what_a_worn_last_byte_has_spoilt_is_empty() -> None:
     for name in (b"OLD", b"NEW"):
         assert robot.until(session, session.name(name)) == OK
     slot = robot.memory().index(b"OLD") - 4 - 8
-    robot.wear_out(slot + EACH - 1)
+    robot.wear_out(slot + RECORD_BYTES - 1)
     assert robot.until(session, session.trim(bytes((0, 0, 3)))) == STATUSES["NOT_KEPT"]
     robot.talk(session, 400)  # the pace's record, then this one again
     assert robot.memory()[slot : slot + 2] == b"\xff\xff", "the generation and its mark"
@@ -320,8 +320,8 @@ def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
     """Repairs after a cut need enough voltage; until then, the result is unknown."""
     robot, session = holding()
     memory = bytearray(robot.memory())
-    assert memory[FIRST] == 0
-    memory[FIRST + 3] = 0  # the third mark was not written
+    assert memory[FIRST_SLOT] == 0
+    memory[FIRST_SLOT + 3] = 0  # the third mark was not written
     robot, session = HostFirmware(KIT, bytes(memory)), computer()
     robot.supply(is_low=True)
     robot.wait(500)

@@ -14,8 +14,8 @@ import pytest
 from tests.support.campaign import make_options
 from tests.support.images import image_of
 from tests.support.owners import (
+    BUTTON_PRESSED,
     FOREVER,
-    PRESSED,
     Keys,
     Owned,
     grants_key_request,
@@ -214,7 +214,7 @@ def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
     assert [event for event in session.events() if event.name == "STOPPED"]
     assert table.robot.is_latched
     upload_and_capture(table, session, FOREVER)
-    table.robot.step(flags=PRESSED)
+    table.robot.step(flags=BUTTON_PRESSED)
     assert table.robot.is_latched
 
 

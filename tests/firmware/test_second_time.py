@@ -79,9 +79,8 @@ KINDS: dict[str, Callable[[], HostFirmware]] = {
 
 
 PUSH_READ_2, PUSH_SENSOR_2 = bytes((0x92,)), bytes((0x8A,))  # PUSH_READ_2 and PUSH_SENSOR_2
-UNREAD_SENSOR_PROGRAM = (
-    MARK + "SHOW(DISTANCE);W(0.1)"
-)  # no earlier instruction in the image reads this sensor
+# no earlier instruction in the image reads this sensor
+UNREAD_SENSOR_PROGRAM = MARK + "SHOW(DISTANCE);W(0.1)"
 
 
 def image(text: str) -> Image:
@@ -322,11 +321,8 @@ def check(seed: int, starts: str, kind: str) -> str:
     return tale.ends
 
 
-CASES_PER_PART = {
-    "a mega": 20,
-    "an uno": 10,
-    "an esp32": 3,
-}  # cases of each start that a commit draws
+# cases of each start that a commit draws
+CASES_PER_PART = {"a mega": 20, "an uno": 10, "an esp32": 3}
 PARTS = 20
 
 

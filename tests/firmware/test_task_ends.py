@@ -19,7 +19,7 @@ from tiniscript.robots.reader import read
 LIGHT_L = 35  # pin of LIGHT_L
 MAX_RUN = TEXTS["tinibot32"].replace("max_run_seconds = 600", "max_run_seconds = 1")
 # Ways to end a run, and the fault that the robot stores.
-ENDS: dict[str, tuple[Callable[[Esp32Robot, Session], object], int]] = {
+END_ACTIONS: dict[str, tuple[Callable[[Esp32Robot, Session], object], int]] = {
     "a stop": (lambda robot, session: robot.step(bytes(4)), 0),
     "the button": (lambda robot, session: robot.talk(session, 50, flags=1), 0),
     "a lost link": (lambda robot, session: robot.wait(1100), 64),
@@ -35,7 +35,7 @@ def shows(session: Session) -> int:
 
 
 @pytest.mark.sampled("end", keep=3)
-@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize("end", END_ACTIONS)
 @pytest.mark.parametrize("state", STATES)
 def test_all_tasks_end(state: str, end: str) -> None:
     """No task continues, even in the next program."""
@@ -56,7 +56,7 @@ def test_all_tasks_end(state: str, end: str) -> None:
     assert (0 < shows(session) < 300) == (state == "a SHOW finds no room")  # fewer than all 400
     robot.did.clear()
 
-    ended, fault = ENDS[end]
+    ended, fault = END_ACTIONS[end]
     ended(robot, session)
     robot.talk(session, 100)
     assert robot.is_latched

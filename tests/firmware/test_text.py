@@ -13,7 +13,7 @@ import re
 
 import pytest
 
-from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
+from tests.machines.host_firmware import EMPTY_EEPROM, TICKS, HostFirmware
 from tests.support.campaign import each_seed, make_options
 from tests.support.command import OBSTACLE
 from tests.support.images import image_of
@@ -106,8 +106,8 @@ def test_every_sentence_in_its_language(language: str) -> None:
         robot.wait(4000)
 
 
-SAID_AGAIN = ("HELP", "FOO(1)", "PING|CHECK_CONNECTION", "F(1,500)", "SI|W(0)", "SI|W(1/0)")
-STOPS = {
+REPEATED_LINES = ("HELP", "FOO(1)", "PING|CHECK_CONNECTION", "F(1,500)", "SI|W(0)", "SI|W(1/0)")
+STOP_ACTIONS = {
     "zeros": lambda robot: robot.wait(1, bytes(8)),
     "a typed stop": lambda robot: robot.wait(1, b"\nS\n"),
     "a frame": lambda robot: robot.wait(1, STOP_MESSAGE),
@@ -115,18 +115,18 @@ STOPS = {
 }
 
 
-@pytest.mark.parametrize("stop", STOPS)
+@pytest.mark.parametrize("stop", STOP_ACTIONS)
 def test_what_is_said_after_a_stop_is_no_rest_of_what_was_said_before(stop: str) -> None:
     """The stop comes at any moment of an answer."""
     robot, fresh = switched_on(), switched_on()
     rng = random.Random(stop)
-    for line in SAID_AGAIN:
+    for line in REPEATED_LINES:
         for byte in line.encode():
             robot.step(bytes((byte,)))
         robot.step(b"\n", ticks=rng.randrange(1, 6))  # each is a line of an answer
         answers = []
         for host_firmware in (robot, fresh):
-            STOPS[stop](host_firmware)
+            STOP_ACTIONS[stop](host_firmware)
             host_firmware.wait(2500)
             answers.append(type_text(host_firmware, line + "\n", 1500))
             host_firmware.wait(2500)
@@ -138,7 +138,7 @@ def test_what_is_said_after_a_stop_is_no_rest_of_what_was_said_before(stop: str)
 )
 def test_a_line_that_is_ignored_after_a_stop_leaves_nothing(ignored_text: str) -> None:
     robot, fresh = switched_on(), switched_on()
-    for line in ("F(0.1,50)", "END_LOOP", "SI|F(0.1,50)", "F(0.1,50)", *SAID_AGAIN):
+    for line in ("F(0.1,50)", "END_LOOP", "SI|F(0.1,50)", "F(0.1,50)", *REPEATED_LINES):
         answers = []
         for host_firmware in (robot, fresh):
             type_text(host_firmware, "S\n", 20)
@@ -400,14 +400,14 @@ def test_a_fault_is_told_recorded_and_kept() -> None:
     assert status(robot, session).fault_program == image.checksum
 
 
-RUNS_ON = "SI|LOOP(FOREVER);M(50,50);W(9);END_LOOP\n"
+ENDLESS_PROGRAM = "SI|LOOP(FOREVER);M(50,50);W(9);END_LOOP\n"
 
 
 @pytest.mark.parametrize("text", ["S", "stop", "S;", "\t STOP ;"])
 def test_s_in_an_open_block_ends_what_runs_also_without_the_end_of_its_line(text: str) -> None:
     """It does not latch, and belongs to the program, whose line may continue."""
     robot = switched_on()
-    type_text(robot, RUNS_ON, 300)
+    type_text(robot, ENDLESS_PROGRAM, 300)
     type_text(robot, "LOOP(2)\n", 300)
     assert type_text(robot, text, 900) == []
     assert actions_of(robot) == ["MOTORS 50 50"]
@@ -422,7 +422,7 @@ def test_a_word_that_begins_like_s_in_an_open_block_may_be_typed_slowly(
     parts: tuple[str, str],
 ) -> None:
     robot = switched_on()
-    type_text(robot, RUNS_ON, 300)
+    type_text(robot, ENDLESS_PROGRAM, 300)
     type_text(robot, "LOOP(2)\n", 300)
     for part in parts:
         type_text(robot, part, 1500)
@@ -598,7 +598,7 @@ def test_help_with_a_device_of_a_long_name(letters: int) -> None:
     """An answer is never longer than a line; a word that is longer is cut."""
     distance = Device("DISTANCE", NUMBER, "cm", 0, 400_000)
     kit = Kit((distance, Device("A" * letters, NUMBER, "", 0, 1)), ())
-    robot = HostFirmware(kit, EMPTY)
+    robot = HostFirmware(kit, EMPTY_EEPROM)
     robot.wait(200)
     answers = type_text(robot, "HELP\n", 2000)
     assert max(map(len, answers)) <= LINE_LETTERS
@@ -610,7 +610,7 @@ def test_help_with_a_device_of_a_long_name(letters: int) -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_a_robot_says_its_number_or_a_name_which_cannot_end_its_line(seed: int) -> None:
     """Otherwise an echo of it would be a program."""
-    robot, session = HostFirmware(KIT, EMPTY, seed=0x9F0FFE8D + seed), computer()
+    robot, session = HostFirmware(KIT, EMPTY_EEPROM, seed=0x9F0FFE8D + seed), computer()
     robot.wait(200)
     robot.until(session, session.hello())
     assert session.robot and not session.robot.name
@@ -641,7 +641,7 @@ def test_the_obstacle_program_in_lines(end: str) -> None:
 
 PACE = 21  # ticks of a byte at 9600 baud
 ANSWERED_LINES = ("HELP", "PING|CHECK_CONNECTION", "F(1,500)")
-CUTS = {
+INTERRUPTIONS = {
     "zeros": bytes(8),
     "a message": b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0)),
     "a line": b"\nS\n",
@@ -666,7 +666,7 @@ def answer_to(robot: HostFirmware, line: str) -> bytes:
 
 
 @pytest.mark.sampled("cut")
-@pytest.mark.parametrize("cut", CUTS)
+@pytest.mark.parametrize("cut", INTERRUPTIONS)
 @pytest.mark.parametrize("line", ANSWERED_LINES)
 def test_an_answer_that_was_cut_begins_anew(line: str, cut: str) -> None:
     """The cut may come at any moment of the answer: the rest is not sent, and the next answer is
@@ -678,7 +678,8 @@ def test_an_answer_that_was_cut_begins_anew(line: str, cut: str) -> None:
     lasts_ms = 1 + len(wanted_answer) * PACE // TICKS
     for begun_ms in range(1, lasts_ms + STEP_MS, STEP_MS):
         robot.wait(begun_ms, f"{line}\n".encode())
-        rest = robot.wait(8000, CUTS[cut]).split(b"\n")[1:]  # lines after the interrupted one
+        # lines after the interrupted one
+        rest = robot.wait(8000, INTERRUPTIONS[cut]).split(b"\n")[1:]
         if cut != "another question":  # another question waits for the previous answer
             assert not {*rest} & {*wanted_answer.split(b"\n")[:-1]}, (begun_ms, rest)
         robot.wait(2500, b"\n")
@@ -691,7 +692,7 @@ def test_text_at_once_after_power_on() -> None:
     assert robot.step(ticks=3) == b"// Still saving. Send it again.\r\n"
     robot.wait(300)
     assert done_after(robot, "SI|F(0.2,50)\n") == LINE
-    (hello,) = type_text(HostFirmware(KIT, EMPTY), "PING|CHECK_CONNECTION\n")
+    (hello,) = type_text(HostFirmware(KIT, EMPTY_EEPROM), "PING|CHECK_CONNECTION\n")
     assert hello.endswith(", text uno")
 
 

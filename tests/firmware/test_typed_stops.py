@@ -26,12 +26,12 @@ from tests.support.platformio import firmware, shared_folder
 from tests.support.robot_on_uno import FORWARD, KIT, NAMES, OBSTACLE_LINES, OFF, states
 from tests.support.stop_spellings import (
     ALL_PREFIXES,
-    FRAMED,
-    HELD_MS,
+    FRAME_PREFIXES,
     MOST_MS,
-    RUNS,
+    RUNNING_LINE,
+    SHORTEST_STOP_MS,
     SILENCE_MS,
-    STRICT,
+    STRICT_SPELLINGS,
     spellings_after,
 )
 from tiniscript.link.requests import OK
@@ -43,7 +43,7 @@ BAUDS = (9600, 115_200)
 TURN_MS = 2.1  # the clock counts one or two milliseconds each 1.024 ms
 BUSY_TURN_MS = 5.0  # lateness of a main loop that reads lines and writes answers
 
-FROM_ONE_STATE = 25  # random stops, after which the last one applies
+STOPS_PER_STATE = 25  # random stops, after which the last one applies
 
 
 @pytest.fixture(scope="session", params=BAUDS)
@@ -85,7 +85,7 @@ def answer_lines(uno: Uno, since: int) -> str:
 def drive(uno: Uno) -> None:
     """Make the robot drive by a line, followed by a second of silence."""
     uno.run_ms(SILENCE_MS + 50)
-    uno.send(RUNS)
+    uno.send(RUNNING_LINE)
     uno.run_ms(SILENCE_MS + 100)
     assert states(uno) == FORWARD, answer_lines(uno, 0)[-200:]
 
@@ -101,7 +101,7 @@ def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: boo
     """
     byte_ms = 10_000 / baud
     uno.send(prefix + spelling)
-    uno.run_ms(len(prefix + spelling) * byte_ms + HELD_MS + 10)
+    uno.run_ms(len(prefix + spelling) * byte_ms + SHORTEST_STOP_MS + 10)
     end = next(
         k
         for k in reversed(range(len(uno.received_bytes)))
@@ -113,9 +113,9 @@ def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: boo
     assert states(uno) == OFF, what
     late_ms = (off - line_end.cycle) / CYCLES_PER_MS
     behind_ms = (off - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
-    is_held = behind_ms < HELD_MS + (BUSY_TURN_MS if is_busy else TURN_MS)
+    is_held = behind_ms < SHORTEST_STOP_MS + (BUSY_TURN_MS if is_busy else TURN_MS)
     if not is_busy:
-        is_held = is_held and behind_ms > HELD_MS - TURN_MS
+        is_held = is_held and behind_ms > SHORTEST_STOP_MS - TURN_MS
     assert late_ms < MOST_MS or is_held, f"{what}: {late_ms} ms"
     changes = len(uno.pins.history("left"))
     uno.send(b"F(1,80)\n")  # before a second of silence
@@ -139,12 +139,12 @@ def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> 
                 check_latched(uno)
 
 
-@pytest.mark.parametrize("name", FRAMED)
+@pytest.mark.parametrize("name", FRAME_PREFIXES)
 def test_a_loose_spelling_in_a_frame_is_none(driving_at: tuple[Uno, int], name: str) -> None:
     uno, _ = driving_at
     with uno.try_out():
-        uno.send(FRAMED[name] + b"stop!\nS()\nalto\n")
-        uno.run_ms(HELD_MS + 50)
+        uno.send(FRAME_PREFIXES[name] + b"stop!\nS()\nalto\n")
+        uno.run_ms(SHORTEST_STOP_MS + 50)
         assert states(uno) == FORWARD
 
 
@@ -214,18 +214,18 @@ def test_ctrl_c_alone_stops_after_silence(
     uno, baud = driving_at
     with uno.try_out():
         late_ms = off_after_silence(uno, prefix + data, 10_000 / baud)
-        assert HELD_MS - TURN_MS < late_ms < HELD_MS + BUSY_TURN_MS
+        assert SHORTEST_STOP_MS - TURN_MS < late_ms < SHORTEST_STOP_MS + BUSY_TURN_MS
         check_latched(uno)
     for other in (b"x" + data, b"\0" + data, data + b"x", b" " + data):
         with uno.try_out():
             uno.send(other)
-            uno.run_ms(3 * HELD_MS)
+            uno.run_ms(3 * SHORTEST_STOP_MS)
             assert states(uno) == FORWARD, other
 
 
 def off_after_silence(uno: Uno, data: bytes, byte_ms: float) -> float:
     uno.send(data)
-    uno.run_ms(len(data) * byte_ms + HELD_MS + 2 * BUSY_TURN_MS)
+    uno.run_ms(len(data) * byte_ms + SHORTEST_STOP_MS + 2 * BUSY_TURN_MS)
     assert states(uno) == OFF, data
     off = max(uno.pins[name].cycle for name in ("left", "right"))
     return (off - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
@@ -234,8 +234,8 @@ def off_after_silence(uno: Uno, data: bytes, byte_ms: float) -> float:
 # -- when lines count again -----------------------------------------------------------------------
 
 NEXT_PROGRAM = b"SI|F(1,60)\n"
-EACH_MS = 300
-PAUSE = "// Stopped: wait a second\r\n"
+STEP_MS = 300
+PAUSE_LINE = "// Stopped: wait a second\r\n"
 
 
 def repeat_until_it_drives(uno: Uno, most_ms: int) -> int:
@@ -243,8 +243,8 @@ def repeat_until_it_drives(uno: Uno, most_ms: int) -> int:
     passed_ms = 0
     while passed_ms < most_ms:
         uno.send(NEXT_PROGRAM)
-        uno.run_ms(EACH_MS)
-        passed_ms += EACH_MS
+        uno.run_ms(STEP_MS)
+        passed_ms += STEP_MS
         if states(uno) == FORWARD:
             return passed_ms
     return most_ms
@@ -261,8 +261,10 @@ def test_a_remote_that_repeats_is_heard_again_after_a_second(
         uno.run_ms(50)
         assert states(uno) == OFF
         again_ms = repeat_until_it_drives(uno, 3000)
-        assert SILENCE_MS - 100 < again_ms <= SILENCE_MS + 2 * EACH_MS
-        assert answer_lines(uno, count_before).count(PAUSE) == 1, "what is dropped is told once"
+        assert SILENCE_MS - 100 < again_ms <= SILENCE_MS + 2 * STEP_MS
+        assert answer_lines(uno, count_before).count(PAUSE_LINE) == 1, (
+            "what is dropped is told once"
+        )
 
 
 def test_after_the_stop_sequence_a_second_of_silence_is_needed(
@@ -275,9 +277,9 @@ def test_after_the_stop_sequence_a_second_of_silence_is_needed(
         uno.run_ms(50)
         assert states(uno) == OFF
         assert repeat_until_it_drives(uno, 3000) == 3000
-        assert answer_lines(uno, count_before).count(PAUSE) == 1
+        assert answer_lines(uno, count_before).count(PAUSE_LINE) == 1
         uno.run_ms(SILENCE_MS)
-        assert repeat_until_it_drives(uno, 3000) == EACH_MS
+        assert repeat_until_it_drives(uno, 3000) == STEP_MS
 
 
 def test_in_an_open_block_a_spelling_belongs_to_the_program(
@@ -355,7 +357,7 @@ def test_code_that_holds_a_typed_stop_runs(uno_at: tuple[Uno, int], way: str) ->
     assert wired_uno.until(request) == OK
     assert b"\nS\n" in bytes(byte.value for byte in uno.received_bytes)
     begun_ms = wired_uno.now_ms
-    wired_uno.run(SILENCE_MS + HELD_MS)
+    wired_uno.run(SILENCE_MS + SHORTEST_STOP_MS)
     assert states(uno) == FORWARD
     while states(uno) == FORWARD:
         wired_uno.run(10)
@@ -378,10 +380,10 @@ def stop_after_random_bytes(sketch: Path, baud: int, draw: random.Random, count:
     slowest_ms = 0.0
     with switched_on(sketch, baud) as uno:
         for k in range(count):
-            if k % FROM_ONE_STATE == 0:
+            if k % STOPS_PER_STATE == 0:
                 drive(uno)
-            prefix, spelling = random_prefix(draw), draw.choice(STRICT)
-            is_last = k % FROM_ONE_STATE == FROM_ONE_STATE - 1
+            prefix, spelling = random_prefix(draw), draw.choice(STRICT_SPELLINGS)
+            is_last = k % STOPS_PER_STATE == STOPS_PER_STATE - 1
             with nullcontext() if is_last else uno.try_out():
                 late_ms = stop_after(uno, baud, prefix, spelling, is_busy=True)
             slowest_ms = max(slowest_ms, late_ms)
@@ -392,13 +394,13 @@ def stop_after_random_bytes(sketch: Path, baud: int, draw: random.Random, count:
 
 
 BAUD = 115_200
-LOST = "// Bytes were lost. Begin again."
-MUTE = "// Too many. Wait 5 s."  # answer after too many mistakes
+LOST_BYTES_LINE = "// Bytes were lost. Begin again."
+TOO_MANY_LINE = "// Too many. Wait 5 s."  # answer after too many mistakes
 LINES = (
     "F(0.1,80)", "SI|F(0.1,80)", "SB|F(0.1,80)", "SHOW(1)", "X=1", "HELP", "FOO", "(1)", "1=2",
     "E(", "PING|CHECK_CONNECTION", "ñandú", "F(0.1,80);" * 6,
 )  # fmt: skip
-TWENTY = 20
+MISTAKE_LIMIT = 20
 QUIET_MS = 700  # longer than a program of these lines
 
 
@@ -428,14 +430,18 @@ def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
     them, and while it answers it reads none."""
     uno, data = quick_uno, line.encode() + b"\r\n"
     with uno.try_out():
-        one = [line for line in lines_said(uno, data) if line not in ("// DONE", "// 1", LOST)]
-        for count in (TWENTY // 2, TWENTY):
+        one = [
+            line
+            for line in lines_said(uno, data)
+            if line not in ("// DONE", "// 1", LOST_BYTES_LINE)
+        ]
+        for count in (MISTAKE_LIMIT // 2, MISTAKE_LIMIT):
             with uno.try_out():
                 many = lines_said(uno, data * count)
                 answers = sum(line in one for line in many)
-                is_told = LOST in many or MUTE in many
+                is_told = LOST_BYTES_LINE in many or TOO_MANY_LINE in many
                 assert is_told or answers == len(one) * count, many
-                assert is_told or count < TWENTY, "as twenty lines are, some are lost"
+                assert is_told or count < MISTAKE_LIMIT, "as twenty lines are, some are lost"
                 count_before = len(uno.sent_bytes)
                 uno.send(b"SI|SHOW(7)\n")
                 uno.run_ms(100)
@@ -454,6 +460,8 @@ if __name__ == "__main__":
         for rate in BAUDS:
             simulator = build(rate, Path(folder))
             for first in range(0, options.count // 2, 500):
-                some = min(500, options.count // 2 - first)
-                slowest = stop_after_random_bytes(simulator, rate, drawn_random, some)
-                print(f"{some} stops at {rate} baud, the slowest {slowest:.1f} ms", flush=True)
+                stop_count = min(500, options.count // 2 - first)
+                slowest = stop_after_random_bytes(simulator, rate, drawn_random, stop_count)
+                print(
+                    f"{stop_count} stops at {rate} baud, the slowest {slowest:.1f} ms", flush=True
+                )

@@ -15,10 +15,10 @@ from tests.machines.host_firmware import HostFirmware
 from tests.support.button_states import OTHER, SAVED, STATES, Table
 from tests.support.images import image_of
 from tests.support.kept_programs import (
-    DRIVES,
-    FIRST,
-    LATER_VERSION,
-    SECOND,
+    DRIVE_PROGRAM,
+    FIRST_SLOT,
+    LATER_VERSION_IMAGE,
+    SECOND_SLOT,
     bytes_of,
     eeprom_with,
     name_after_power_off,
@@ -74,7 +74,7 @@ def with_byte(text: str, at: int, value: int) -> bytes:
 OTHER_KIT_IMAGE = with_checksum(with_byte("SI|SHOW(DISTANCE)", 6, 0x11))
 INVALID_IMAGE = with_checksum(with_byte(PROGRAM_A, -1, 0xFE))
 UNRUNNABLE_IMAGES = {
-    "version": LATER_VERSION,
+    "version": LATER_VERSION_IMAGE,
     "kit": OTHER_KIT_IMAGE,
     "minor": with_checksum(with_byte(PROGRAM_A, 3, ISA_MINOR + 1)),
     "verifier": INVALID_IMAGE,
@@ -86,7 +86,7 @@ UNRUNNABLE_IMAGES = {
 @pytest.mark.parametrize("is_first", [True, False])
 def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> None:
     good = bytes_of(PROGRAM_A)
-    places = (FIRST, SECOND) if is_first else (SECOND, FIRST)
+    places = (FIRST_SLOT, SECOND_SLOT) if is_first else (SECOND_SLOT, FIRST_SLOT)
     robot = HostFirmware(KIT, eeprom_with((places[0], 7, good), (places[1], 6, image)))
     session = computer()
     robot.wait(400)
@@ -112,8 +112,8 @@ def test_a_robot_begins_with_the_newest_program_that_it_can_run(
 ) -> None:
     """Its checksum is right, so that only the verifier or the kit says no."""
     good = bytes_of(PROGRAM_A)
-    before = [(SECOND, 6, good)] if has_good else []
-    robot, session = HostFirmware(KIT, eeprom_with(*before, (FIRST, 7, image))), computer()
+    before = [(SECOND_SLOT, 6, good)] if has_good else []
+    robot, session = HostFirmware(KIT, eeprom_with(*before, (FIRST_SLOT, 7, image))), computer()
     robot.wait(400)
     assert read_saved_state(robot, session) == ("STORED" if has_good else "NOTHING")
     assert robot.is_lit == has_good
@@ -227,7 +227,7 @@ def test_with_a_low_supply_nothing_is_touched_and_nothing_is_lost(count: int) ->
 
 def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
     """The restore waits until the motors are off before its first byte."""
-    robot, session = with_two(DRIVES, PROGRAM_A)
+    robot, session = with_two(DRIVE_PROGRAM, PROGRAM_A)
     memory = robot.memory()
     assert undo(robot, session) == OK
     assert robot.until(session, session.start()) == OK
@@ -237,7 +237,7 @@ def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
     assert changed <= 3, "at most what it wrote before the start"
     session.stop(robot.now_ms)
     robot.talk(session, 1000)
-    assert program_after_power_off(robot) == bytes_of(DRIVES)
+    assert program_after_power_off(robot) == bytes_of(DRIVE_PROGRAM)
 
 
 @pytest.mark.sampled("cut_ms", keep=18)

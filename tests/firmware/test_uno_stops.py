@@ -19,8 +19,8 @@ from tools.bench.stops import BusyRobot, Place, sample
 from tools.uno import CYCLES_PER_MS
 
 MOST_CYCLES = 12 * CYCLES_PER_MS // 1000
-ECHO_AT_BEST = range(-64, -24, 8)  # cycles: just before the last byte is there
-COUNT = 24
+BEST_ECHO_CYCLES = range(-64, -24, 8)  # cycles: just before the last byte is there
+STOP_COUNT = 24
 SEED = 12
 
 
@@ -44,9 +44,9 @@ def test_a_stop_is_at_the_pins_in_12_us(
     with BusyRobot(
         sketches(environment), robot, environment.partition("_")[0], robot.board.baud
     ) as stopped_busy_robot:
-        places = sample(stopped_busy_robot, COUNT, SEED)
+        places = sample(stopped_busy_robot, STOP_COUNT, SEED)
         if stopped_busy_robot.has_echo:
-            places += [Place(places[0].cycle, echo, True) for echo in ECHO_AT_BEST]
+            places += [Place(places[0].cycle, echo, True) for echo in BEST_ECHO_CYCLES]
         for place in places:
             cycles = stopped_busy_robot.stop(place)
             assert 0 < cycles <= MOST_CYCLES, place

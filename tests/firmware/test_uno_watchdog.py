@@ -19,8 +19,8 @@ from tests.support.robot_on_uno import (
     states,
 )
 from tests.support.uno_watchdog import (
-    HANGS,
-    HANGS_ALONE,
+    HANGING_LOOP,
+    HANGING_LOOP_WITHOUT_INTERRUPTS,
     STALL,
     TIMER_MS,
     WATCHDOG,
@@ -47,8 +47,10 @@ def hello_of(wired_uno: Wired) -> HelloReply:
 @pytest.mark.parametrize(
     ("hang", "limit_ms"),
     [
-        pytest.param(HANGS, TIMER_MS, id="the timer turns the motors off"),
-        pytest.param(HANGS_ALONE, WATCHDOG_MS, id="the watchdog, with interrupts off"),
+        pytest.param(HANGING_LOOP, TIMER_MS, id="the timer turns the motors off"),
+        pytest.param(
+            HANGING_LOOP_WITHOUT_INTERRUPTS, WATCHDOG_MS, id="the watchdog, with interrupts off"
+        ),
     ],
 )
 def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: Path) -> None:
@@ -115,7 +117,7 @@ def test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program(tmp_pat
 
 @pytest.mark.sampled(of="hangs of an Uno")
 def test_a_hang_without_a_program_is_a_fault_of_none(tmp_path: Path) -> None:
-    with Uno(build_hanging_firmware(tmp_path, HANGS), names=NAMES, baud=BAUD) as uno:
+    with Uno(build_hanging_firmware(tmp_path, HANGING_LOOP), names=NAMES, baud=BAUD) as uno:
         uno.run_ms(300)
         uno.press("button")
         uno.run_ms(600)

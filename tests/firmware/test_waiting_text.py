@@ -26,10 +26,8 @@ from tiniscript.link.requests import OK
 
 TRIALS = 1000  # trials of the tests; a campaign runs more
 TRIALS_PER_ROBOT = 100  # trials of one robot
-REPEAT_PROBABILITY, SILENCE_PROBABILITY = (
-    0.3,
-    0.3,
-)  # probability of a repeated frame, and of a second of silence before one
+# probability of a repeated frame, and of a second of silence before one
+REPEAT_PROBABILITY, SILENCE_PROBABILITY = 0.3, 0.3
 CHECKSUM_OFFSET, BODY_OFFSET = 10, 14  # offsets in an image
 # A number whose bytes are instructions: a letter in front of it turns it into a move.
 HIDDEN_MOVE_PROGRAM = "SI|SHOW(-1337933.387)"

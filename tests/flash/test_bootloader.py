@@ -27,8 +27,8 @@ from tests.support.robot_on_uno import (
     states,
 )
 from tests.support.uno_watchdog import (
-    HANGS,
-    HANGS_ALONE,
+    HANGING_LOOP,
+    HANGING_LOOP_WITHOUT_INTERRUPTS,
     STALL,
     TIMER_MS,
     WATCHDOG_MS,
@@ -38,10 +38,12 @@ from tests.support.uno_watchdog import (
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
-TRIES = 20  # a simulated board waits for its bootloader as long as a real one, however late it is
+TRY_COUNT = (
+    20  # a simulated board waits for its bootloader as long as a real one, however late it is
+)
 
-DRIVES = "SI|F(0.3, 80)"
-UNKNOWN, POWER, WATCHDOG = 0, 1, 4  # resets in docs/develop/link.md
+DRIVE_PROGRAM = "SI|F(0.3, 80)"
+UNKNOWN_RESET, POWER_RESET, WATCHDOG_RESET = 0, 1, 4  # resets in docs/develop/link.md
 WAIT_MS = 2500  # time that an old Nano waits for a sketch
 
 
@@ -85,7 +87,7 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
         sketch = arduino_builder.firmware(board, tmp_path, common).hex
     of = bootloader(board)
     program = tmp_path / "drive.ts"
-    program.write_text(DRIVES, encoding="utf-8")
+    program.write_text(DRIVE_PROGRAM, encoding="utf-8")
     with Uno(
         nothing_but("nothing"), bootloader=of.file, names=NAMES, baud=of.baud, tells_sleep=False
     ) as uno:
@@ -108,41 +110,41 @@ def test_optiboot_lets_a_robot_go_on_that_has_hung(tmp_path: Path) -> None:
 
     With interrupts off, only the cause would show it, and that is unknown then.
     """
-    elf = build_hanging_firmware(tmp_path, HANGS_ALONE)
+    elf = build_hanging_firmware(tmp_path, HANGING_LOOP_WITHOUT_INTERRUPTS)
     with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
         hang(uno, limit_ms=WATCHDOG_MS)
         uno.run_ms(500)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on", "watchdog"]
-        assert read_reset_report(uno) == (UNKNOWN, 0, 0)
+        assert read_reset_report(uno) == (UNKNOWN_RESET, 0, 0)
         assert states(uno) == OFF
 
 
 def test_optiboot_does_not_hide_a_hang_that_was_noted(tmp_path: Path) -> None:
-    elf = build_hanging_firmware(tmp_path, HANGS)
+    elf = build_hanging_firmware(tmp_path, HANGING_LOOP)
     with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
         hang(uno, limit_ms=TIMER_MS)
         uno.run_ms(700)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on", "watchdog"]
-        assert read_reset_report(uno) == (WATCHDOG, STALL, image_of(AWAY_PROGRAM).checksum)
+        assert read_reset_report(uno) == (WATCHDOG_RESET, STALL, image_of(AWAY_PROGRAM).checksum)
         assert states(uno) == OFF
 
 
 def test_an_old_nano_goes_on_without_its_bootloader(tmp_path: Path) -> None:
     """The old bootloader would leave the watchdog on, so the robot restarts without it."""
-    elf = build_hanging_firmware(tmp_path, HANGS, "nano")
+    elf = build_hanging_firmware(tmp_path, HANGING_LOOP, "nano")
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
         hang(uno, limit_ms=TIMER_MS)
         uno.run_ms(1000)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on"]
-        assert read_reset_report(uno) == (WATCHDOG, STALL, image_of(AWAY_PROGRAM).checksum)
+        assert read_reset_report(uno) == (WATCHDOG_RESET, STALL, image_of(AWAY_PROGRAM).checksum)
         assert states(uno) == OFF
 
 
 def test_an_old_nano_that_has_hung_for_good_stays_off_until_it_has_no_power(tmp_path: Path) -> None:
-    elf = build_hanging_firmware(tmp_path, HANGS_ALONE, "nano")
+    elf = build_hanging_firmware(tmp_path, HANGING_LOOP_WITHOUT_INTERRUPTS, "nano")
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
         hang(uno, limit_ms=WATCHDOG_MS)
         event_count_before = len(uno.events)
@@ -154,7 +156,7 @@ def test_an_old_nano_that_has_hung_for_good_stays_off_until_it_has_no_power(tmp_
         assert not is_on(uno)
         uno.reset("power-on")
         uno.run_ms(WAIT_MS)
-        assert read_reset_report(uno) == (POWER, 0, 0)
+        assert read_reset_report(uno) == (POWER_RESET, 0, 0)
 
 
 def hang(uno: Uno, limit_ms: int) -> None:
@@ -188,7 +190,7 @@ def test_a_mega_that_was_reset_is_waited_for(
     with Uno(elf, board="mega", bootloader=file, baud=BAUD, tells_sleep=False) as mega:
         mega.go(speed=3.0)
         for words in (["doctor", "--identify"], ["doctor", "--ports", "--ask"]):
-            for _ in range(TRIES):  # a busy computer may be late; each try resets the board
+            for _ in range(TRY_COUNT):  # a busy computer may be late; each try resets the board
                 result = process(*words, "--port", mega.pty)
                 if "tinibot" in result.out:
                     break

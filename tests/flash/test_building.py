@@ -23,7 +23,7 @@ from tests.support.command import CommandResult, Tsc, process
 from tests.support.copies import link_copy
 from tests.support.edited_robots import TEXTS
 from tests.support.flashed_boards import (
-    ENDS,
+    CHILD_ENDS,
     command,
     copy_package,
     new_board,
@@ -332,7 +332,7 @@ def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) ->
 
 
 @pytest.mark.sampled("end", keep=2)
-@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize("end", CHILD_ENDS)
 def test_a_build_that_does_not_end_well_has_made_nothing(
     end: str, clone: Path, tmp_path: Path
 ) -> None:

@@ -19,7 +19,7 @@ from tiniscript.flash import children
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs a shell")
 
 # Starts a program with closed standard streams, and continues as its last argument says.
-PARENT = 'sleep 3600 </dev/null >/dev/null 2>&1 & echo $! > "$1"; echo begun; {}'
+PARENT_SCRIPT = 'sleep 3600 </dev/null >/dev/null 2>&1 & echo $! > "$1"; echo begun; {}'
 
 
 class Broken(Exception):
@@ -40,8 +40,8 @@ def presses(text: str) -> None:
         raise KeyboardInterrupt
 
 
-FIRST_ITS_END = "it may not be ended, as what writes a firmware"
-WAYS: dict[str, tuple[str, Callable[[str], None], type[BaseException] | None]] = {
+FIRST_WAITS_FOR_END = "it may not be ended, as what writes a firmware"
+CHILD_ENDS: dict[str, tuple[str, Callable[[str], None], type[BaseException] | None]] = {
     "it ends well": ("true", looks_on, None),
     "it fails": ("exit 3", looks_on, None),
     "it is killed": ("kill -9 $$", looks_on, None),
@@ -50,7 +50,7 @@ WAYS: dict[str, tuple[str, Callable[[str], None], type[BaseException] | None]] =
     "it is not waited for": ("sleep 3600", breaks, Broken),
     "Ctrl-C": ("sleep 3600", presses, KeyboardInterrupt),
     "it takes no Ctrl-C": ("trap '' INT; sleep 3600", breaks, Broken),
-    FIRST_ITS_END: ("sleep 0.2", breaks, Broken),
+    FIRST_WAITS_FOR_END: ("sleep 0.2", breaks, Broken),
 }  # fmt: skip
 
 
@@ -62,19 +62,19 @@ def is_over(process: int) -> bool:
     return completed.stdout.strip()[:1] in ("", "Z")
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", CHILD_ENDS)
 def test_nothing_is_left_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str) -> None:
-    end, look, failure = WAYS[way]
+    end, look, failure = CHILD_ENDS[way]
     monkeypatch.setattr(children, "KILL_DELAY_S", 0.2)
     for round_ in range(2):  # the second one as the first one
         noted_path = tmp_path / f"{round_}"
-        words = ["sh", "-c", PARENT.format(end), "sh", str(noted_path)]
+        words = ["sh", "-c", PARENT_SCRIPT.format(end), "sh", str(noted_path)]
         if failure is None:
             code, text = children.run(words, None, look)
             assert text == "begun\n" and (code == 0) == (way == "it ends well")
         else:
             with pytest.raises(failure):
-                children.run(words, None, look, None, lambda _: way != FIRST_ITS_END, 0.2)
+                children.run(words, None, look, None, lambda _: way != FIRST_WAITS_FOR_END, 0.2)
         child = int(noted_path.read_text(encoding="utf-8"))
         until(partial(is_over, child), "what it has started ends")
 

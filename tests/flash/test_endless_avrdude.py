@@ -19,8 +19,8 @@ from tiniscript.flash import avrdude, children
 from tiniscript.flash.avrdude import StepProgress, WriteResult
 from tiniscript.flash.bootloaders import UNO
 
-WRITES = "import sys\nwhile True: sys.stdout.write({said!r}); sys.stdout.flush()\n"
-HALF = "Reading | ### |\\nWriting | " + "#" * 25
+WRITING_CODE = "import sys\nwhile True: sys.stdout.write({said!r}); sys.stdout.flush()\n"
+HALF_OUTPUT = "Reading | ### |\\nWriting | " + "#" * 25
 
 
 def write_and_watch(folder: Path, body: str) -> tuple[WriteResult, list[StepProgress | None]]:
@@ -42,12 +42,14 @@ def write_and_watch(folder: Path, body: str) -> tuple[WriteResult, list[StepProg
 
 @pytest.mark.parametrize("message", ["avrdude: warning\n", "x" * 4096, "\x1b[31m", "#"])
 def test_one_that_writes_for_ever(tmp_path: Path, message: str) -> None:
-    assert write_and_watch(tmp_path, WRITES.format(said=message))[0].outcome == avrdude.ENDLESS
+    assert (
+        write_and_watch(tmp_path, WRITING_CODE.format(said=message))[0].outcome == avrdude.ENDLESS
+    )
 
 
 def test_its_progress_is_kept_until_then(tmp_path: Path) -> None:
     waits = f"import os\nwhile not os.path.exists({str(tmp_path / 'seen')!r}): pass\n"
-    body = f'print("{HALF}", flush=True)\n' + waits + WRITES.format(said=" waiting\n")
+    body = f'print("{HALF_OUTPUT}", flush=True)\n' + waits + WRITING_CODE.format(said=" waiting\n")
     how, steps = write_and_watch(tmp_path, body)
     assert how.outcome == avrdude.ENDLESS
     assert StepProgress(avrdude.WRITING, 50) in steps
@@ -104,7 +106,7 @@ def test_a_second_ctrl_c_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes as Linux has them")
-@pytest.mark.parametrize("rest", [WRITES.format(said="x"), "sys.exit(1)"])
+@pytest.mark.parametrize("rest", [WRITING_CODE.format(said="x"), "sys.exit(1)"])
 def test_its_children_end_with_it(tmp_path: Path, rest: str) -> None:
     note = tmp_path / "child"
     sleep = f"[{sys.executable!r}, '-c', 'import time; time.sleep(600)']"

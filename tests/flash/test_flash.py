@@ -15,7 +15,7 @@ import serial
 from tests.machines.bootloaders import FOLDER, Bootloader, bootloader, optiboot
 from tests.machines.uno import build_uno, skip_unless_available
 from tests.support.command import Tsc
-from tests.support.flashed_boards import LIMITED, copy_package, new_board, to_hex, tsc
+from tests.support.flashed_boards import CPU_LIMIT_COMMAND, copy_package, new_board, to_hex, tsc
 from tests.support.needs import need
 from tests.support.platformio import firmware, prepare, shared_folder
 from tests.support.terminal import Terminal
@@ -124,13 +124,13 @@ def test_a_port_in_use_is_said(package: Path) -> None:
 # -- with an avrdude whose output is scripted
 
 
-FAKE = """\
+FAKE_AVRDUDE = """\
 #!{python}
 import sys, time
 baud = sys.argv[sys.argv.index("-b") + 1]
 {body}
 """
-PROGRESS = 'print("Writing | #########", end="", flush=True)'
+PROGRESS_CODE = 'print("Writing | #########", end="", flush=True)'
 
 
 @pytest.fixture
@@ -144,7 +144,7 @@ def board() -> Iterator[Uno]:
 def fake(folder: Path, body: str) -> dict[str, str]:
     """Return the variables with which this avrdude is found."""
     program = folder / "avrdude"
-    program.write_text(FAKE.format(python=sys.executable, body=body), encoding="utf-8")
+    program.write_text(FAKE_AVRDUDE.format(python=sys.executable, body=body), encoding="utf-8")
     program.chmod(0o755)
     return {"PATH": f"{folder}{os.pathsep}{os.environ['PATH']}"}
 
@@ -161,7 +161,7 @@ def test_a_nano_is_tried_with_both_of_its_bootloaders(
 
 
 def test_half_a_firmware_is_said(package: Path, board: Uno, tmp_path: Path) -> None:
-    body = f'{PROGRESS}\nprint("avrdude: programmer is not responding")\nsys.exit(1)'
+    body = f'{PROGRESS_CODE}\nprint("avrdude: programmer is not responding")\nsys.exit(1)'
     tsc(package, "--port", board.pty, **fake(tmp_path, body)).gives(3, "its firmware is incomplete")
 
 
@@ -169,11 +169,10 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
     package: Path, board: Uno, tmp_path: Path
 ) -> None:
     marker = tmp_path / "told"
-    body = (
-        f'import os\nopen({str(marker)!r}, "w").write(str(os.getpid()))\n{PROGRESS}\ntime.sleep(60)'
-    )
+    note = f'import os\nopen({str(marker)!r}, "w").write(str(os.getpid()))'
+    body = f"{note}\n{PROGRESS_CODE}\ntime.sleep(60)"
     variables = {"PYTHONPATH": str(package), **fake(tmp_path, body)}
-    tsc = [*LIMITED, sys.executable, "-m", "tiniscript"]
+    tsc = [*CPU_LIMIT_COMMAND, sys.executable, "-m", "tiniscript"]
     terminal = Terminal("firmware", "--yes", "--port", board.pty, command=tsc, env=variables)
     terminal.until(r"\[#+\.+\]")  # waits until avrdude's progress is shown
     terminal.interrupt()

@@ -31,9 +31,9 @@ FLAGS = ("-std=c++11", "-O2", "-g", "-fsanitize=fuzzer,address,undefined",
          "-fno-sanitize-recover=all")  # fmt: skip
 # Arguments for comparisons at half the time. Only the machine's harness needs seeds: the others fix
 # checksums themselves, and begin with every message and record.
-NOT_COMPARED = "-fno-sanitize-coverage=trace-cmp"
+NO_TRACE_CMP_FLAG = "-fno-sanitize-coverage=trace-cmp"
 MOST_BYTES = 700  # most bytes of an input
-DONE = re.compile(r"Done (\d+) runs")
+DONE_LINE = re.compile(r"Done (\d+) runs")
 
 VM = ("crc32.cpp", "find_word.cpp", "image.cpp", "verify.cpp", "bytecode.cpp", "decode_form.cpp")
 PARTS = {
@@ -45,7 +45,7 @@ PARTS = {
               "extras/powercut/memory.cpp"],
     "mqtt": ["src/boards/esp32/mqtt.cpp"],
 }  # fmt: skip
-DEFINED = {"large_link": ("-Dtiniscript_like_esp32",), "mqtt": ("-DARDUINO_ARCH_ESP32",)}
+DEFINES_BY_HARNESS = {"large_link": ("-Dtiniscript_like_esp32",), "mqtt": ("-DARDUINO_ARCH_ESP32",)}
 HEADERS = ("src/*.h", "src/boards/esp32/*.h", "src/vm/*.h", "src/link/*.h", "src/text/*.h",
            "src/store/*.h", "extras/fuzz/*.h", "extras/link/*.h",
            "extras/powercut/*.h")  # fmt: skip
@@ -72,7 +72,7 @@ def harness(name: str) -> Path:
     for pattern in PARTS[name]:
         code += sorted(SOURCES.glob(pattern))
     headers = [path for pattern in HEADERS for path in sorted(SOURCES.glob(pattern))]
-    own = DEFINED.get(name, ()) + (() if name == "machine" else (NOT_COMPARED,))
+    own = DEFINES_BY_HARNESS.get(name, ()) + (() if name == "machine" else (NO_TRACE_CMP_FLAG,))
     return built_by(COMPILER, [*code, *headers], (*FLAGS, *own, *WARNINGS))
 
 
@@ -95,7 +95,7 @@ def fuzz(program: Path, folder: Path, runs: int, seed: int) -> Found:
     completed = subprocess.run(command, capture_output=True, errors="replace", env=options)
     output = completed.stderr + completed.stdout
     if completed.returncode == 0:
-        count = DONE.search(output)
+        count = DONE_LINE.search(output)
         assert count, output[-2000:]
         return Found(int(count[1]), "", b"")
     wrong = re.findall(r"WRONG .*|MISUSE .*|ERROR: .*|runtime error: .*", output)

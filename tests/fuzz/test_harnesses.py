@@ -16,11 +16,11 @@ def needs_a_fuzzer() -> None:
     need(missing())
 
 
-RUNS = {"machine": 30_000, "link": 6_000, "large_link": 3_000, "store": 1_500, "mqtt": 7_500}
+RUN_COUNTS = {"machine": 30_000, "link": 6_000, "large_link": 3_000, "store": 1_500, "mqtt": 7_500}
 SEED = 1
 
 # Inputs in which something was wrong: they stay right. Those of a harness, as hexadecimal digits.
-FOUND: dict[str, tuple[str, ...]] = {
+FOUND_INPUTS: dict[str, tuple[str, ...]] = {
     "link": (
         # a BEGIN that is answered BUSY leaves the program that was begun before
         "00010a010002001b230600000040320a0910020000110000030040320b08000000aa4e4e4e4e4e4e"
@@ -35,8 +35,8 @@ FOUND: dict[str, tuple[str, ...]] = {
 @pytest.mark.parametrize("name", NAMES)
 def test_nothing_is_wrong(name: str, tmp_path: Path) -> None:
     inputs = first_inputs(name, tmp_path)
-    for number, text in enumerate(FOUND.get(name, ())):
+    for number, text in enumerate(FOUND_INPUTS.get(name, ())):
         (inputs / f"found-{number}").write_bytes(bytes.fromhex(text))
-    report = fuzz(harness(name), inputs, RUNS[name], SEED)
+    report = fuzz(harness(name), inputs, RUN_COUNTS[name], SEED)
     assert not report.wrong, f"{report.wrong}\ninput: {report.input.hex()}"
-    assert report.runs >= RUNS[name]
+    assert report.runs >= RUN_COUNTS[name]

@@ -17,7 +17,7 @@ import pytest
 from tests.pupils.corpus import check
 from tests.support.command import Tsc
 from tests.support.copies import link_copy
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript import robots
 from tiniscript.base import languages
 from tiniscript.base.catalogue_source import UNKNOWN_HASH
@@ -133,7 +133,7 @@ def _of_package(place: Path, commands: list[list[str]]) -> list[tuple[int, str]]
     completed = subprocess.run(
         [sys.executable, "-c", script], input=json.dumps(commands), cwd=place, check=True,
         env={**os.environ, "PYTHONPATH": str(place)}, text=True, capture_output=True,
-        timeout=HANGS_S,
+        timeout=HANG_LIMIT_S,
     )  # fmt: skip
     return [(code, text) for code, text in json.loads(completed.stdout)]
 

@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.copies import link_copy
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.base import catalogue_source, languages
 from tiniscript.base.catalogue_source import Catalogue, Entry
 from tiniscript.base.languages import (
@@ -655,7 +655,7 @@ def command(package: Path, *words: str, code: str = WITHOUT) -> tuple[int, str]:
     run = subprocess.run(
         [sys.executable, "-c", code, *words],
         env={**os.environ, "PYTHONPATH": str(package.parent), "PYTHONDONTWRITEBYTECODE": "1"},
-        capture_output=True, text=True, timeout=HANGS_S,
+        capture_output=True, text=True, timeout=HANG_LIMIT_S,
     )  # fmt: skip
     return run.returncode, run.stderr
 

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from tests.support.text_only_words import CODE, ENDS, has_line_on_floor, text_only_words
+from tests.support.text_only_words import CODE, END_WORD, has_line_on_floor, text_only_words
 from tests.support.texts import LANGUAGES
 from tiniscript.base.languages import texts
 from tiniscript.lessons import catalogue
@@ -21,7 +21,7 @@ LESSONS = range(1, len(catalogue.folders()) + 1)
 
 def is_on_a_block(code: str, spoken_blocks: dict[str, dict[str, object]]) -> bool:
     """Return whether code is a word without a block's start or end, a name, or a whole block."""
-    return code in spoken_blocks if not code.isidentifier() else ENDS.match(code) is None
+    return code in spoken_blocks if not code.isidentifier() else END_WORD.match(code) is None
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

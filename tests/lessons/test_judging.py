@@ -187,7 +187,7 @@ def test_a_def_is_used_where_calls_lead_to_it(tmp_path: Path, count: int) -> Non
         assert "word HOP but never calls it" in missing
 
 
-OBEYS = """
+OBEYS_CRITERION = """
 [[criteria]]
 kind = "obeys"
 [[presses]]
@@ -195,28 +195,29 @@ at_seconds = 1
 seconds = 1
 key = "{key}"
 """
-DOES = {"UP": "F(0.1, 60)", "DOWN": "B(0.1, 60)", "LEFT": "L(0.1, 60)", "RIGHT": "R(0.1, 60)",
-        "A": "BEEP(0.1, 440)", "B": "BEEP(0.1, 440)"}  # fmt: skip
-FAILS = {"UP": "go forward", "DOWN": "go back", "LEFT": "turn to the left",
-         "RIGHT": "turn to the right", "A": "beep", "B": "beep"}  # fmt: skip
-OTHER = {"UP": "DOWN", "DOWN": "UP", "LEFT": "RIGHT", "RIGHT": "LEFT", "A": "B", "B": "A"}
+ANSWER_BY_KEY = {"UP": "F(0.1, 60)", "DOWN": "B(0.1, 60)", "LEFT": "L(0.1, 60)", "RIGHT": "R(0.1, 60)",
+                 "A": "BEEP(0.1, 440)", "B": "BEEP(0.1, 440)"}  # fmt: skip
+MISSED_BY_KEY = {"UP": "go forward", "DOWN": "go back", "LEFT": "turn to the left",
+                 "RIGHT": "turn to the right", "A": "beep", "B": "beep"}  # fmt: skip
+OPPOSITE_KEY = {"UP": "DOWN", "DOWN": "UP", "LEFT": "RIGHT", "RIGHT": "LEFT", "A": "B", "B": "A"}
 
 
 def answering(key: str, does: str) -> str:
     return f"LOOP(FOREVER); IF(KEY_{key}); {does}; END_IF; W(0.02); END_LOOP"
 
 
-@pytest.mark.parametrize("key", DOES)
+@pytest.mark.parametrize("key", ANSWER_BY_KEY)
 def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str) -> None:
-    lesson = lesson_of(tmp_path, OBEYS.format(key=f"KEY_{key}"))
-    assert sentences_on(lesson, answering(key, DOES[key])) == []
-    (missed_text,) = sentences_on(lesson, answering(OTHER[key], DOES[key]))
+    lesson = lesson_of(tmp_path, OBEYS_CRITERION.format(key=f"KEY_{key}"))
+    assert sentences_on(lesson, answering(key, ANSWER_BY_KEY[key])) == []
+    (missed_text,) = sentences_on(lesson, answering(OPPOSITE_KEY[key], ANSWER_BY_KEY[key]))
     assert (
-        f"After 1.0 s KEY_{key} was held down, but the robot did not {FAILS[key]}." in missed_text
+        f"After 1.0 s KEY_{key} was held down, but the robot did not {MISSED_BY_KEY[key]}."
+        in missed_text
     )
-    if not FAILS[key].startswith("beep"):
-        (missed_text,) = sentences_on(lesson, answering(key, DOES[OTHER[key]]))
-        assert f"did not {FAILS[key]}." in missed_text
+    if not MISSED_BY_KEY[key].startswith("beep"):
+        (missed_text,) = sentences_on(lesson, answering(key, ANSWER_BY_KEY[OPPOSITE_KEY[key]]))
+        assert f"did not {MISSED_BY_KEY[key]}." in missed_text
 
 
 @pytest.mark.parametrize(
@@ -229,13 +230,15 @@ def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str
     ],
 )
 def test_a_robot_that_nobody_drives_stands(tmp_path: Path, text: str, seconds: str) -> None:
-    lesson = lesson_of(tmp_path, OBEYS.format(key="KEY_UP"))
+    lesson = lesson_of(tmp_path, OBEYS_CRITERION.format(key="KEY_UP"))
     (missed_text,) = sentences_on(lesson, text)
     assert f"After {seconds} s no key was held down, but the robot still moved. Make" in missed_text
 
 
 def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) -> None:
-    lesson = lesson_of(tmp_path, OBEYS.format(key="KEY_LEFT"), more="mirror = true\nworlds = 2")
+    lesson = lesson_of(
+        tmp_path, OBEYS_CRITERION.format(key="KEY_LEFT"), more="mirror = true\nworlds = 2"
+    )
     assert [press.key for seed in (1, 2) for press in presses_of(lesson, seed)] == [
         "KEY_LEFT",
         "KEY_RIGHT",
@@ -248,7 +251,9 @@ def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) 
 def test_what_is_held_is_no_heartbeat_that_a_run_needs(tmp_path: Path) -> None:
     """A run of the judge's continues without a computer, before the first key and after the
     last."""
-    lesson = lesson_of(tmp_path, OBEYS.format(key="KEY_A") + '[[criteria]]\nkind = "shows"\n')
+    lesson = lesson_of(
+        tmp_path, OBEYS_CRITERION.format(key="KEY_A") + '[[criteria]]\nkind = "shows"\n'
+    )
     assert (
         sentences_on(lesson, answering("A", "BEEP(0.1, 440)").replace("W(", "SHOW(TIME); W(")) == []
     )

@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 
 import pytest
 
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript import robots
 from tiniscript.base.version import __version__
 from tiniscript.library import opening
@@ -242,7 +242,7 @@ def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
                 peer.recv(1000)
                 peer.sendall(data)
                 peer.shutdown(socket.SHUT_WR)
-                peer.settimeout(HANGS_S)
+                peer.settimeout(HANG_LIMIT_S)
                 ended.append(peer.recv(1000))
 
         ended: list[bytes] = []
@@ -253,5 +253,5 @@ def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
             assert connection is None and not reason
         except RobotError as failure:
             assert failure.reason == reason
-        thread.join(HANGS_S)
+        thread.join(HANG_LIMIT_S)
         assert ended == [b""], "it is connected still"

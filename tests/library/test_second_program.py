@@ -26,7 +26,7 @@ from tiniscript.link.requests import OK, Reply
 
 KIT = robots.load("tinibot").kit
 PROGRAM = 7
-CLOSE = "close"
+CLOSE_ACTION = "close"
 SAVING_LOOKS = 3  # of a saving robot: it reports success
 
 
@@ -78,18 +78,18 @@ class Line:
         return True
 
     def close(self) -> None:
-        self.did.append(CLOSE if not self.unsaved_looks else "close while it saves")
+        self.did.append(CLOSE_ACTION if not self.unsaved_looks else "close while it saves")
 
 
 # The end of a program, and whether its starter looks on.
-ENDS: dict[str, Callable[[Line], list[Event]]] = {
+END_ACTIONS: dict[str, Callable[[Line], list[Event]]] = {
     "runs on": lambda line: [],
     "done": lambda line: [DoneEvent(line.run)],
     "stopped": lambda line: [event("STOPPED")],
     "replaced": lambda line: [StartedEvent(line.run + 1, line.program)],
     "restarted": lambda line: [RestartedEvent()],
 }
-STARTS = ("start", "start detached", "upload", "upload for good", "live", "undo")
+START_ACTIONS = ("start", "start detached", "upload", "upload for good", "live", "undo")
 Story = tuple[str, str, bool]
 
 
@@ -103,7 +103,7 @@ def happens(robot: RobotConnection, line: Line, story: Story) -> str:
         robot.undo()
     else:
         robot.start(detached=how == "start detached")
-    events = [StartedEvent(line.run, line.program), *ENDS[end](line)]
+    events = [StartedEvent(line.run, line.program), *END_ACTIONS[end](line)]
     line.events += [(int(monotonic() * 1000), event) for event in events]
     if not looks:
         return ""
@@ -125,7 +125,7 @@ def leave(robot: RobotConnection, line: Line, kind: type[BaseException] | None) 
     return line.did
 
 
-STORIES = list(itertools.product(STARTS, ENDS, (False, True)))
+STORIES = list(itertools.product(START_ACTIONS, END_ACTIONS, (False, True)))
 
 
 @pytest.mark.sampled("seed", keep=20)
@@ -153,12 +153,12 @@ def test_leaving_is_about_the_last_program_alone(
 def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     """The reference for the others. Ctrl-C stops any run."""
     for story, calls in (
-        (("start", "runs on", False), ["stop", CLOSE]),
-        (("start detached", "runs on", False), [CLOSE]),
-        (("upload for good", "runs on", False), ["stop", CLOSE]),
-        (("undo", "runs on", False), ["stop", CLOSE]),
-        (("upload", "replaced", True), [CLOSE]),
-        (("upload", "replaced", False), [CLOSE]),
+        (("start", "runs on", False), ["stop", CLOSE_ACTION]),
+        (("start detached", "runs on", False), [CLOSE_ACTION]),
+        (("upload for good", "runs on", False), ["stop", CLOSE_ACTION]),
+        (("undo", "runs on", False), ["stop", CLOSE_ACTION]),
+        (("upload", "replaced", True), [CLOSE_ACTION]),
+        (("upload", "replaced", False), [CLOSE_ACTION]),
     ):
         for kind in (None, KeyboardInterrupt):
             robot, line = connect_client(monkeypatch)

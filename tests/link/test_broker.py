@@ -17,7 +17,7 @@ import pytest
 
 from tests.support.mosquitto import Mosquitto
 from tests.support.network import Network
-from tests.support.waiting import HANGS_S, until
+from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript.link.messages import STOP_BYTES
 
 paho = pytest.importorskip("paho.mqtt.publish")
@@ -131,7 +131,7 @@ def test_a_process_connects_whenever_its_broker_is_there(tmp_path: Path, seed: i
 
 def flush(client: Broker) -> None:
     """Wait until the broker has taken all that a client has said."""
-    client._client.publish(LAST, b"", qos=1).wait_for_publish(HANGS_S)
+    client._client.publish(LAST, b"", qos=1).wait_for_publish(HANG_LIMIT_S)
 
 
 def retained_topics(own: Mosquitto) -> list[str]:
@@ -225,6 +225,6 @@ def test_a_large_message_ends_the_connection_before_it_is_in_memory(size: int) -
         client = Broker("127.0.0.1", listening.getsockname()[1], Access())
         until(lambda: client.end_reason != "", "the connection ends")
         assert client.end_reason == f"the broker sends a message of {size} bytes"
-        serving.join(HANGS_S)
+        serving.join(HANG_LIMIT_S)
         client.close()
     assert taken < 32 << 20  # size of the system's buffers

@@ -25,7 +25,7 @@ from tiniscript.studio.robot_link import RobotLink
 
 BAUDS = (9600, 19200, 38400, 57600, 115200)
 CASES = Path(__file__).parent.parent / "cases"
-EACH = pytest.mark.parametrize("recording", RECORDINGS.values(), ids=RECORDINGS)
+each_recording = pytest.mark.parametrize("recording", RECORDINGS.values(), ids=RECORDINGS)
 
 
 def our_bytes() -> list[bytes]:
@@ -38,18 +38,18 @@ def our_bytes() -> list[bytes]:
     return recordings
 
 
-OURS = our_bytes()
+OWN_ROWS = our_bytes()
 
 
 def test_there_are_a_robot_s_bytes_to_look_at() -> None:
-    assert len(OURS) > 100
-    assert sum(row_of_ours.startswith(b"// ") for row_of_ours in OURS) > 20
+    assert len(OWN_ROWS) > 100
+    assert sum(row_of_ours.startswith(b"// ") for row_of_ours in OWN_ROWS) > 20
 
 
 # -- each board ---------------------------------------------------------------------------------
 
 
-@EACH
+@each_recording
 def test_a_board_is_known_by_its_recording(recording: Recording) -> None:
     board = identify_board(recording.data)
     assert board is not None
@@ -62,7 +62,7 @@ def test_each_row_has_a_recording() -> None:
     }
 
 
-@EACH
+@each_recording
 def test_a_recording_that_is_cut_is_of_that_board_or_of_none(recording: Recording) -> None:
     """A piece identifies less, but nothing wrong: an ESP32's boot messages precede the sketch's."""
     also = {recording.name, "esp32", None}
@@ -75,7 +75,7 @@ def test_a_recording_that_is_cut_is_of_that_board_or_of_none(recording: Recordin
         assert (board and board.name) in also, recording.data[first:last]
 
 
-@EACH
+@each_recording
 def test_a_recording_says_the_same_however_its_pieces_come(recording: Recording) -> None:
     line = LinkLine()
     for at in range(0, len(recording.data), 3):
@@ -84,7 +84,7 @@ def test_a_recording_says_the_same_however_its_pieces_come(recording: Recording)
     assert identify_board(line.early_bytes) == identify_board(recording.data)
 
 
-@EACH
+@each_recording
 @pytest.mark.parametrize("before", [b"", b"\xf8\x00\x80", b"x\xfe\r\n"])
 def test_noise_before_a_recording_changes_nothing(recording: Recording, before: bytes) -> None:
     board = identify_board(before + b"\r\n" + recording.data)
@@ -109,7 +109,7 @@ def test_the_two_that_send_high_bytes_are_told_apart() -> None:
 # -- other devices --------------------------------------------------------------------------------
 
 
-@EACH
+@each_recording
 def test_noise_of_a_wrong_speed_is_no_board(recording: Recording) -> None:
     for sent in BAUDS:
         for heard in BAUDS:
@@ -131,7 +131,7 @@ def test_much_noise_is_no_board() -> None:
         assert identify_stranger(bytes(chance.choices(range(256), k=500))) is None
 
 
-@given(st.lists(st.sampled_from(OURS), min_size=1, max_size=6), st.binary(max_size=20))
+@given(st.lists(st.sampled_from(OWN_ROWS), min_size=1, max_size=6), st.binary(max_size=20))
 def test_a_robot_is_no_board(traffic: list[bytes], noise: bytes) -> None:
     """Frames and lines are recognized first, with any noise around them."""
     for data in (b"".join(traffic), noise + b"\0" + b"".join(traffic) + noise):
@@ -156,7 +156,7 @@ def test_a_frame_with_the_bytes_of_a_board_in_it_is_a_robot_s(
 @pytest.mark.parametrize("piece", range(200))
 def test_a_piece_of_a_robot_s_bytes_is_no_board(piece: int) -> None:
     chance = random.Random(piece)
-    data = b"".join(chance.choices(OURS, k=5))
+    data = b"".join(chance.choices(OWN_ROWS, k=5))
     first, last = sorted(chance.randrange(len(data) + 1) for _ in range(2))
     assert identify_board(data[first:last]) is None
 
@@ -213,7 +213,7 @@ class LinkLine(LinkConnection):
         pass
 
 
-@EACH
+@each_recording
 def test_a_connection_says_what_answers_instead_of_a_robot(recording: Recording) -> None:
     line = LinkLine()
     line.note_heard(recording.data)

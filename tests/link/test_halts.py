@@ -18,7 +18,7 @@ from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 Ask = Callable[[Session], PendingRequest[Any]]
-DRIVES = image(FOREVER)
+DRIVE_IMAGE = image(FOREVER)
 
 
 def moves(robot: HostFirmware) -> bool:
@@ -28,7 +28,7 @@ def moves(robot: HostFirmware) -> bool:
 def driving() -> tuple[Session, HostFirmware, int]:
     """Return a robot that drives for a client, and the run."""
     session, robot = open_session()
-    assert robot.until(session, session.upload(DRIVES, saves=False)) == OK
+    assert robot.until(session, session.upload(DRIVE_IMAGE, saves=False)) == OK
     robot.talk(session, 300)
     assert moves(robot) and session.run is not None
     return session, robot, session.run
@@ -66,7 +66,7 @@ def test_its_run_ends_and_what_others_want_is_done(wanted: Ask | None, after_ms:
 
 def test_a_run_of_another_goes_on() -> None:
     session, robot, run = driving()
-    assert robot.until(session, session.upload(DRIVES, saves=False)) == OK
+    assert robot.until(session, session.upload(DRIVE_IMAGE, saves=False)) == OK
     session.end_run(run, robot.now_ms)
     robot.talk(session, 1000)
     assert moves(robot) and session.run != run
@@ -88,7 +88,7 @@ def test_an_upload_that_is_withdrawn_starts_nothing_and_the_next_is_done(after_m
 
 def test_one_that_waits_is_withdrawn() -> None:
     session, robot = open_session()
-    first, gone, last = live(session), session.upload(DRIVES), live(session)
+    first, gone, last = live(session), session.upload(DRIVE_IMAGE), live(session)
     session.withdraw(gone)
     assert gone.outcome is not None and gone.outcome.status == CANCELLED
     assert robot.until(session, last) == OK and first.outcome
@@ -101,7 +101,7 @@ def test_a_frame_that_may_start_a_run_is_answered_first(answers: object) -> None
     session, robot = open_session()
     if answers == "BUSY":
         assert robot.until(session, session.upload(image("SB|SHOW(1)"))) == OK
-    gone = session.upload(DRIVES, saves=False)
+    gone = session.upload(DRIVE_IMAGE, saves=False)
     first_frames = session.poll(robot.now_ms)
     assert first_frames
     session.withdraw(gone)
@@ -116,7 +116,7 @@ def test_a_frame_that_may_start_a_run_is_answered_first(answers: object) -> None
 
 def test_a_program_that_was_sent_before_is_saved_all_the_same() -> None:
     session, robot = open_session()
-    assert robot.until(session, session.upload(DRIVES)) == OK
+    assert robot.until(session, session.upload(DRIVE_IMAGE)) == OK
     assert session.run is not None
     session.end_run(session.run, robot.now_ms)
     robot.talk(session, 3000)

@@ -21,8 +21,8 @@ from tiniscript.link.transports.pushed import PushedTransport
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no timer of signals")
 
-INTERRUPTS = 1_500
-FEW = 8  # a task that takes a while to cancel
+INTERRUPT_COUNT = 1_500
+FEW_HAILS = 8  # a task that takes a while to cancel
 
 
 class Port(PushedTransport):
@@ -37,7 +37,7 @@ class Port(PushedTransport):
         self.end("closed")
 
 
-def hail(work: Callable[[], object], count: int = INTERRUPTS) -> None:
+def hail(work: Callable[[], object], count: int = INTERRUPT_COUNT) -> None:
     """Repeat work while Ctrl-C is pressed again and again. All other exceptions pass."""
     rng = random.Random(1)
     pressed: list[int] = []  # the interpreter discards exceptions in a callback
@@ -76,7 +76,7 @@ def test_a_line_goes_on_and_still_stops() -> None:
 @pytest.mark.filterwarnings("ignore:coroutine .* was never awaited")
 def test_an_event_loop_goes_on() -> None:
     loop = EventLoop()
-    hail(lambda: loop.run(asyncio.sleep(0), 100), FEW)
+    hail(lambda: loop.run(asyncio.sleep(0), 100), FEW_HAILS)
     assert loop.run(asyncio.sleep(0, "done"), 100) == "done"
     loop.close()
 

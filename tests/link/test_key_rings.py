@@ -20,7 +20,7 @@ from tiniscript.link.seal import siphash
 from tiniscript.studio.page_line import PageKeys
 
 SLOTS = [(robot, which) for robot in (1, 2) for which in (KEY_OWNER, KEY_TEACHER)]
-CHANGES = 40
+CHANGE_COUNT = 40
 CHALLENGE, NONCE = b"12345678", 7
 T = TypeVar("T")
 
@@ -47,7 +47,7 @@ def test_a_claim_stays_until_it_is_confirmed_or_given_up(
         [RobotKey(*slot, chance.randbytes(KEY_BYTES)) for slot in chance.sample(SLOTS, k)]
         for k in (1, 2, len(SLOTS))
     ]
-    for _ in range(CHANGES):
+    for _ in range(CHANGE_COUNT):
         slot, known_keys = chance.choice(SLOTS), ring.keys_of_robot(None)
         key = chance.choice([*known_keys, *chance.choice(lists)])
         match chance.choice(["claim", "import", "refuse", "confirm", "drop", "forget", "load"]):
@@ -146,7 +146,7 @@ def test_a_robot_is_its_owners_whatever_was_lost_of_claims(
     ring: KeyRing = KeyFile(tmp_path / "keys.json") if kind is KeyFile else PageKeys(b"")
     robot = Robot(chance)
     sealing_keys = set[bytes]()
-    for _ in range(CHANGES):
+    for _ in range(CHANGE_COUNT):
         robot.loss, which = chance.choice((0.0, 0.3)), chance.choice((KEY_OWNER, KEY_TEACHER))
         robot.has_seals = chance.random() < 0.5  # it may have older firmware
         if chance.random() < 0.7:

@@ -21,21 +21,21 @@ from tiniscript.link.connection import EXCHANGE_TIMEOUT_MS, PendingRequest
 from tiniscript.link.requests import OK
 from tiniscript.link.session import DEAF_MS, Session
 
-IN_A_ROW = 4  # packets of both that are lost before an answer arrives
-DEAD_MS, ALIVE_MS = 2500, 1500  # of a line that is dead again and again
-LATE_MS = 1200  # most delay of data to the robot
+CONSECUTIVE_LOSSES = 4  # packets of both that are lost before an answer arrives
+LINE_DEAD_MS, LINE_ALIVE_MS = 2500, 1500  # of a line that is dead again and again
+LONGEST_DELAY_MS = 1200  # most delay of data to the robot
 MOST_POLLS = 5  # polls in one moment
-EACH_MS = 10_000  # of a request and of each of its pieces
-LONG = "SI|" + "F(0.1, 30); B(0.1, 20);" * 60
-GOES_ON = "SI|F(20, 40)"
+REQUEST_LIMIT_MS = 10_000  # of a request and of each of its pieces
+LONG_PROGRAM = "SI|" + "F(0.1, 30); B(0.1, 20);" * 60
+DETACHED_PROGRAM = "SI|F(20, 40)"
 
 REQUEST_MAKERS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
-    "a long program": lambda session: session.upload(image_of(LONG), saves=False),
-    "a saved program": lambda session: session.upload(image_of(LONG)),
+    "a long program": lambda session: session.upload(image_of(LONG_PROGRAM), saves=False),
+    "a saved program": lambda session: session.upload(image_of(LONG_PROGRAM)),
     "a short program": lambda session: session.upload(image_of("SI|F(0.2, 50)"), saves=False),
     "a line": lambda session: session.live(image_of("SI|F(0.2, 50)").code),
     "what goes on alone": lambda session: session.upload(
-        image_of(GOES_ON), saves=False, is_detached=True
+        image_of(DETACHED_PROGRAM), saves=False, is_detached=True
     ),
     "its program": lambda session: session.fetch(),
     "its state": lambda session: session.status(),
@@ -53,19 +53,19 @@ class BadLine:
         kind = rng.choice(("losses", "losses", "bursts", "late"))
         self.is_bursty = kind == "bursts"
         self.likely = rng.choice((0.2, 0.5, 0.8)) if kind == "losses" else 0
-        self.late_ms = rng.choice((300, LATE_MS)) if kind == "late" else 0
+        self.late_ms = rng.choice((300, LONGEST_DELAY_MS)) if kind == "late" else 0
         self.under_way: deque[tuple[int, bytes]] = deque()  # to the robot
         self.packets = [(-9, False), (-9, False)]  # time and fate of the last one in each direction
-        self.dead_ms = rng.choice((500, 1500, DEAD_MS))
+        self.dead_ms = rng.choice((500, 1500, LINE_DEAD_MS))
 
     def takes(self, data: bytes, now_ms: int, is_answer: bool = False) -> bytes:
         if not data:
             return data
         if self.is_bursty:
-            return data if now_ms % (self.dead_ms + ALIVE_MS) < ALIVE_MS else b""
+            return data if now_ms % (self.dead_ms + LINE_ALIVE_MS) < LINE_ALIVE_MS else b""
         before_ms, is_lost = self.packets[is_answer]
         if now_ms > before_ms + 2:  # another packet
-            is_lost = self.lost < IN_A_ROW and self.rng.random() < self.likely
+            is_lost = self.lost < CONSECUTIVE_LOSSES and self.rng.random() < self.likely
             self.lost = self.lost + 1 if is_lost else 0 if is_answer else self.lost
         self.packets[is_answer] = now_ms, is_lost
         return b"" if is_lost else data
@@ -118,7 +118,7 @@ def check(seed: int) -> str:
     explanation = f"seed {seed}, {name}, {line.is_bursty} {line.likely} {line.late_ms}"
     pieces = 40 if "program" in name else 4
     for request in pending_requests:
-        status = until(session, robot, line, request, pieces * EACH_MS)
+        status = until(session, robot, line, request, pieces * REQUEST_LIMIT_MS)
         assert status == OK, f"{explanation}: {status}"
     if name == "what goes on alone":
         robot.wait(2 * DEAF_MS)  # the client that sent it has left

@@ -17,7 +17,7 @@ import pytest
 from tests.support.command import LONG, Command, Tsc, inside, process
 from tests.support.network import BadNetwork
 from tests.support.virtual_command import FOREVER, Robot, robot
-from tests.support.waiting import HANGS_S, until
+from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript.base import files
 from tiniscript.link import known_ports, ports
 
@@ -36,17 +36,17 @@ def network() -> ModuleType:
 
 # Every announcement is heard by all tests of this computer: names are unique to a test process, and
 # tests that list the announcements, or fill the list, run one at a time.
-HERE = os.getpid()
-FAR = f"far-{HERE}.local."
+PROCESS_ID = os.getpid()
+FAR_HOST = f"far-{PROCESS_ID}.local."
 LATE_S = 0.04  # each way
-LOST = 0.05  # of the pieces
+LOSS_PROBABILITY = 0.05  # of the pieces
 
 
 @pytest.fixture
 def listing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """No other test lists or announces names meanwhile."""
     shared = tmp_path_factory.getbasetemp().parent / "listing"  # by the workers of a run
-    end_s = time.monotonic() + HANGS_S
+    end_s = time.monotonic() + HANG_LIMIT_S
     with ExitStack() as stack:
         while True:
             with suppress(TimeoutError):
@@ -66,7 +66,7 @@ def announce(name: str, address: str, number: int) -> Iterator[None]:
     with closing(Zeroconf(interfaces=["127.0.0.1"])) as network:
         network.register_service(ServiceInfo(
             SERVICE, f"{name}.{SERVICE}", number, addresses=[ip_address(address).packed],
-            server=f"stranger-{HERE}.local.",
+            server=f"stranger-{PROCESS_ID}.local.",
         ))  # fmt: skip
         yield
 
@@ -92,10 +92,10 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
     packet = DNSOutgoing(_FLAGS_QR_RESPONSE)
     for whole in (f"{name}.{SERVICE}" for name in names):
         packet.add_answer_at_time(DNSPointer(SERVICE, _TYPE_PTR, _CLASS_IN, 120, whole), 0)
-        service = DNSService(whole, _TYPE_SRV, _CLASS_IN, 120, 0, 0, number, FAR)
+        service = DNSService(whole, _TYPE_SRV, _CLASS_IN, 120, 0, 0, number, FAR_HOST)
         packet.add_answer_at_time(service, 0)
         packet.add_answer_at_time(DNSText(whole, _TYPE_TXT, _CLASS_IN, 120, b"\0"), 0)
-    address = DNSAddress(FAR, _TYPE_A, _CLASS_IN, 120, bytes((127, 0, 0, 1)))
+    address = DNSAddress(FAR_HOST, _TYPE_A, _CLASS_IN, 120, bytes((127, 0, 0, 1)))
     packet.add_answer_at_time(address, 0)
     for k in range(lonely):
         alone = DNSPointer(SERVICE, _TYPE_PTR, _CLASS_IN, 120, f"a{k}.{SERVICE}")
@@ -133,15 +133,15 @@ def number_of(port: str) -> int:
 @pytest.fixture(scope="module")
 def tini() -> Iterator[Robot]:
     """A robot that has announced itself: that takes 4 s."""
-    with robot("--announce", "--name", f"Ñ tini {HERE}") as running_robot:
-        assert running_robot.line() == f"tcp://Ñ tini {HERE}"
+    with robot("--announce", "--name", f"Ñ tini {PROCESS_ID}") as running_robot:
+        assert running_robot.line() == f"tcp://Ñ tini {PROCESS_ID}"
         yield running_robot
 
 
 def test_a_robot_is_reached_by_its_name(tini: Robot) -> None:
     for run, typed in ((process, "tcp://Ñ tini {}"), (inside, "tcp://ñ tini {}.local"),
                        (inside, "TCP://ñ TINI {}")):  # fmt: skip
-        port = typed.format(HERE)
+        port = typed.format(PROCESS_ID)
         result = run("upload", "-e", "SI|F(0.2, 50)", "--port", port)
         assert (result.code, result.err) == (0, ""), port
         assert known_ports.remembered_ports().last_port == port
@@ -149,7 +149,7 @@ def test_a_robot_is_reached_by_its_name(tini: Robot) -> None:
 
 
 def test_a_name_and_an_address_share_a_connection(tini: Robot) -> None:
-    command = Command("upload", "-e", FOREVER, "--port", f"tcp://Ñ tini {HERE}")
+    command = Command("upload", "-e", FOREVER, "--port", f"tcp://Ñ tini {PROCESS_ID}")
     command.until("running")
     assert inside("stop", "--port", tini.port).code == 0
     assert command.wait_for_result().code == 3
@@ -170,7 +170,7 @@ def test_a_robot_announces_itself_only_when_asked(
 def test_the_announcement_ends_with_the_robot(
     network: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    name = f"short-{HERE}"
+    name = f"short-{PROCESS_ID}"
     with robot("--announce", "--name", name):
         assert inside("doctor", "--identify", "--port", f"tcp://{name}").code == 0
     monkeypatch.setattr(network, "SEARCH_S", 1.0)
@@ -189,15 +189,15 @@ def test_names_that_nobody_has(
 
 
 def test_two_robots_of_one_name_are_not_announced(tini: Robot) -> None:
-    name = f"Ñ tini {HERE}"
+    name = f"Ñ tini {PROCESS_ID}"
     result = inside("robot", "--announce", "--name", name, "--for", "0.1")
     assert (result.code, f"the name {name} cannot be announced" in result.err) == (3, True)
 
 
 @pytest.mark.parametrize("address", ["8.8.8.8", "0.0.0.0"])
 def test_an_address_outside_is_not_called(address: str) -> None:
-    with announce(f"bait-{HERE}", address, 7007):
-        result = inside("doctor", "--identify", "--port", f"tcp://bait-{HERE}")
+    with announce(f"bait-{PROCESS_ID}", address, 7007):
+        result = inside("doctor", "--identify", "--port", f"tcp://bait-{PROCESS_ID}")
         message = f"an address outside this network ({address})"
         assert (result.code, message in result.err) == (3, True)
 
@@ -259,8 +259,8 @@ def test_whatever_answers_a_name_has_to_be_a_robot() -> None:
             peer.close()
 
         threading.Thread(target=serve, daemon=True).start()
-        with announce(f"web-{HERE}", "127.0.0.1", number):
-            assert inside("doctor", "--identify", "--port", f"tcp://web-{HERE}").code == 3
+        with announce(f"web-{PROCESS_ID}", "127.0.0.1", number):
+            assert inside("doctor", "--identify", "--port", f"tcp://web-{PROCESS_ID}").code == 3
 
 
 def test_without_multicast_the_address_is_the_next_step(
@@ -279,13 +279,13 @@ def test_without_multicast_the_address_is_the_next_step(
 
 def test_a_bad_network_costs_time_and_nothing_else() -> None:
     """40 ms each way, and one piece in twenty is lost: frames are sent again."""
-    port = f"tcp://far-{HERE}"
+    port = f"tcp://far-{PROCESS_ID}"
     with (
         robot() as running_robot,
         closing(
-            BadNetwork(number_of(running_robot.port), LATE_S, every=2000, lost=LOST)
+            BadNetwork(number_of(running_robot.port), LATE_S, every=2000, lost=LOSS_PROBABILITY)
         ) as network,
-        announce(f"far-{HERE}", "127.0.0.1", network.port),
+        announce(f"far-{PROCESS_ID}", "127.0.0.1", network.port),
     ):
         result = inside("upload", "-e", f"SB|{LONG}", "--port", port).gives(0, "")
         checksum = result.out.partition("checksum ")[2][:8]

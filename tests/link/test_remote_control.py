@@ -45,8 +45,8 @@ from tiniscript.link.remote import (
 from tiniscript.link.requests import OK, Reply
 from tiniscript.link.session import Session
 
-UP, LEFT, A = (remote_state_of([name]) for name in ("UP", "LEFT", "A"))
-DRIVES = "SI|F(FOREVER, 40)\nTASK\nW(1)\nEND_TASK"
+KEY_UP, KEY_LEFT, KEY_A = (remote_state_of([name]) for name in ("UP", "LEFT", "A"))
+DRIVE_PROGRAM = "SI|F(FOREVER, 40)\nTASK\nW(1)\nEND_TASK"
 KEYS = BY_NAME["KEYS"]
 LIVE = BY_NAME["LIVE"]
 
@@ -104,11 +104,11 @@ def hand() -> Hand:
 def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
     one = hand()
     for held in (
-        UP,
+        KEY_UP,
         RemoteState(0, 100, -100),
         remote_state_of(["UP", "B"], -1, 30),
         NOTHING_PRESSED,
-        A,
+        KEY_A,
         NOTHING_PRESSED,
     ):
         one.holds(held)
@@ -124,7 +124,7 @@ def test_a_word_every_200_ms_while_something_is_held_and_none_while_nothing_is()
     one = hand()
     one.talk(3000)
     assert one.words == []
-    one.holds(UP)
+    one.holds(KEY_UP)
     one.talk(2001)
     assert len(one.words) == 11
     one.holds(NOTHING_PRESSED)
@@ -136,26 +136,26 @@ def test_a_word_every_200_ms_while_something_is_held_and_none_while_nothing_is()
 
 def test_a_word_waits_only_while_the_one_before_has_no_answer() -> None:
     one = hand()
-    for held in (UP, NOTHING_PRESSED, A, UP, NOTHING_PRESSED):
+    for held in (KEY_UP, NOTHING_PRESSED, KEY_A, KEY_UP, NOTHING_PRESSED):
         one.holds(held)
         one.talk(5)
         assert one.words[-1][1] == held
     one.loses = lambda: True
     count = len(one.words)
-    one.holds(UP)
+    one.holds(KEY_UP)
     one.talk(1)
     one.holds(NOTHING_PRESSED)
     one.talk(GAP_MS - 1)
-    assert [word for _, word in one.words[count:]] == [UP]
+    assert [word for _, word in one.words[count:]] == [KEY_UP]
     one.talk(1)
-    assert [word for _, word in one.words[count:]] == [UP, NOTHING_PRESSED]
+    assert [word for _, word in one.words[count:]] == [KEY_UP, NOTHING_PRESSED]
 
 
 def test_words_alone_keep_an_attached_program_alive() -> None:
     one = hand()
-    assert one.robot.until(one.session, one.session.upload(image(DRIVES), saves=False)) == OK
+    assert one.robot.until(one.session, one.session.upload(image(DRIVE_PROGRAM), saves=False)) == OK
     one.session.sends_heartbeat = lambda: False
-    one.holds(UP)
+    one.holds(KEY_UP)
     one.talk(3000)
     assert one.robot.did[-1].endswith("MOTORS 40 40")
     one.holds(NOTHING_PRESSED)
@@ -171,7 +171,7 @@ def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
     one = hand()
     for _ in range(100):
         one.loses = lambda: False
-        one.holds(rng.choice([UP, remote_state_of(["A", "LEFT"]), RemoteState(0, 50, -50)]))
+        one.holds(rng.choice([KEY_UP, remote_state_of(["A", "LEFT"]), RemoteState(0, 50, -50)]))
         one.talk(rng.randint(60, 400))
         assert one.robot.remote() == remote_readings(one.held)
         one.loses = lambda: True
@@ -191,7 +191,7 @@ def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
     read = looks = 0
     for _ in range(40):
         one.loses = lambda: rng.random() < 0.3
-        one.holds(rng.choice([UP, A, remote_state_of(["DOWN", "B"], 10, 20)]))
+        one.holds(rng.choice([KEY_UP, KEY_A, remote_state_of(["DOWN", "B"], 10, 20)]))
         one.talk(300)
         for _ in range(20):
             one.talk(50)
@@ -223,9 +223,9 @@ def test_keys_that_change_all_the_time_on_a_bad_line(seed: int) -> None:
 def test_who_falls_silent_holds_nothing() -> None:
     """A command that hangs, while its session still talks."""
     session, robot = open_session()
-    session.press(*UP)
+    session.press(*KEY_UP)
     robot.talk(session, HOLD_MS - 50)
-    assert robot.remote() == remote_readings(UP)
+    assert robot.remote() == remote_readings(KEY_UP)
     robot.talk(session, 100)
     assert robot.remote() == RELEASED
 
@@ -234,11 +234,11 @@ def test_two_who_press_on_one_line() -> None:
     """All their keys count, and the pad that was moved last; a person who leaves releases their
     keys."""
     session, robot = open_session()
-    session.press(*UP, 1)
-    session.press(A.keys, 10, 20, 2)
+    session.press(*KEY_UP, 1)
+    session.press(KEY_A.keys, 10, 20, 2)
     robot.talk(session, 100)
     assert robot.remote() == remote_readings(remote_state_of(["UP", "A"], 10, 20))
-    session.press(UP.keys, -5, 0, 1)
+    session.press(KEY_UP.keys, -5, 0, 1)
     robot.talk(session, 100)
     assert robot.remote() == remote_readings(remote_state_of(["UP", "A"], -5, 0))
     session.press(speaker=1)
@@ -249,12 +249,12 @@ def test_two_who_press_on_one_line() -> None:
 @pytest.mark.parametrize("text", ["SI|SHOW(1)", "SI|" + "SHOW(1);" * 60], ids=["short", "long"])
 def test_an_upload_beside_keys_is_done_and_the_keys_are_read_afterwards(text: str) -> None:
     one = hand()
-    one.holds(UP)
+    one.holds(KEY_UP)
     one.talk(100)
     request = one.session.upload(image(text))
     while request.outcome is None:
         one.talk(1)
-        one.holds(random.Random(one.robot.now_ms).choice([UP, A, LEFT]))
+        one.holds(random.Random(one.robot.now_ms).choice([KEY_UP, KEY_A, KEY_LEFT]))
         assert one.robot.now_ms < 30_000
     assert request.outcome.status == OK
     one.talk(250)
@@ -317,10 +317,10 @@ def test_keys_and_requests_of_an_owner_are_all_obeyed_whoever_comes_first(seed: 
 def test_keys_go_between_the_tries_of_a_request_that_waits() -> None:
     """The request is a name, which is saved as soon as the motors are off."""
     one = hand()
-    assert one.robot.until(one.session, one.session.upload(image(DRIVES), saves=False)) == OK
+    assert one.robot.until(one.session, one.session.upload(image(DRIVE_PROGRAM), saves=False)) == OK
     name = one.session.name(b"Ana")
     one.talk(300)
-    for held in (UP, NOTHING_PRESSED, A, NOTHING_PRESSED):
+    for held in (KEY_UP, NOTHING_PRESSED, KEY_A, NOTHING_PRESSED):
         one.holds(held)
         one.talk(60)
         assert one.robot.remote() == remote_readings(held)
@@ -335,15 +335,15 @@ def test_keys_go_between_the_tries_of_a_request_that_waits() -> None:
 
 def test_a_stop_lets_all_go_and_keys_release_nothing_after_it() -> None:
     one = hand()
-    assert one.robot.until(one.session, one.session.upload(image(DRIVES), saves=False)) == OK
-    one.holds(UP)
+    assert one.robot.until(one.session, one.session.upload(image(DRIVE_PROGRAM), saves=False)) == OK
+    one.holds(KEY_UP)
     one.talk(300)
     one.session.stop(one.robot.now_ms)
     one.held = NOTHING_PRESSED
     one.talk(300)
     assert one.robot.is_latched
     did = len(one.robot.did)
-    one.holds(UP)
+    one.holds(KEY_UP)
     one.talk(2000)
     assert one.robot.is_latched and len(one.robot.did) == did
     status = one.session.status()
@@ -356,10 +356,10 @@ def test_a_stop_by_somebody_else_voids_what_is_held(how: str) -> None:
     """It is held again once it is said again."""
     one = hand()
     session, robot = one.session, one.robot
-    assert robot.until(session, session.upload(image(DRIVES), saves=False)) == OK
-    session.press(*UP)
+    assert robot.until(session, session.upload(image(DRIVE_PROGRAM), saves=False)) == OK
+    session.press(*KEY_UP)
     robot.talk(session, 60)
-    assert robot.remote() == remote_readings(UP)
+    assert robot.remote() == remote_readings(KEY_UP)
     if how == "button":
         robot.push()
     else:
@@ -368,9 +368,9 @@ def test_a_stop_by_somebody_else_voids_what_is_held(how: str) -> None:
     begins_with_nothing_held(session, robot)
     robot.talk(session, HOLD_MS)
     assert robot.remote() == RELEASED
-    session.press(*UP)
+    session.press(*KEY_UP)
     robot.talk(session, 60)
-    assert robot.remote() == remote_readings(UP)
+    assert robot.remote() == remote_readings(KEY_UP)
 
 
 @pytest.mark.parametrize("seed", range(24))
@@ -381,7 +381,7 @@ def test_what_was_held_before_a_stop_is_not_held_after_it(seed: int) -> None:
     rng = random.Random(seed)
     session, robot = open_session()
     how = rng.choice((*STOPS, OWN))
-    assert robot.until(session, session.upload(image(DRIVES), saves=False)) == OK
+    assert robot.until(session, session.upload(image(DRIVE_PROGRAM), saves=False)) == OK
     for _ in range(rng.randint(1, 3)):
         for speaker in range(rng.randint(1, 2)):
             session.press(rng.randint(1, 63), rng.randint(-100, 100), speaker=speaker)
@@ -403,12 +403,12 @@ def test_what_was_held_before_a_stop_is_not_held_after_it(seed: int) -> None:
 
 def test_a_program_begins_with_nothing_held() -> None:
     one = hand()
-    one.holds(UP)
+    one.holds(KEY_UP)
     one.talk(60)
-    assert one.robot.remote() == remote_readings(UP)
+    assert one.robot.remote() == remote_readings(KEY_UP)
     begins_with_nothing_held(one.session, one.robot)
     one.talk(250)
-    assert one.robot.remote() == remote_readings(UP)
+    assert one.robot.remote() == remote_readings(KEY_UP)
 
 
 def begins_with_nothing_held(session: Session, robot: HostFirmware) -> None:
@@ -423,14 +423,14 @@ def begins_with_nothing_held(session: Session, robot: HostFirmware) -> None:
 
 def test_a_lost_link_and_one_that_is_found_again() -> None:
     one = hand()
-    one.holds(UP)
+    one.holds(KEY_UP)
     one.talk(60)
     one.loses = lambda: True
     one.talk(6000)
     assert LOST in one.outcomes and "LOST" in [event.name for event in one.session.events()]
     one.loses = lambda: False
     one.talk(3000)
-    assert one.robot.remote() == remote_readings(UP), "who goes on pressing is heard again"
+    assert one.robot.remote() == remote_readings(KEY_UP), "who goes on pressing is heard again"
 
 
 # -- permissions ----------------------------------------------------------------------------------
@@ -438,11 +438,11 @@ def test_a_lost_link_and_one_that_is_found_again() -> None:
 
 def test_an_older_robot_is_told_nothing() -> None:
     session = described()
-    request = session.press(*UP)
+    request = session.press(*KEY_UP)
     assert session.poll(10) == b""
     assert request.outcome and request.outcome.status == STATUSES["NO_REMOTE"]
     newer = described(features=REMOTE)
-    newer.press(*UP)
+    newer.press(*KEY_UP)
     frame = decode_frame(newer.poll(10).strip(b"\0"))
     assert frame and frame.number == KEYS.number and frame.payload == bytes((1, 0, 0))
 
@@ -466,19 +466,19 @@ def test_only_who_may_run_a_line_presses_keys_of_a_robot_with_an_owner(
     table.claim_session(keys)
     stranger = Session(9, 9600, KIT.fingerprint)
     assert table.robot.until(stranger, stranger.hello()) == OK
-    refused = stranger.press(*UP)
+    refused = stranger.press(*KEY_UP)
     assert table.robot.until(stranger, refused) == STATUSES["NOT_OWNER"]
     assert table.robot.remote() == RELEASED
     owner = table.session(keys, nonce=4)
     assert table.robot.until(owner, owner.hello()) == OK
-    assert table.robot.until(owner, owner.press(*UP)) == OK
-    assert table.robot.remote() == remote_readings(UP)
+    assert table.robot.until(owner, owner.press(*KEY_UP)) == OK
+    assert table.robot.remote() == remote_readings(KEY_UP)
     table.robot.wait(5000)  # the robot knows its seal no more
-    owner.press(*A)
+    owner.press(*KEY_A)
     table.robot.talk(owner, 400)
-    owner.press(*A)
+    owner.press(*KEY_A)
     table.robot.talk(owner, 200)
-    assert table.robot.remote() == remote_readings(A)
+    assert table.robot.remote() == remote_readings(KEY_A)
 
 
 # -- frames --------------------------------------------------------------------------------------
@@ -514,31 +514,31 @@ class Wire:
 )
 def test_what_is_out_of_range_is_refused_and_changes_nothing(payload: bytes) -> None:
     wire = Wire()
-    assert wire.answer(wire.keys(UP)) == "OK"
+    assert wire.answer(wire.keys(KEY_UP)) == "OK"
     assert wire.answer(wire.frame("KEYS", payload)) == "BAD_VALUE"
-    assert wire.robot.remote() == remote_readings(UP)
+    assert wire.robot.remote() == remote_readings(KEY_UP)
     assert wire.answer(wire.frame("KEYS", payload + b"\0")) == "BAD_LENGTH"
 
 
 def test_a_word_of_an_earlier_epoch_is_stale() -> None:
     wire = Wire()
-    late = wire.keys(UP)
+    late = wire.keys(KEY_UP)
     wire.robot.wait(10, bytes(4))
     assert wire.answer(late) == "STALE"
     assert wire.robot.remote() == RELEASED
-    assert wire.answer(wire.keys(UP, wire.epoch + 1)) == "OK"
+    assert wire.answer(wire.keys(KEY_UP, wire.epoch + 1)) == "OK"
     assert wire.robot.is_latched
 
 
 def test_a_word_that_comes_twice_counts_once() -> None:
     """A repeated one is answered, and presses no key again."""
     wire = Wire()
-    word = wire.keys(UP)
+    word = wire.keys(KEY_UP)
     assert wire.answer(word) == "OK"
     assert wire.answer(wire.keys(NOTHING_PRESSED)) == "OK"
     assert wire.answer(word) == "STALE"
     assert wire.robot.remote() == RELEASED
-    last = wire.keys(A)
+    last = wire.keys(KEY_A)
     assert wire.answer(last) == "OK"
     wire.robot.wait(HOLD_MS - 100)
     assert wire.answer(last) == "OK"
@@ -553,9 +553,9 @@ def test_a_word_in_two_reads_and_at_9600_baud(cut: int) -> None:
     wire.robot.wait(30, word[:cut])
     wire.robot.wait(30, word[cut:])
     assert wire.robot.remote() == remote_readings(remote_state_of(["B"], -100, 100))
-    slow = wire.keys(LEFT)
+    slow = wire.keys(KEY_LEFT)
     wire.robot.latched_while(len(slow) + 5, slow, is_spread=True)
-    assert wire.robot.remote() == remote_readings(LEFT)
+    assert wire.robot.remote() == remote_readings(KEY_LEFT)
 
 
 def test_a_thousand_words_in_a_burst() -> None:
@@ -563,8 +563,8 @@ def test_a_thousand_words_in_a_burst() -> None:
     wire = Wire()
     burst = b"".join(wire.keys(RemoteState(k % 64, 0, 0)) for k in range(1000))
     wire.robot.wait(10, burst)
-    assert wire.answer(wire.keys(A)) == "OK"
-    assert wire.robot.remote() == remote_readings(A)
+    assert wire.answer(wire.keys(KEY_A)) == "OK"
+    assert wire.robot.remote() == remote_readings(KEY_A)
     wire.robot.wait(HOLD_MS)
     assert wire.robot.remote() == RELEASED
 
@@ -579,11 +579,11 @@ def test_keys_between_the_pieces_of_a_program() -> None:
     assert wire.answer(wire.frame("BEGIN", begin)) == "OK"
     rest = bytes([sent_image.needs]) + sent_image.code
     for at in range(0, len(rest), 40):
-        assert wire.answer(wire.keys(UP)) == "OK"
+        assert wire.answer(wire.keys(KEY_UP)) == "OK"
         piece = at.to_bytes(2, "little") + rest[at : at + 40]
         assert wire.answer(wire.frame("DATA", piece)) == "OK"
-    assert wire.answer(wire.keys(UP)) == "OK"
-    assert wire.robot.remote() == remote_readings(UP)
+    assert wire.answer(wire.keys(KEY_UP)) == "OK"
+    assert wire.robot.remote() == remote_readings(KEY_UP)
     commit = sent_image.checksum.to_bytes(4, "little")
     wire.robot.wait(60, wire.frame("COMMIT", commit))
     assert wire.session.status() is not None
@@ -609,7 +609,7 @@ def test_the_reply_says_where_the_program_is() -> None:
     wire = Wire()
     program = image("SI|W(5)")
     wire.robot.wait(60, wire.frame("PROGRAM", b"\x10" + program.code))
-    sent = wire.robot.wait(60, wire.keys(UP))
+    sent = wire.robot.wait(60, wire.keys(KEY_UP))
     frames = [decode_frame(packet) for packet in sent.split(b"\0")]
     reply = next(frame for frame in frames if frame is not None and frame.number == KEYS.number)
     assert reply.payload[:2] == bytes((0, STATE_RUNNING))
@@ -626,13 +626,15 @@ def test_each_press_ends_with_the_answer_to_the_next_word_or_when_all_is_let_go(
         "stop": remote.let_go,
     }
     for _ in range(20):
-        presses = [remote.press(chance.randrange(2), chance.choice((NOTHING_PRESSED, UP, A)))]
+        presses = [
+            remote.press(chance.randrange(2), chance.choice((NOTHING_PRESSED, KEY_UP, KEY_A)))
+        ]
         for _ in range(chance.randrange(4)):
             now_ms += chance.randrange(400)
             if remote.expire_and_check_due(now_ms):
                 remote.take_message(now_ms)
             presses.append(
-                remote.press(chance.randrange(2), chance.choice((NOTHING_PRESSED, UP, A)))
+                remote.press(chance.randrange(2), chance.choice((NOTHING_PRESSED, KEY_UP, KEY_A)))
             )
         how = chance.choice([*ends])
         if how in ("answer", "silence"):  # of a word after these presses

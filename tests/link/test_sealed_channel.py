@@ -36,8 +36,8 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.session import Session
 
-UPLOADS = 40
-HEARD = 400  # frames that the stranger keeps
+UPLOAD_COUNT = 40
+KEPT_FRAMES = 400  # frames that the stranger keeps
 
 
 class SealedWorld(World):
@@ -72,7 +72,7 @@ class SealedWorld(World):
 
     def overhear(self, data: bytes) -> None:
         self.frames += [part + b"\0" for part in data.split(b"\0") if part]
-        del self.frames[:-HEARD]
+        del self.frames[:-KEPT_FRAMES]
         for frame in filter(None, map(decode_frame, filter(None, data.split(b"\0")))):
             if not frame.is_reply:
                 self.asked = frame
@@ -146,9 +146,9 @@ def test_sealed_uploads_over_a_bad_radio(world: type[World], is_large: bool, lea
     """A stranger may end sessions; no forged frame is obeyed or trusted, and many requests still
     succeed."""
     counts = Counter(
-        run_upload_scenario(cpp_link(is_large), seed, world) for seed in range(UPLOADS)
+        run_upload_scenario(cpp_link(is_large), seed, world) for seed in range(UPLOAD_COUNT)
     )
-    assert counts["done"] > UPLOADS * least, counts
+    assert counts["done"] > UPLOAD_COUNT * least, counts
 
 
 def test_the_frames_of_a_session_are_sealed() -> None:

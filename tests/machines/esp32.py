@@ -32,8 +32,8 @@ from tiniscript.robots import firmware
 from tiniscript.robots.ports import ESP32S
 from tiniscript.robots.profile import Robot
 
-STAND_INS = SOURCES / "extras" / "esp32"
-SIMULATED = (
+STAND_INS_FOLDER = SOURCES / "extras" / "esp32"
+SIMULATED_FILES = (
     "main.cpp",
     "simulated_chip.cpp",
     "simulated_counter.cpp",
@@ -45,7 +45,8 @@ SIMULATED = (
 HAS_TLS = Path("/usr/include/mbedtls/ssl.h").exists()
 TLS = ("-lmbedtls", "-lmbedx509", "-lmbedcrypto") if HAS_TLS else ()
 POWER_ON, EXTERNAL, PANIC, TASK_WATCHDOG, BROWN_OUT = 1, 2, 4, 6, 9  # esp_reset_reason_t
-CLOSED, NUMBERS, BLOBS = 1, 2, 3  # faults of NVS: NvsFault in `simulated_chip.h`
+# faults of NVS: NvsFault in `simulated_chip.h`
+NVS_CLOSED, NVS_NUMBERS_FAIL, NVS_BLOBS_FAIL = 1, 2, 3
 US_PER_CM = 58.309  # echo time per centimetre
 
 
@@ -57,14 +58,14 @@ class Kept(NamedTuple):
     writes: int  # writes to NVS since the reset
 
 
-EMPTY = Kept(b"", {}, 0)
+EMPTY_MEMORY = Kept(b"", {}, 0)
 
 
 class Esp32Robot(HostFirmware):
     """A robot after a reset. It has the pins of a profile for an ESP32."""
 
     def __init__(
-        self, robot: Robot | None = None, kept_memory: Kept = EMPTY, reset: int = POWER_ON,
+        self, robot: Robot | None = None, kept_memory: Kept = EMPTY_MEMORY, reset: int = POWER_ON,
         seed: int = 0x12345678, major: int = 2, nvs_fault: int = 0,
         mac: bytes = bytes(6),
     ) -> None:  # fmt: skip
@@ -164,7 +165,7 @@ def flags_of(chip: str, major: int) -> tuple[str, ...]:
     """Return the compiler flags of Espressif's core for a chip."""
     return (
         "-DARDUINO=10805", "-DARDUINO_ARCH_ESP32", f"-DESP_ARDUINO_VERSION_MAJOR={major}",
-        f"-D{ESP32S[chip]}=1", f"-isystem{STAND_INS / 'core'}",
+        f"-D{ESP32S[chip]}=1", f"-isystem{STAND_INS_FOLDER / 'core'}",
     )  # fmt: skip
 
 
@@ -189,7 +190,7 @@ def build_esp32(header: str, chip: str, major: int) -> Path:
     of_boards = ("-Wno-shadow", "-Wno-conversion", f'-Dtiniscript_own="{own}"')
 
     def is_other(path: Path) -> bool:
-        is_stand_in = path.parent == STAND_INS and path.name in SIMULATED
+        is_stand_in = path.parent == STAND_INS_FOLDER and path.name in SIMULATED_FILES
         return path.suffix == ".cpp" and "extras" in path.parts and not is_stand_in
 
     def flags(path: Path) -> tuple[str, ...]:

@@ -28,12 +28,12 @@ from tiniscript.link.session import Session
 from tiniscript.robots.kit_words import kit_words
 from tiniscript.robots.profile import language_number
 
-EMPTY = bytes(1024).replace(b"\0", b"\xff")  # contents of a new EEPROM
+EMPTY_EEPROM = bytes(1024).replace(b"\0", b"\xff")  # contents of a new EEPROM
 TICKS = 20  # ticks in a millisecond
 POWER_ON, RESET_BUTTON = 1, 2
-SPREAD, UNTIL_SENT = 1, 2  # ways for time to pass
+PASS_SPREAD, PASS_UNTIL_SENT = 1, 2  # ways for time to pass
 # The robot's description of itself is wrong after any history.
-WRONG = ("MARK", "MEASURED", "UNVERIFIED", "CHANGED", "SOUND", "LIGHT", "PROGRAM")
+WRONG_DESCRIPTIONS = ("MARK", "MEASURED", "UNVERIFIED", "CHANGED", "SOUND", "LIGHT", "PROGRAM")
 T = TypeVar("T")
 
 
@@ -50,7 +50,7 @@ class HostFirmware(Process):
     def __init__(
         self,
         kit: Kit,
-        memory: bytes = EMPTY,
+        memory: bytes = EMPTY_EEPROM,
         reset: int = POWER_ON,
         seed: int = 0x12345678,
         max_run_ms: int = 600_000,
@@ -94,11 +94,11 @@ class HostFirmware(Process):
 
         Bytes that are spread arrive one in each.
         """
-        return self._pass(milliseconds, data, SPREAD if is_spread else 0)
+        return self._pass(milliseconds, data, PASS_SPREAD if is_spread else 0)
 
     def until_sent(self, milliseconds: int) -> bytes:
         """Let time pass, at most until the robot sends something, which is returned."""
-        return self._pass(milliseconds, b"", UNTIL_SENT)[0]
+        return self._pass(milliseconds, b"", PASS_UNTIL_SENT)[0]
 
     def _pass(self, milliseconds: int, data: bytes, how: int) -> tuple[bytes, list[bool]]:
         head = pack("<IIHBI", self._clock(self.now_ms + 1), milliseconds, TICKS, how, len(data))
@@ -118,7 +118,7 @@ class HostFirmware(Process):
     def _note(self, lines: list[str]) -> None:
         """Record the robot's actions."""
         self.did += lines
-        wrong = [line for line in lines if line.split()[1] in WRONG]
+        wrong = [line for line in lines if line.split()[1] in WRONG_DESCRIPTIONS]
         assert not wrong, f"{wrong} after {self.did[-9:]}"
 
     def push(self, milliseconds: int = 100) -> None:

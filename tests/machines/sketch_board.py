@@ -22,7 +22,7 @@ from tiniscript.robots.profile import Robot
 FLAGS = ("-Os", "-flto", "-ffunction-sections", "-fdata-sections", "-DF_CPU=16000000L",
          "-DARDUINO=10808", "-DDECIMAL_DIG=__DECIMAL_DIG__")  # fmt: skip
 TIMER_2 = {"mask": 0x70, "control": 0xB1, "top": 0xB3}
-DIVIDES = (0, 1, 8, 32, 64, 128, 256, 1024)
+PRESCALERS = (0, 1, 8, 32, 64, 128, 256, 1024)
 SERVO_KEYS = ("left_pin", "right_pin")
 
 Signal = list[tuple[float, tuple[int, ...]]]  # values, each from a time on
@@ -136,7 +136,7 @@ class SketchBoard(boards.Simulated):
     def _hertz(now: dict[int, int]) -> int:
         if not now.get(TIMER_2["mask"], 0) & 2:
             return 0
-        divides = DIVIDES[now.get(TIMER_2["control"], 0) & 7]
+        divides = PRESCALERS[now.get(TIMER_2["control"], 0) & 7]
         return HERTZ // (2 * divides * (now.get(TIMER_2["top"], 0) + 1)) if divides else 0
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 WRAP = 2**32
 
-COMPARE: dict[str, Callable[[int, int], bool]] = {
+COMPARISONS: dict[str, Callable[[int, int], bool]] = {
     "EQ": lambda a, b: a == b,
     "NE": lambda a, b: a != b,
     "LT": lambda a, b: a < b,
@@ -108,6 +108,6 @@ def calculate(name: str, a: int, b: int = 0) -> int:
             return int(a != 0 or b != 0)
         case "NOT":
             return int(a == 0)
-        case _ if name in COMPARE:
-            return int(COMPARE[name](a, b))
+        case _ if name in COMPARISONS:
+            return int(COMPARISONS[name](a, b))
     raise AssertionError(f"the page does not say what {name} does")

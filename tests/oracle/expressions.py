@@ -9,7 +9,15 @@ from typing import NoReturn
 from tests.oracle.ast import Expression, Statement, Task, stack_need
 from tests.oracle.kinds import Text
 from tests.oracle.lexer import Token, thousandths, tokens_of
-from tests.oracle.words import COMPARATORS, FUNCTIONS, HIGHEST, LOWEST, MAX_STACK, Kit, Mistake
+from tests.oracle.words import (
+    COMPARATORS,
+    FUNCTIONS,
+    HIGHEST_VALUE,
+    LOWEST_VALUE,
+    MAX_STACK,
+    Kit,
+    Mistake,
+)
 
 
 class ExpressionParser:
@@ -189,7 +197,7 @@ class ExpressionParser:
 
     def number(self, sign: int) -> Expression:
         value = sign * thousandths(self.token.text)
-        if not LOWEST <= value <= HIGHEST:
+        if not LOWEST_VALUE <= value <= HIGHEST_VALUE:
             self.fail("the number is out of range")
         self.at += 1
         return Expression("NUMBER", False, value=value, plain=True)

@@ -7,7 +7,7 @@ import zlib
 from itertools import pairwise
 from typing import NamedTuple
 
-from tests.oracle.words import FIXED, Mistake
+from tests.oracle.words import FIXED_WORDS, Mistake
 
 
 class Token(NamedTuple):
@@ -59,8 +59,8 @@ def tokens_of(text: str) -> list[Token]:
             raise Mistake(f"line {line}: a ; inside parentheses")
         if kind == "degrees":
             kind, word = "word", "DEG"
-        if word in FIXED:
-            names, meaning = FIXED[word]
+        if word in FIXED_WORDS:
+            names, meaning = FIXED_WORDS[word]
             values, at = _read_values(text, at, len(names)) if names else ([], at)
             for token in tokens_of(meaning)[:-1]:
                 given = dict(zip(names, values, strict=True)).get(token.text, [token])

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from tests.oracle.arithmetic import (
-    COMPARE,
+    COMPARISONS,
     WRAP,
     Fault,
     answer,
@@ -134,7 +134,7 @@ class Run:
         if family in ("IF8", "IF16", "UNTIL8", "UNTIL16", "IF_VAR8", "IF_VAR16"):
             *first, constant = operands[: 2 if family.startswith("IF_VAR") else 1]
             value = self.variables[first[0]] if first else popped_values[0]
-            holds = COMPARE[last](value, 1000 * constant)
+            holds = COMPARISONS[last](value, 1000 * constant)
             if family.startswith("UNTIL"):
                 self.until(holds)
             elif not holds:

@@ -66,8 +66,8 @@ class Mistake(Exception):
     """The program is wrong; the text says why."""
 
 
-LOWEST = -(2**31)
-HIGHEST = 2**31 - 1
+LOWEST_VALUE = -(2**31)
+HIGHEST_VALUE = 2**31 - 1
 MAX_VARIABLES = 32
 MAX_NESTING = 16
 MAX_STACK = 16
@@ -97,7 +97,7 @@ TASK_WORDS = ("TASK", "WHEN")
 LATER_WORDS = ("SEND",)
 UNITS = {"F": "CM", "B": "CM", "L": "DEG", "R": "DEG"}  # unit of a distance that replaces a time
 
-TIME = (0, HIGHEST)
+TIME = (0, HIGHEST_VALUE)
 _POWER = (0, 100_000)
 _SIDE = (-100_000, 100_000)
 
@@ -139,7 +139,7 @@ RANGES: dict[str, tuple[tuple[int, int], ...]] = {
 # Words that stand for instructions, and these with the names of values in them, as the reference
 # lists them: "- With fixed values: `HORN` = `BEEP(0.5, 440)` `HOOT(S)` = `BEEP(S, 440)`".
 _REFERENCE = Path(__file__).parent.parent.parent / "docs" / "en" / "language.md"
-FIXED = {
+FIXED_WORDS = {
     word: (tuple(names.split(", ")) if names else (), meaning)
     for line in _REFERENCE.read_text("utf-8").splitlines()
     if line.startswith("- With fixed values")

@@ -20,16 +20,16 @@ MODULES = [SOURCES / "src" / name for name in ("vm", "link", "store", "text", "f
 PORTABLE = sorted(
     [*(path for module in MODULES for path in module.glob("*.[ch]*")), SOURCES / "src" / "robot.h"]
 )
-TESTED = ("host", "host_firmware", "chip", "qemu", "link", "powercut", "text")
+TESTED_FOLDERS = ("host", "host_firmware", "chip", "qemu", "link", "powercut", "text")
 FILES = [
     *PORTABLE,
-    *sorted(path for name in TESTED for path in (EXTRAS / name).glob("*.[ch]*")),
+    *sorted(path for name in TESTED_FOLDERS for path in (EXTRAS / name).glob("*.[ch]*")),
     *sorted((EXTRAS / "wasm").glob("*.cpp")),
     *sorted((EXTRAS / "library" / "src").glob("*.[ch]*")),
 ]
 VM = SOURCES / "src" / "vm"
-CHOOSING = {"build.h", "cpu.h", "layout_avr.h"}
-OF_AVR = {
+CHOOSING_HEADERS = {"build.h", "cpu.h", "layout_avr.h"}
+AVR_HEADERS = {
     "cpu_avr.h",
     "reader_calls_avr.h",
     "receiver_avr.h",
@@ -41,19 +41,26 @@ HEADERS = sorted(path for part in ("src", "extras") for path in (SOURCES / part)
 BOARDS = sorted(
     path for folder in ("", "avr") for path in (SOURCES / "src/boards" / folder).glob("*.[ch]*")
 )
-STRICT = ("-std=c++11", "-pedantic", "-fno-exceptions", "-fno-rtti", *WARNINGS, "-fsyntax-only")
+STRICT_FLAGS = (
+    "-std=c++11",
+    "-pedantic",
+    "-fno-exceptions",
+    "-fno-rtti",
+    *WARNINGS,
+    "-fsyntax-only",
+)
 ALLOWED_HEADERS = {"<stdint.h>", "<stddef.h>", "<avr/pgmspace.h>"}
-ARDUINOS = {"HIGH", "LOW", "OUTPUT"}  # defined by a header for sketches
+ARDUINO_MACROS = {"HIGH", "LOW", "OUTPUT"}  # defined by a header for sketches
 CHIP_OF_THE_CORE = "ARDUINO_ARCH_ESP32"  # defined on the command line, as __AVR__ is for an AVR
-FORBIDDEN = ("virtual", "new", "delete", "throw", "try", "float", "double", "goto", "malloc",
-             "dynamic_cast", "typeid", "Arduino", "String")  # fmt: skip
+FORBIDDEN_WORDS = ("virtual", "new", "delete", "throw", "try", "float", "double", "goto", "malloc",
+                   "dynamic_cast", "typeid", "Arduino", "String")  # fmt: skip
 
 
 def shouting(path: Path) -> set[str]:
     """Return the names in capitals."""
     text = code_of(path)
     macro_names = set(re.findall(r"\b[A-Z][A-Z0-9_]*\b", text))
-    arduinos = ARDUINOS if "#include <Arduino.h>" in text else set()
+    arduinos = ARDUINO_MACROS if "#include <Arduino.h>" in text else set()
     return macro_names - {CHIP_OF_THE_CORE} - arduinos
 
 
@@ -69,10 +76,10 @@ def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
     included_headers = re.findall(r"#include (<[^>]+>)", text)
     assert set(included_headers) <= ALLOWED_HEADERS
     words = set(re.findall(r"\w+", code_of(path)))
-    assert not words & set(FORBIDDEN)
+    assert not words & set(FORBIDDEN_WORDS)
 
 
-@each_row("path", [path for path in PORTABLE if path.name not in CHOOSING])
+@each_row("path", [path for path in PORTABLE if path.name not in CHOOSING_HEADERS])
 def test_what_a_build_has_is_chosen_in_few_headers(path: Path) -> None:
     """In other files, a condition encloses the whole file, or chooses which file is included."""
     rows = [row.strip() for row in path.read_text(encoding="utf-8").splitlines() if row.strip()]
@@ -110,14 +117,14 @@ def first_comment(path: Path) -> str:
     return " ".join(row.lstrip("; ") for row in rows)
 
 
-WITH_TWIN = [
+ASSEMBLY_WITH_TWIN = [
     path
     for path in sorted((SOURCES / "src").rglob("*.S"))
     if "the same as `" in path.read_text(encoding="utf-8")
 ]
 
 
-@each_row("path", WITH_TWIN)
+@each_row("path", ASSEMBLY_WITH_TWIN)
 def test_what_exists_in_assembly_too_exists_in_the_files_that_it_names(path: Path) -> None:
     """Its first lines name the files for the other chips, and each function exists there."""
     about = first_comment(path)
@@ -133,10 +140,11 @@ def test_what_exists_in_assembly_too_exists_in_the_files_that_it_names(path: Pat
     assert names and set(names) <= defined_names, {*names} - defined_names
 
 
-MUST_STAY = {"execute_avr.S", "number_avr.S"}  # the loop and the arithmetic: a factor of four
+# the loop and the arithmetic: a factor of four
+ESSENTIAL_ASSEMBLY = {"execute_avr.S", "number_avr.S"}
 
 
-@each_row("path", [path for path in WITH_TWIN if path.name not in MUST_STAY])
+@each_row("path", [path for path in ASSEMBLY_WITH_TWIN if path.name not in ESSENTIAL_ASSEMBLY])
 def test_what_exists_in_assembly_too_says_what_it_saves_and_when_it_may_go(path: Path) -> None:
     about = first_comment(path)
     assert re.search(r"\d+ (bytes|cycles)", about) and "lets it go" in about
@@ -186,12 +194,12 @@ def test_what_the_linker_places_by_name_has_that_name() -> None:
 @pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 def test_each_header_compiles_alone_without_a_warning(tmp_path: Path) -> None:
     """It is included twice in a file: the second time has no effect."""
-    headers = [path for path in PORTABLE if path.suffix == ".h" and path.name not in OF_AVR]
+    headers = [path for path in PORTABLE if path.suffix == ".h" and path.name not in AVR_HEADERS]
     for number, header in enumerate(headers):
         twice = f'#include "{header}"\n' * 2
         (tmp_path / f"{number}.cpp").write_text(twice, encoding="utf-8")
     files = map(str, sorted(tmp_path.glob("*.cpp")))
-    completed = subprocess.run(["g++", *STRICT, *files], capture_output=True, text=True)
+    completed = subprocess.run(["g++", *STRICT_FLAGS, *files], capture_output=True, text=True)
     assert completed.returncode == 0, completed.stderr
 
 

@@ -61,10 +61,12 @@ def test_all_that_the_page_names_is_there() -> None:
 
 
 NO_TABLE = ("code_size",)  # the figure is in a sentence, not a table
-FILLED = [name for name in dict.fromkeys(n for n, *_ in bench.commands()) if name not in NO_TABLE]
+FILLED_TABLES = [
+    name for name in dict.fromkeys(n for n, *_ in bench.commands()) if name not in NO_TABLE
+]
 
 
-@pytest.mark.parametrize("name", FILLED)
+@pytest.mark.parametrize("name", FILLED_TABLES)
 def test_a_benchmark_fills_in_the_rows_of_its_tables(name: str) -> None:
     """The rows are in order; the text after a table was measured once."""
     module = import_module(f"tools.bench.{name}")

@@ -28,16 +28,20 @@ from tiniscript.link import ports
 from tiniscript.link.ports import ListedPort
 from tools.site.documents import sources
 
-GUIDES = {value: ROOT / name for value, name in sources(ROOT, "docs/en/monday.md").items()}
+GUIDE_BY_LANGUAGE = {
+    value: ROOT / name for value, name in sources(ROOT, "docs/en/monday.md").items()
+}
 # The robot's port by cable, then by Bluetooth, and the Windows names.
 PORTS = {
     "COM3": "Arduino Uno (COM3)",
     "COM5": "Standard Serial over Bluetooth link (COM5)",
 }
-HAND_MS = 5000  # time until the button is pressed
+PRESS_DELAY_MS = 5000  # time until the button is pressed
 LIGHT, DISTANCE = 500_000, 42_000  # thousandths
 
-each_guide = pytest.mark.parametrize(("language", "guide"), GUIDES.items(), ids=list(GUIDES))
+each_guide = pytest.mark.parametrize(
+    ("language", "guide"), GUIDE_BY_LANGUAGE.items(), ids=list(GUIDE_BY_LANGUAGE)
+)
 
 
 class Step(NamedTuple):
@@ -113,7 +117,7 @@ def test_what_a_guide_types_prints_what_it_shows(
             continue
         name = next((word for word in step.words if word in PORTS), name)
         if step.words == ["set", "owner"]:
-            pty_robot.hold(after_ms=HAND_MS, times=3)  # a hand that tries again
+            pty_robot.hold(after_ms=PRESS_DELAY_MS, times=3)  # a hand that tries again
         # It uses the robot's time, because a late answer counts as none; a terminal shows both
         # streams in the order of their writing.
         with simulate(pty_robot), redirect_stderr(sys.stdout):
@@ -154,12 +158,12 @@ def test_the_sentences_of_the_table_are_those_of_tsc(language: str, guide: Path)
 
 @each_guide
 def test_all_guides_type_the_same(language: str, guide: Path) -> None:
-    english, own = steps(GUIDES["en"]), steps(guide)
+    english, own = steps(GUIDE_BY_LANGUAGE["en"]), steps(guide)
     for step, other in zip(english, own, strict=True):
         assert step.words[:1] == other.words[:1]
         assert bool(step.name) == bool(other.name)
     headings = [
         len(re.findall(r"^## ", path.read_text(encoding="utf-8"), re.M))
-        for path in (GUIDES["en"], guide)
+        for path in (GUIDE_BY_LANGUAGE["en"], guide)
     ]
     assert headings[0] == headings[1]

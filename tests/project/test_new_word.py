@@ -13,7 +13,7 @@ import pytest
 
 import tiniscript
 from tests.oracle.interpreter import run as run_by_reference
-from tests.oracle.words import FIXED
+from tests.oracle.words import FIXED_WORDS
 from tests.support.casefile import ROOT
 from tests.support.new_word import DANCE, HORN, SAID, SHAKE, WIGGLE, with_texts
 from tests.support.rows import each_row
@@ -45,25 +45,25 @@ from tools.generate.paper import Line
 ROBOT = robots.load("tinibot")
 KIT = ROBOT.kit
 PROGRAM = "SI|LOOP(2);\n  HORN;\n  W(1);\nEND_LOOP;\n"
-MEANT = PROGRAM.replace(HORN.text, HORN.stands_for)
+EXPANDED_PROGRAM = PROGRAM.replace(HORN.text, HORN.stands_for)
 
 
 @pytest.fixture(autouse=True)
 def _new_words(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORDS, HORN.text, HORN)
-    monkeypatch.setitem(FIXED, HORN.text, ((), HORN.stands_for))
+    monkeypatch.setitem(FIXED_WORDS, HORN.text, ((), HORN.stands_for))
     monkeypatch.setitem(WORDS, WIGGLE.text, WIGGLE)
-    monkeypatch.setitem(FIXED, WIGGLE.text, (("N",), WIGGLE.stands_for))
+    monkeypatch.setitem(FIXED_WORDS, WIGGLE.text, (("N",), WIGGLE.stands_for))
     monkeypatch.setitem(WORDS, DANCE.text, DANCE)
-    monkeypatch.setitem(FIXED, DANCE.text, (("SECONDS", "N"), DANCE.stands_for))
+    monkeypatch.setitem(FIXED_WORDS, DANCE.text, (("SECONDS", "N"), DANCE.stands_for))
     monkeypatch.setitem(WORDS, SHAKE.text, SHAKE)
-    monkeypatch.setitem(FIXED, SHAKE.text, (("BEATS", "POWER"), SHAKE.stands_for))
+    monkeypatch.setitem(FIXED_WORDS, SHAKE.text, (("BEATS", "POWER"), SHAKE.stands_for))
 
 
 def test_it_does_what_it_stands_for() -> None:
     compilation = compile_text(PROGRAM, KIT)
     assert not compilation.diagnostics
-    assert compilation.image and compilation.image == compile_text(MEANT, KIT).image
+    assert compilation.image and compilation.image == compile_text(EXPANDED_PROGRAM, KIT).image
     assert str(tiniscript.run(PROGRAM)) == run_by_reference(PROGRAM)
 
 
@@ -174,12 +174,12 @@ def test_a_robot_that_reads_text_gets_what_it_stands_for(level: Level) -> None:
     compilation = compile_text(PROGRAM, KIT)
     assert compilation.program is not None
     assert find_misfits(compilation.source, compilation.program, KIT, level) == []
-    assert line_of(compilation.source) == line_of(Source(MEANT))
+    assert line_of(compilation.source) == line_of(Source(EXPANDED_PROGRAM))
     check_line("SI|HORN", KIT)
 
 
 # For a process that adds the word before importing the tables of all words.
-FRESH = """
+FRESH_PROCESS_CODE = """
 import sys
 from pathlib import Path
 from tests.support.new_word import HORN, WIGGLE, with_texts
@@ -212,7 +212,7 @@ def in_fresh_process(code: str, tmp_path: Path) -> Any:
 
 
 def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) -> None:
-    blocks, labels, tables, (body, printed) = in_fresh_process(FRESH, tmp_path)
+    blocks, labels, tables, (body, printed) = in_fresh_process(FRESH_PROCESS_CODE, tmp_path)
     assert HORN.text in blocks["kinds"]["plain"]["words"]
     assert WIGGLE.text in blocks["kinds"]["plain_1"]["words"]
     assert blocks["says"]["plain_1"] == "%1 %2"

@@ -21,7 +21,7 @@ from tests.support.casefile import ROOT
 from tests.support.command import rest_of
 from tests.support.needs import need
 from tests.support.platformio import prepare
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.base.languages import cache_files
 from tools.release import facts
 
@@ -232,7 +232,7 @@ def test_a_wheel_says_what_it_is_made_without(
         command, cwd=folder, stdin=stdin, stdout=subprocess.PIPE, stderr=stderr, text=True
     )
     os.close(theirs)
-    reader.join(HANGS_S)
+    reader.join(HANG_LIMIT_S)
     os.close(ours)
     output = completed.stderr or b"".join(packages).decode()
     assert completed.returncode == 0, output

@@ -11,7 +11,7 @@ from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.messages import MAJOR, MINOR
 from tools.generate.__main__ import OUTPUTS
 
-GENERATED = ("// Generated", "# Generated", "; Generated")
+GENERATED_MARKS = ("// Generated", "# Generated", "; Generated")
 
 
 def test_the_page_of_versions_has_those_of_the_code() -> None:
@@ -42,5 +42,5 @@ def test_files_that_are_generated_as_a_whole_are_marked() -> None:
     for path, _ in OUTPUTS:
         name = path.relative_to(ROOT).as_posix()
         head = path.read_text(encoding="utf-8", errors="replace")[:600].splitlines()[:2]
-        if any(line.startswith(GENERATED) for line in head):
+        if any(line.startswith(GENERATED_MARKS) for line in head):
             assert any(fnmatch(name, pattern) for pattern in marks()), name

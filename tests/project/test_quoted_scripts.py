@@ -13,9 +13,9 @@ from tests.support.casefile import ROOT
 from tests.support.rows import go_through
 
 FOLDERS = ("tests", "tools")
-IMPORTED = re.compile(r"from (tiniscript(?:\.\w+)*) import ([\w ]+(?:,[\w ]+)*)")
+QUOTED_IMPORT = re.compile(r"from (tiniscript(?:\.\w+)*) import ([\w ]+(?:,[\w ]+)*)")
 ALIAS = re.compile(r"(\w+)(?: as (\w+))?")
-DOTTED = re.compile(r"tiniscript(?:\.\w+)+")
+DOTTED_NAME = re.compile(r"tiniscript(?:\.\w+)+")
 
 
 def list_quoted_texts() -> Iterator[tuple[str, str]]:
@@ -30,11 +30,11 @@ def list_quoted_texts() -> Iterator[tuple[str, str]]:
 
 
 def test_what_a_quoted_script_names_is_there() -> None:
-    rows = [row for row in list_quoted_texts() if IMPORTED.search(row[1])]
+    rows = [row for row in list_quoted_texts() if QUOTED_IMPORT.search(row[1])]
     assert len(rows) > 20
 
     def names_what_is_there(row: tuple[str, str]) -> None:
-        for module_name, imported_modules in IMPORTED.findall(row[1]):
+        for module_name, imported_modules in QUOTED_IMPORT.findall(row[1]):
             module = import_module(module_name)
             for name, alias in ALIAS.findall(imported_modules):
                 if not hasattr(module, name):
@@ -51,7 +51,7 @@ def test_what_a_quoted_script_names_is_there() -> None:
 def test_what_a_dotted_name_names_is_there() -> None:
     """Names as in `monkeypatch.setattr`; others do not begin with a module of ours."""
     rows = [
-        row for row in list_quoted_texts() if DOTTED.fullmatch(row[1])
+        row for row in list_quoted_texts() if DOTTED_NAME.fullmatch(row[1])
         and find_spec(".".join(row[1].split(".")[:2])) is not None
     ]  # fmt: skip
     assert len(rows) > 20

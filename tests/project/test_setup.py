@@ -20,15 +20,20 @@ from tools import environment
 
 pytestmark = pytest.mark.skipif(not shutil.which("sh"), reason="no sh: Windows has no such scripts")
 
-SPECIAL = ("PYTHONDONTWRITEBYTECODE", "PYTHONUNBUFFERED", "PYTHONOPTIMIZE", "PYTEST_ADDOPTS")
+UNWANTED_VARIABLES = (
+    "PYTHONDONTWRITEBYTECODE",
+    "PYTHONUNBUFFERED",
+    "PYTHONOPTIMIZE",
+    "PYTEST_ADDOPTS",
+)
 
 
-HELPS = """
+STUB_VENV_SCRIPT = """
 say() { :; }
 find_venv_python() { :; }
 test_packages() { echo packages by $(id -u); }
 """
-TESTS = """
+STUB_TEST_SCRIPT = """
 echo "$*, $(id -un)"
 env
 echo "FILES=$(ulimit -n)"
@@ -46,7 +51,7 @@ exit 7
 
 def ci(folder: Path) -> tuple[list[str], dict[str, str]]:
     """Run CI in a clone with an own test command. Return its output, and its variables."""
-    files = {"tools/venv.sh": HELPS, "tools/test.sh": TESTS, "new": "",
+    files = {"tools/venv.sh": STUB_VENV_SCRIPT, "tools/test.sh": STUB_TEST_SCRIPT, "new": "",
              "tools/bare.sh": 'echo "BARE=$*, $(id -un)"\n',
              "tests/x.py": "@pytest.mark.root\n", "tests/y.py": "",
              ".ci/run": (ROOT / ".ci/run").read_text(encoding="utf-8")}  # fmt: skip
@@ -62,7 +67,7 @@ def ci(folder: Path) -> tuple[list[str], dict[str, str]]:
     (home / ".config" / "pip" / "pip.conf").write_text("[global] of root")
     (home / ".npmrc").write_text("registry of root")
     variables = {
-        **os.environ, **dict.fromkeys(SPECIAL, "1"), "PIP_INDEX_URL": "file:///no 'ne",
+        **os.environ, **dict.fromkeys(UNWANTED_VARIABLES, "1"), "PIP_INDEX_URL": "file:///no 'ne",
         "https_proxy": "http://p:1", "SECRET": "x", "HOME": str(home),
     }  # fmt: skip
     variables.pop("XDG_CONFIG_HOME", None)
@@ -79,7 +84,7 @@ def test_ci_runs_the_tests_as_users_do(tmp_path: Path) -> None:
     rows, environment = ci(tmp_path / "clone")
     assert rows[0].startswith("BARE=-m not root, ")
     assert rows[1].startswith("--tenth -m not root, ")
-    assert not set(SPECIAL) & set(environment)
+    assert not set(UNWANTED_VARIABLES) & set(environment)
     assert (environment["CI"], environment["PIP_INDEX_URL"]) == ("true", "file:///no 'ne")
     assert int(environment["FILES"]) == 1024
 
@@ -93,7 +98,7 @@ def test_ci_of_root_runs_the_tests_as_a_new_user(tmp_path: Path) -> None:
         assert {*rows[:2]} == {"packages by 0", f"BARE=-m not root, {environment['USER']}"}
         assert rows[2] == f"--tenth -m not root, {environment['USER']}"
         assert rows[-1] == "-m pytest -n 2 -p no:cacheprovider -m root tests/x.py by 0"
-        assert not {*SPECIAL, "SECRET"} & set(environment)
+        assert not {*UNWANTED_VARIABLES, "SECRET"} & set(environment)
         assert (environment["CI"], environment["PIP_INDEX_URL"]) == ("true", "file:///no 'ne")
         assert (environment["https_proxy"], environment["FILES"]) == ("http://p:1", "1024")
         assert (environment["PIP"], environment["NPM"]) == ("[global] of root", "registry of root")
@@ -117,7 +122,7 @@ def test_a_first_answer_is_of_tests_that_are_there() -> None:
 # -- the virtual environment
 
 
-INSTALLING = "Installing TiniScript"
+INSTALLING_MESSAGE = "Installing TiniScript"
 FAKE_PYTHON = (
     '#!/bin/sh\ncase "$*" in *" install "*) echo "$*" >>"$(dirname "$0")/../asked";; esac\n'
 )
@@ -144,7 +149,7 @@ def has_installed(clone: Path) -> bool:
         [sys.executable, str(clone / "tools" / "environment.py"), "[test]"],
         capture_output=True, text=True, check=True, env=ENGLISH,
     )  # fmt: skip
-    return INSTALLING in completed.stderr
+    return INSTALLING_MESSAGE in completed.stderr
 
 
 def test_what_is_installed_is_not_installed_again(folder: Path) -> None:

@@ -17,7 +17,7 @@ from tools.site.documents import language_of
 PAGES = sorted([*ROOT.glob("README*.md"), *(ROOT / "docs").glob("*/*.md")])
 ANSWER_PREFIX = "// "
 LONGEST_MS = 5000  # timeout of an answer
-SILENT_MS = 1500  # pause between the answers and the next line: over a second
+SILENCE_MS = 1500  # pause between the answers and the next line: over a second
 
 
 def conversations(page: Path) -> Iterator[list[str]]:
@@ -32,7 +32,7 @@ def conversations(page: Path) -> Iterator[list[str]]:
             lines.append(row)
 
 
-EVERY = [
+PAGE_BLOCKS = [
     pytest.param(language_of(page.relative_to(ROOT).as_posix()), lines, id=f"{page.name}-{k}")
     for page in PAGES
     for k, lines in enumerate(conversations(page))
@@ -58,12 +58,12 @@ def play_conversation(lines: list[str], language: str) -> list[str]:
         end_ms = robot.now_ms + LONGEST_MS
         while data.count(b"\n") < wanted_count and robot.now_ms < end_ms:
             data += robot.step(robot.now_ms + 1)
-        data += robot.step(robot.now_ms + SILENT_MS)
+        data += robot.step(robot.now_ms + SILENCE_MS)
         transcript += [line, *data.decode().splitlines()]
     return transcript
 
 
-@pytest.mark.parametrize(("language", "lines"), EVERY)
+@pytest.mark.parametrize(("language", "lines"), PAGE_BLOCKS)
 def test_a_robot_answers_as_the_document_shows(language: str, lines: list[str]) -> None:
     assert len(lines) >= 2
     assert play_conversation(lines, language) == lines

@@ -26,7 +26,7 @@ from tests.support.needs import need as need_package
 from tools.builds import stick_wheels, usb_stick
 from tools.builds.stick_wheels import PYTHONS, SYSTEMS
 
-CUT_OFF = ["unshare", "--map-root-user", "--net"]  # a process without a network
+OFFLINE_COMMAND = ["unshare", "--map-root-user", "--net"]  # a process without a network
 
 
 @pytest.fixture(scope="module")
@@ -101,8 +101,8 @@ def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
 
     home = tmp_path / "Ana María"
     tsc = home / "tsc" / "bin" / "tsc"
-    is_cut_off = not subprocess.run([*CUT_OFF, "true"], capture_output=True).returncode
-    command = [*(CUT_OFF if is_cut_off else []), "sh", str(stick / "start.sh"), str(home)]
+    is_cut_off = not subprocess.run([*OFFLINE_COMMAND, "true"], capture_output=True).returncode
+    command = [*(OFFLINE_COMMAND if is_cut_off else []), "sh", str(stick / "start.sh"), str(home)]
     variables = {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin", "LC_ALL": "es_PE.UTF-8",
                  "HOME": str(tmp_path)}  # fmt: skip
     for _ in range(2):

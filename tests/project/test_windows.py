@@ -225,7 +225,7 @@ def test_nothing_but_unix_knows_unix(tmp_path: Path) -> None:
     assert (tmp_path / "wiring.html").stat().st_size > 1000
 
 
-COARSE = """\
+COARSE_CLOCK_CODE = """\
 import math, sys, time
 real, rest = time.monotonic, time.sleep
 STEP_S = {step_s}
@@ -242,7 +242,8 @@ sys.exit(main(["upload", "-e", "SI|F(1, 80)", "--virtual", "--hurry", "10", "--l
 def test_a_clock_that_goes_in_steps_of_16_ms_is_enough(tmp_path: Path) -> None:
     """The clock of Windows before Python 3.13; sleeps also end at its steps."""
     completed = subprocess.run(
-        [sys.executable, "-c", COARSE.format(step_s=1 / 64)], cwd=tmp_path, capture_output=True,
+        [sys.executable, "-c", COARSE_CLOCK_CODE.format(step_s=1 / 64)], cwd=tmp_path,
+        capture_output=True,
         text=True, env={"PYTHONPATH": str(ROOT / "compiler"), "HOME": str(tmp_path)},
     )  # fmt: skip
     assert completed.returncode == 0, completed.stderr
@@ -322,7 +323,7 @@ def test_colors_are_for_consoles_that_read_them(
     assert not streams.reads_sequences(io.StringIO())
 
 
-LEFT = """\
+LEFTOVER_CODE = """\
 import errno, sys
 class Left:
     encoding = "cp1252"
@@ -353,7 +354,7 @@ def test_a_reader_that_has_left_is_no_mistake(
     platform: str, number: int, about: str, value: object, code: int
 ) -> None:
     """`tsc help | more`, and then q: the C library of Windows calls that an invalid argument."""
-    script = LEFT.format(platform=platform, number=number, about=about, value=value)
+    script = LEFTOVER_CODE.format(platform=platform, number=number, about=about, value=value)
     completed = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True,
         env={"PYTHONPATH": str(ROOT / "compiler"), "LC_ALL": "C.UTF-8"},

@@ -30,8 +30,8 @@ from tiniscript.library.compiling import compile_source
 
 FOLDER = Path(__file__).parent
 LANGUAGES = ("en", "es", "pt")
-INTENT, MEANT = ">? ", ">! "
-FOR = "  for  "
+INTENT_PREFIX, INTENDED_PROGRAM_PREFIX = ">? ", ">! "
+PLACE_SEPARATOR = "  for  "
 PART = re.compile(r"((?:(?![>=]).*\n)+)((?:>.*\n)*)((?:=.*\n)*)")
 
 
@@ -51,10 +51,14 @@ def entries() -> tuple[Entry, ...]:
     for language in LANGUAGES:
         for part in PART.findall((FOLDER / f"{language}.txt").read_text(encoding="utf-8")):
             program, rows, changed = (rows.split("\n")[:-1] for rows in part)
-            asides = tuple(row for row in rows if row.startswith((INTENT, MEANT)))
+            asides = tuple(
+                row for row in rows if row.startswith((INTENT_PREFIX, INTENDED_PROGRAM_PREFIX))
+            )
             message_rows = [row for row in rows if row not in asides]
             messages = tuple(
-                row.partition(" ")[2].partition(FOR)[0] for row in message_rows if row != ">"
+                row.partition(" ")[2].partition(PLACE_SEPARATOR)[0]
+                for row in message_rows
+                if row != ">"
             )
             mended_text = _mend(program, message_rows, changed)
             entries.append(Entry(language, "\n".join(program), messages, mended_text, asides))
@@ -71,7 +75,7 @@ def _mend(program: list[str], messages: list[str], changed_lines: list[str]) -> 
         if row.startswith(">="):
             number, _, fix = row[3:].split(" ", 2)
             line = program[int(number) - 1]
-            fix, _, part = fix.partition(FOR)
+            fix, _, part = fix.partition(PLACE_SEPARATOR)
             rows.append([number, line.replace(part, fix, 1) if part else _indent(line) + fix])
     for number, *text in rows:
         lines[int(number) - 1] = "".join(text)
@@ -84,7 +88,7 @@ def _part(line: str, fix: str, new: str) -> str:
         if new.startswith(line[:start] + fix):
             rest = len(new) - start - len(fix)
             part = line[start : len(line) - rest]
-            is_plain = part == part.strip() and FOR not in part
+            is_plain = part == part.strip() and PLACE_SEPARATOR not in part
             if part and is_plain and line.replace(part, fix, 1) == new:
                 return part
     return ""
@@ -142,7 +146,7 @@ def _rows(entry: Entry) -> list[str]:
             marked[k] = f">= {row}"
             del changed[int(number)]
         elif fix and new is not None and (part := _part(line, fix, new)):
-            marked[k] = f">= {row}{FOR}{part}"
+            marked[k] = f">= {row}{PLACE_SEPARATOR}{part}"
             del changed[int(number)]
     rows = [f"={number} {line}".rstrip() for number, line in changed.items()]
     if _mend(program, marked, rows) == entry.mended:

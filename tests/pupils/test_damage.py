@@ -18,9 +18,9 @@ from tiniscript.base.source import apply_edits
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import edits_of, repair_program
 
-IN_CI = 150
+SEEDS_IN_CI = 150
 # Inserted or replacing characters: of phones, of other languages, of Spanish.
-SLIPS = [
+INSERTED_TEXTS = [
     *";,.:()[]{}|=<>+-*/%!?\"'°~# ", "\n", "\r\n", "//", "==", "&&", "++", ":=", " y ", " o ", "O",
     " si ", " entonces ", " fin ", " SINO ", " ENDIF ", " END_LOOP ", " LOOP(2) ", "l", "ñ", "s",
     "%", " adelante ", " girar ", " derecha ", " 5 ", " cm", "F", " DEF ", " mi vel ",
@@ -37,9 +37,9 @@ def damage_program(seed: int) -> str:
         if what == 0:
             text = text[:k] + text[k + 1 :]
         elif what == 1:
-            text = text[:k] + chance.choice(SLIPS) + text[k:]
+            text = text[:k] + chance.choice(INSERTED_TEXTS) + text[k:]
         elif what == 2:
-            text = text[:k] + chance.choice(SLIPS) + text[k + 1 :]
+            text = text[:k] + chance.choice(INSERTED_TEXTS) + text[k + 1 :]
         elif what == 3:
             text = text[:k] + text[k + 1 : k + 2] + text[k : k + 1] + text[k + 2 :]
         else:
@@ -48,8 +48,8 @@ def damage_program(seed: int) -> str:
     return text
 
 
-@pytest.mark.sampled("seed", keep=IN_CI // 3)
-@pytest.mark.parametrize("seed", range(IN_CI))
+@pytest.mark.sampled("seed", keep=SEEDS_IN_CI // 3)
+@pytest.mark.parametrize("seed", range(SEEDS_IN_CI))
 def test_a_damaged_program_is_repaired_or_left(seed: int) -> None:
     text = damage_program(seed)
     diagnostics = check(text)

@@ -21,10 +21,10 @@ from tiniscript.diagnostics.fixing import edits_of, edits_offered, repair_progra
 
 # A digit for a sign on its key, or turned round; a power; a point between thousands; a sound; a
 # number that counts lines.
-SHIFTED = re.compile(
+SHIFTED_TEXT = re.compile(
     r"[=!\"$%/]|\d\d, \d{3}$|^F8\d$|\^2|\*\* ?2|\.000$|^4WARD|^W8|^\d+[.)] [A-Za-z]"
 )
-CONVERTED = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)|delay|ton[eo]")
+CONVERTED_UNIT = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)|delay|ton[eo]")
 
 
 def numbers(text: str) -> list[str]:
@@ -128,8 +128,8 @@ def helps_and_keeps_the_numbers(entry: Entry) -> None:
         is_counted = re.match(r"LOOP\(|W\(|\w+ = \d+;LOOP\(", fix) is not None
         is_counted &= diagnostic.code is codes.OTHER_LANGUAGE
         shifted_spans = [diagnostic.span, *(edit.span for edit in edits)]
-        is_counted = is_counted or any(SHIFTED.search(source[span]) for span in shifted_spans)
-        is_counted = is_counted or CONVERTED.search(entry.program) is not None
+        is_counted = is_counted or any(SHIFTED_TEXT.search(source[span]) for span in shifted_spans)
+        is_counted = is_counted or CONVERTED_UNIT.search(entry.program) is not None
         is_always = fix in ("TRUE", "WHILE(TRUE)")  # `WHILE(1)`
         is_always |= fix == "TASK"  # `TAREA 1`
         is_always |= "most" in diagnostic.values  # F(1, 800)
@@ -140,7 +140,7 @@ def helps_and_keeps_the_numbers(entry: Entry) -> None:
 
 
 # These suggestions are text only; the repair is computed when someone presses the button.
-WRITTEN = {
+TEXT_ONLY_GAPS = {
     codes.OUT_OF_RANGE: ("fix", "most"),
     codes.LONG_TIME: ("fix", "way"),
     codes.USED_BEFORE_SET: ("line", "before", "zero"),
@@ -159,7 +159,9 @@ def offers_what_it_says(entry: Entry) -> None:
     diagnostics, text = check(entry.program), entry.program
     for which, diagnostic in enumerate(diagnostics):
         edits = edits_offered(text, diagnostics, which, check)
-        names_one = any(diagnostic.values.get(gap) for gap in WRITTEN.get(diagnostic.code, ()))
+        names_one = any(
+            diagnostic.values.get(gap) for gap in TEXT_ONLY_GAPS.get(diagnostic.code, ())
+        )
         assert edits or not names_one, diagnostic
         if edits and not diagnostic.is_mistake:
             diagnostics_after = check(apply_edits(text, edits))

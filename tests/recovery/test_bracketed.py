@@ -11,14 +11,14 @@ from tiniscript.base.source import Source
 from tiniscript.diagnostics.rendering import message
 
 PLACES = ("SI|{}", "{}", "W(1);{}", "{}\nW(1)", "LOOP(2);{};W(1);END_LOOP", "W(1)\n{};W(2)")
-INSIDE = ("7", "DISTANCE < 23", "7.5, 23", "ABS(7)")
+BRACKET_CONTENTS = ("7", "DISTANCE < 23", "7.5, 23", "ABS(7)")
 
 
 @pytest.mark.sampled("place", keep=2)
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("word", ["S", "STOP", "BREAK", "END_LOOP", "ENDIF", "START", "DISTANCE"])
 def test_what_stands_in_needless_brackets_is_named(word: str, place: str) -> None:
-    for inside, language in product(INSIDE, ("en", "es", "pt")):
+    for inside, language in product(BRACKET_CONTENTS, ("en", "es", "pt")):
         text = place.format(f"{word}({inside})")
         messages = [
             message(diagnostic, Source(text), language)

@@ -21,7 +21,7 @@ from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 
 NAMES, NUMBERS = ("SIZE", "V", "ZOOM", "N2"), ("30", "2.5", "7", "0")
-COUNTS = range(1, PARAMETERS + 1)
+ARGUMENT_COUNTS = range(1, PARAMETERS + 1)
 JOINTS = (", ", " ", " ,")
 PROGRAM = "DEF SIDE{head}\nSHOW({body})\nEND_DEF\nW(1)\nSIDE{call}"
 
@@ -30,7 +30,7 @@ def program(head: str, call: str, count: int) -> str:
     return PROGRAM.format(head=head, call=call, body=" + ".join(NAMES[:count]))
 
 
-@each_row("count, joint, other", product(COUNTS, JOINTS, JOINTS))
+@each_row("count, joint, other", product(ARGUMENT_COUNTS, JOINTS, JOINTS))
 def test_brackets_may_be_missing_around_any_count(count: int, joint: str, other: str) -> None:
     names, numbers = NAMES[:count], NUMBERS[:count]
     right = {"head": f"({', '.join(names)})", "call": f"({', '.join(numbers)})"}
@@ -40,7 +40,7 @@ def test_brackets_may_be_missing_around_any_count(count: int, joint: str, other:
         assert repair_program(wrong, check).text == program(count=count, **right), wrong
 
 
-SLIPS = (
+CALL_SLIPS = (
     "{w}(,{a})",
     "{w}({a},)",
     "{w}[{a}]",
@@ -53,7 +53,7 @@ SLIPS = (
 
 @pytest.mark.parametrize("language", languages())
 def test_no_sentence_on_a_def_ends_with_a_gap_or_takes_another_word(language: str) -> None:
-    for count, slip in product(COUNTS, SLIPS):
+    for count, slip in product(ARGUMENT_COUNTS, CALL_SLIPS):
         names, numbers = (", ".join(its[:count]) for its in (NAMES, NUMBERS))
         header = slip.format(w="", a=names) if slip[0] == "{" else ""
         for text in (
@@ -68,13 +68,25 @@ def test_no_sentence_on_a_def_ends_with_a_gap_or_takes_another_word(language: st
 
 # -- the message about each call, in every language ---------------------------------------------
 
-GIVEN = ("3", "30 CM", "-3", "TRUE", "DISTANCE", "DISTANCE < 10", "(1)", "MAX(1, 2)", "X", "1, 2")
-UNTAUGHT = ("A", "Q", "AB", "ABC", "LADO", "SIDE", "CUADRADO", "HOLA_2", "ZIGZAG")  # no other word
+GIVEN_VALUES = (
+    "3",
+    "30 CM",
+    "-3",
+    "TRUE",
+    "DISTANCE",
+    "DISTANCE < 10",
+    "(1)",
+    "MAX(1, 2)",
+    "X",
+    "1, 2",
+)
+# no other word
+UNTAUGHT_NAMES = ("A", "Q", "AB", "ABC", "LADO", "SIDE", "CUADRADO", "HOLA_2", "ZIGZAG")
 
 
-@pytest.mark.parametrize("name", UNTAUGHT)
+@pytest.mark.parametrize("name", UNTAUGHT_NAMES)
 def test_a_word_that_nothing_teaches_is_told_of_def_whatever_its_values(name: str) -> None:
-    for given_text in GIVEN:
+    for given_text in GIVEN_VALUES:
         text = f"{name}({given_text})"
         first = check(text)[0]
         for language in languages():
@@ -124,7 +136,7 @@ def test_a_body_that_needs_another_kind_names_the_first_call(
 EXTRAS = (" = 5", "=5", " + 1", "=-5", " = (5)", " = MAX(1, 2)", " < 3")
 
 
-@each_row("count, extra", product(COUNTS, EXTRAS))
+@each_row("count, extra", product(ARGUMENT_COUNTS, EXTRAS))
 def test_what_follows_a_name_in_a_def_is_named_and_its_header_shown(count: int, extra: str) -> None:
     """Default values of Python for calls without any. All names are known below."""
     names = NAMES[:count]
@@ -152,7 +164,7 @@ def test_a_comma_that_is_missing_in_a_def_is_shown_in_its_header(count: int) -> 
 
 
 @pytest.mark.parametrize("word", sorted(word for word in WORDS if WORDS[word].is_call))
-@pytest.mark.parametrize("count", [0, *COUNTS])
+@pytest.mark.parametrize("count", [0, *ARGUMENT_COUNTS])
 def test_a_def_by_a_word_of_the_language_is_renamed_with_its_calls(word: str, count: int) -> None:
     own = len(WORDS[word].arguments)
     if count == own:
@@ -169,7 +181,7 @@ def test_a_def_by_a_word_of_the_language_is_renamed_with_its_calls(word: str, co
     assert not [diagnostic for diagnostic in check(repaired_text) if diagnostic.is_mistake]
 
 
-UNKNOWN = ("I", "FOO", "HACER", "XX")
+UNKNOWN_WORDS = ("I", "FOO", "HACER", "XX")
 
 
 @pytest.mark.parametrize(
@@ -177,7 +189,7 @@ UNKNOWN = ("I", "FOO", "HACER", "XX")
 )
 def test_calls_in_a_row_are_instructions_also_of_unknown_words(place: str) -> None:
     known = ("F(2, 80)", "W(1)", "BEEP(1, 440)")
-    for one, word, gap in product(known, UNKNOWN, (" ", "  ", "")):
+    for one, word, gap in product(known, UNKNOWN_WORDS, (" ", "  ", "")):
         calls = (one, f"{word}(1, 60)", known[0])
         wrong = place.format(gap.join(calls))
         first, *others = check(wrong)

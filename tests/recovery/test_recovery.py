@@ -110,10 +110,8 @@ def test_an_explanation_has_a_slip_and_its_edits(
 
 # Values removed by `dedupe`.
 DEDUPED_GAPS = {codes.BAD_NAME: {"found"}, codes.NAME_WITH_SPACE: {"found"}}
-CODES_SAID_ELSEWHERE = (
-    codes.ARGUMENT_COUNT,
-    codes.WRONG_END,
-)  # the checker, or the block: some of it
+# the checker, or the block: some of it
+CODES_SAID_ELSEWHERE = (codes.ARGUMENT_COUNT, codes.WRONG_END)
 BLOCK_GAPS = {"whole", "line", "lines", "times", "ends"}
 
 

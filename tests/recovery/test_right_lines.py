@@ -18,9 +18,9 @@ from tests.support.rows import each_row
 from tiniscript.base.source import Source
 from tiniscript.base.words import WORDS
 
-IN_CI = 150
+SEEDS_IN_CI = 150
 # Right, and not as the documents write it.
-ODD = (
+ODD_LINES = (
     "L(90°, 50)",
     "L(90º, 50)\nR( 90 ° , 50 )",
     "M(\u221250, 50)",
@@ -33,7 +33,7 @@ _START = re.compile(r"(?i)\b(?:S[IB]\s*\||PING)")
 
 @cache
 def right() -> list[str]:
-    own = [*programs(), *(entry.program for entry in entries() if not entry.messages), *ODD]
+    own = [*programs(), *(entry.program for entry in entries() if not entry.messages), *ODD_LINES]
     return sorted(line for line in own if _starts_at_once(line) and not _mistakes(line))
 
 
@@ -49,16 +49,16 @@ def wrong() -> list[str]:
             line,
             *(value for diagnostic in check(line) for value in diagnostic.values.values()),
         ]
-        if not {*re.findall(r"\w+", " ".join(texts).upper())} & _OF_BLOCKS:
+        if not {*re.findall(r"\w+", " ".join(texts).upper())} & _BLOCK_WORDS:
             lines.append(line)
     return sorted(lines)
 
 
-_OF_BLOCKS = {word for word, row in WORDS.items() if row.role.belongs_to_blocks} | {"SI", "SB"}
+_BLOCK_WORDS = {word for word, row in WORDS.items() if row.role.belongs_to_blocks} | {"SI", "SB"}
 
 
-@pytest.mark.sampled("seed", keep=IN_CI // 3)
-@pytest.mark.parametrize("seed", range(IN_CI))
+@pytest.mark.sampled("seed", keep=SEEDS_IN_CI // 3)
+@pytest.mark.parametrize("seed", range(SEEDS_IN_CI))
 def test_a_wrong_line_is_told_of_alone(seed: int) -> None:
     """After, before and between right ones, which are no longer looked at for warnings."""
     chance = random.Random(seed)
@@ -68,7 +68,7 @@ def test_a_wrong_line_is_told_of_alone(seed: int) -> None:
     check_reported_alone(rows[:k], line, rows[k:])
 
 
-@each_row("odd", ODD)
+@each_row("odd", ODD_LINES)
 def test_what_is_right_in_an_odd_way_is_right_beside_a_wrong_line(odd: str) -> None:
     for line in (
         "F(2;80)",

@@ -19,7 +19,7 @@ VERSION = "9.8.7"
 URL = "https://example.org/tiniscript"
 FILES = ("CITATION.cff", "LICENSE", "SECURITY.md", "docs/en/versions.md", "pyproject.toml",
          "CHANGELOG.md", "compiler/tiniscript/base/version.py")  # fmt: skip
-CHANGES = f"# Changelog\n\n## Unreleased\n\n## {VERSION} (2031-02-03)\n\n- All.\n"
+CHANGELOG = f"# Changelog\n\n## Unreleased\n\n## {VERSION} (2031-02-03)\n\n- All.\n"
 
 
 def git(root: Path, *words: str) -> None:
@@ -54,7 +54,7 @@ def clone(tmp_path: Path) -> Path:
         text = path.read_text("utf-8").replace(present_version, VERSION)
         text = re.sub(r"(?m)^date-released: .*\n", "", text)
         path.write_text(text, encoding="utf-8")
-    (root / "CHANGELOG.md").write_text(CHANGES, encoding="utf-8")
+    (root / "CHANGELOG.md").write_text(CHANGELOG, encoding="utf-8")
     replace_in_file("SECURITY.md", facts.NO_CONTACT, "people@example.org")(root)
     about = root / "pyproject.toml"
     about.write_text(facts.with_address(about.read_text("utf-8"), URL), encoding="utf-8")
@@ -69,7 +69,7 @@ def test_what_is_ready_gets_no_complaint(clone: Path) -> None:
     assert list(facts.release_problems(clone)) == []
 
 
-WRONG: dict[str, Callable[[Path], object]] = {
+WRONG_CHANGES: dict[str, Callable[[Path], object]] = {
     "CHANGELOG.md has no section for": replace_in_file(
         "CHANGELOG.md", f"## {VERSION} (", "## 1.0.0 ("
     ),
@@ -101,7 +101,7 @@ WRONG: dict[str, Callable[[Path], object]] = {
 
 
 def test_what_is_wrong_is_said_in_a_sentence(clone: Path) -> None:
-    for why, change in WRONG.items():
+    for why, change in WRONG_CHANGES.items():
         change(clone)
         commit(clone)
         complaints = list(facts.release_problems(clone))

@@ -31,7 +31,7 @@ def codes(refusal: ProfileRefused) -> list[str]:
     return [code for code, _ in refusal.reasons]
 
 
-FULL = "\n".join(f'[[kit.sensors]]\nname = "S{i}"\nkind = "yes/no"' for i in range(33))
+TOO_MANY_SENSORS = "\n".join(f'[[kit.sensors]]\nname = "S{i}"\nkind = "yes/no"' for i in range(33))
 
 # code, robot, replaced text, replacement, the path in the message
 REFUSED = [
@@ -97,7 +97,7 @@ REFUSED = [
     ("unit_bad", "tinibot", 'unit = "cm"', 'unit = "c m"', "kit.sensors[3].unit"),
     ("unit_bad", "tinibot", 'unit = "cm"', 'unit = "centimetres"', "kit.sensors[3].unit"),
     ("too_many", "tinibot", '[[kit.sensors]]\nname = "LIGHT_R"',
-     FULL + '\n[[kit.sensors]]\nname = "LIGHT_R"', "kit.sensors"),
+     TOO_MANY_SENSORS + '\n[[kit.sensors]]\nname = "LIGHT_R"', "kit.sensors"),
     ("not_in_kit", "tinibot", "[board.sensors.DISTANCE]", "[board.sensors.SONAR]",
      "board.sensors.SONAR"),
     ("not_in_kit", "tinibot", "LIGHT_L = {", "LIGTH_L = {", "body.sensors.LIGTH_L"),
@@ -368,7 +368,7 @@ def test_a_wrong_name_gets_the_nearest_one() -> None:
 
 # ---- anything at all
 
-ODD = (
+ODD_NUMBERS = (
     "0", "-1", "1e999", "nan", "-inf", "1.0000000001", "9" * 5000, "0x" + "F" * 999, "true", '""',
     '"x"', '"A0"', '"\\u0000"', "[]", "[[]]", "[1, 2]", "[nan, {}]", "{}", "{ a = 1 }", "[{}]",
     "1979-05-27T07:32:00Z", "07:32:00", "'''", "", "[" * 3000, '"' + "ñ" * 99 + '"', "{path}",
@@ -390,9 +390,9 @@ def mutate(text: str, chance: random.Random) -> str:
             cut = chance.randrange(len(lines[at]))
             lines[at] = lines[at][:cut] + chance.choice('"[]{}=.#\\x5\x00') + lines[at][cut + 1 :]
         elif how == 3:
-            lines[at] = re.sub(r"-?\d+", lambda _: chance.choice(ODD), lines[at])
+            lines[at] = re.sub(r"-?\d+", lambda _: chance.choice(ODD_NUMBERS), lines[at])
         elif equals:
-            lines[at] = f"{key}= {chance.choice(ODD)}"
+            lines[at] = f"{key}= {chance.choice(ODD_NUMBERS)}"
         lines = lines or [""]
     return "\n".join(lines)
 

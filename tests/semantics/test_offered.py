@@ -14,9 +14,9 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import message
 
-WARNED = re.compile(r"[0-9]+ TS8")
+WARNING_LINE = re.compile(r"[0-9]+ TS8")
 PROGRAMS = [text for text, _ in ADVISED_PROGRAMS]
-PROGRAMS += [entry.program for entry in entries() if any(map(WARNED.match, entry.messages))]
+PROGRAMS += [entry.program for entry in entries() if any(map(WARNING_LINE.match, entry.messages))]
 PROGRAMS += [
     program.format(move=move, q=question, d=question.replace("DISTANCE", "D"))
     for program in (
@@ -40,7 +40,7 @@ PROGRAMS += [
     )
 ]
 # A question of no use becomes one of use, which is looked at then; its variable is left over.
-COMES_TO_LIGHT = {
+CODES_UNCOVERED = {
     codes.FROZEN_UNTIL: {codes.UNUSED_VARIABLE},
     codes.FROZEN_WHILE: {codes.UNUSED_VARIABLE, codes.LATE_CHECK, codes.IDLE_STOP},
 }
@@ -74,7 +74,7 @@ def new_in(text: str) -> list[tuple[str, str]]:
             if text_after
             else Counter()
         )
-        new -= Counter(COMES_TO_LIGHT.get(diagnostic.code, ()))
+        new -= Counter(CODES_UNCOVERED.get(diagnostic.code, ()))
         wrong += [(text_after, code.number) for code in new]
     return wrong
 

@@ -29,7 +29,7 @@ from tiniscript.vm.tasks import machine_of
 
 TINIBOT = robots.load("tinibot").kit
 NAMES = [device.name for device in REMOTE]
-MINE = "OWN_NAME"
+OWN_NAME = "OWN_NAME"
 
 
 def kit_of(count: int) -> Kit:
@@ -160,7 +160,7 @@ def test_an_image_is_refused_where_its_numbers_mean_something_else() -> None:
 
 # -- names of before ----------------------------------------------------------------------------
 
-GIVES_WAY = {
+SHADOWING_PROGRAMS = {
     "a variable": "{n} = 3;LOOP({n});S;END_LOOP",
     "set in a DEF": "DEF DO_IT;{n} = 3;SHOW({n});END_DEF;DO_IT;SHOW({n})",
     "set where nothing comes": "IF(FALSE);{n} = 3;ENDIF;SHOW({n})",
@@ -173,7 +173,7 @@ GIVES_WAY = {
     "the last value of a DEF": "DEF DO_IT(A,\n {n});SHOW(A - {n});END_DEF;DO_IT(3, 4)",
     "a value of two DEFs": "DEF ONE({n});SHOW({n});END_DEF;DEF TWO({n});ONE({n});END_DEF;TWO(3)",
 }
-STAYS = {
+REFUSED_PROGRAMS = {
     "asked before": ("IF({q});S;ENDIF;{n} = 0", [codes.SENSOR_SET]),
     "a reading before": ("{n};{n} = 0", [codes.SENSOR_SET]),
     "watched before": ("F(1, 50) UNTIL({q});{n} = 0", [codes.SENSOR_SET]),
@@ -192,10 +192,10 @@ def fill_in_name(text: str, name: str) -> str:
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("role", GIVES_WAY)
+@pytest.mark.parametrize("role", SHADOWING_PROGRAMS)
 def test_what_compiled_before_compiles_still(role: str, name: str) -> None:
     """There is a warning where the name first appears, and the code is that of any other name."""
-    text = fill_in_name(GIVES_WAY[role], name)
+    text = fill_in_name(SHADOWING_PROGRAMS[role], name)
     compilation = compile_text(text, TINIBOT)
     assert compilation.is_right, codes_of(compilation)
     warned_diagnostics = [
@@ -205,14 +205,14 @@ def test_what_compiled_before_compiles_still(role: str, name: str) -> None:
     assert place is not None
     assert [diagnostic.span for diagnostic in warned_diagnostics] == [place.span()]
     assert warned_diagnostics[0].values["since"] == KIT_WORDS_SINCE[name] == "0.3"
-    assert compilation.image == compile_text(text.replace(name, MINE), TINIBOT).image
+    assert compilation.image == compile_text(text.replace(name, OWN_NAME), TINIBOT).image
     assert compile_text(text.lower(), TINIBOT).image == compilation.image
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("role", STAYS)
+@pytest.mark.parametrize("role", REFUSED_PROGRAMS)
 def test_what_was_no_name_before_is_the_remote_control(role: str, name: str) -> None:
-    text, wanted_codes = STAYS[role]
+    text, wanted_codes = REFUSED_PROGRAMS[role]
     compilation = compile_text(fill_in_name(text, name), TINIBOT)
     assert codes_of(compilation) == [code.number for code in wanted_codes]
 
@@ -222,7 +222,9 @@ def test_a_word_of_0_2_0_never_gives_way(name: str) -> None:
     mistakes = {"a variable": codes.SENSOR_SET, "a DEF": codes.NAME_TAKEN,
                 "a value of a DEF": codes.PARAMETER_TAKEN}  # fmt: skip
     for role, code in mistakes.items():
-        assert code.number in codes_of(compile_text(GIVES_WAY[role].format(n=name), TINIBOT))
+        assert code.number in codes_of(
+            compile_text(SHADOWING_PROGRAMS[role].format(n=name), TINIBOT)
+        )
 
 
 def test_a_name_is_the_programs_own_in_the_whole_of_it() -> None:
@@ -242,8 +244,8 @@ def test_a_name_is_the_programs_own_in_the_whole_of_it() -> None:
 def test_a_robot_reads_them_as_tsc_does(flags: tuple[str, ...]) -> None:
     """Each role, each name: the reader makes the code that the model has, or refuses it, too."""
     reader = TextReader(TINIBOT, flags=flags)
-    texts = [*GIVES_WAY.values(), *(text for text, _ in STAYS.values()), "SHOW({n})", "{n}",
-             "W(1) UNTIL({q})", "{n} = 0;SHOW({n} + 1);{n} = 3"]  # fmt: skip
+    texts = [*SHADOWING_PROGRAMS.values(), *(text for text, _ in REFUSED_PROGRAMS.values()),
+             "SHOW({n})", "{n}", "W(1) UNTIL({q})", "{n} = 0;SHOW({n} + 1);{n} = 3"]  # fmt: skip
     read = 0
     for text in (fill_in_name(text, name) for text in texts for name in NAMES):
         if flags and ("DEF" in text or "TASK" in text):

@@ -24,16 +24,16 @@ import pytest
 
 from tests.support.command import process
 from tests.support.port_strangers import drive_robot, registration_of, say_all
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.studio.serving import MOST_CONNECTIONS
 
 pytestmark = pytest.mark.skipif(
     sys.platform != "linux", reason="only Linux says what a process has"
 )
 
-TESTED = 400  # connections of a test
+CONNECTION_COUNT = 400  # connections of a test
 FILES = 140  # extra open files of a listener, for silent clients
-GROWN_KB = 8_000  # extra memory of a Python process that has handled errors
+ALLOWED_GROWTH_KB = 8_000  # extra memory of a Python process that has handled errors
 # Clients and their first bytes. Each sends something, and reads nothing.
 KINDS = ("closed", "silent", "half-open", "slow", "half a frame", "half a greeting", "browser")
 VISITORS = """
@@ -99,7 +99,7 @@ def wait_until_settled(pid: int, files: int) -> Had:
     """Wait until a process has no more files than this; return the final numbers, larger if it
     hangs.
     """
-    end_s = time.monotonic() + HANGS_S
+    end_s = time.monotonic() + HANG_LIMIT_S
     while (child := measure_process(pid)).files > files and time.monotonic() < end_s:
         time.sleep(0.1)
     return child
@@ -130,26 +130,26 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
             )
         with visitors(places[0][2], kind, count), visitors(places[1][2], kind, count):
             assert process("stop", "--port", port).code == 0
-        out, err = command.communicate(timeout=HANGS_S)
+        out, err = command.communicate(timeout=HANG_LIMIT_S)
         assert command.returncode == 3
         assert b"was stopped from a computer" in out + err
         # Without a holder, clients are admitted in order, at most 256 a second. Half a greeting is
         # text, and a typing client holds the robot.
-        with visitors(places[0][2], kind, min(count, TESTED)):
+        with visitors(places[0][2], kind, min(count, CONNECTION_COUNT)):
             result = process("stop", "--port", port)
             assert kind == "half a greeting" or (result.code, result.err) == (0, "")
         robot.send_signal(signal.SIGINT)
-        assert b"FAULT" not in robot.communicate(timeout=HANGS_S)[0]
+        assert b"FAULT" not in robot.communicate(timeout=HANG_LIMIT_S)[0]
     return children
 
 
 @pytest.mark.sampled("kind")
 @pytest.mark.parametrize("kind", KINDS)
 def test_nothing_grows_and_a_stop_gets_through(kind: str) -> None:
-    for name, usage_before, meanwhile, usage_after in attack(kind, TESTED):
+    for name, usage_before, meanwhile, usage_after in attack(kind, CONNECTION_COUNT):
         assert meanwhile.files <= usage_before.files + FILES, name
         assert usage_after.files <= usage_before.files + 3, name
-        assert usage_after.memory_kb <= usage_before.memory_kb + GROWN_KB, name
+        assert usage_after.memory_kb <= usage_before.memory_kb + ALLOWED_GROWTH_KB, name
 
 
 @contextmanager
@@ -174,7 +174,7 @@ def studio() -> Iterator[tuple[int, int]]:
 
 
 def page(port: int) -> bytes:
-    with urlopen(f"http://127.0.0.1:{port}/", timeout=HANGS_S) as response:
+    with urlopen(f"http://127.0.0.1:{port}/", timeout=HANG_LIMIT_S) as response:
         data: bytes = response.read()
     return data
 
@@ -197,10 +197,10 @@ def attack_studio(count: int) -> list[tuple[str, Had, Had, Had]]:
 
 
 def test_the_studio_gives_its_page_among_many_who_come() -> None:
-    for kind, usage_before, meanwhile, usage_after in attack_studio(TESTED):
+    for kind, usage_before, meanwhile, usage_after in attack_studio(CONNECTION_COUNT):
         assert meanwhile.files <= usage_before.files + MOST_CONNECTIONS + 3, kind
         assert usage_after.files <= usage_before.files + 3, kind
-        assert usage_after.memory_kb <= usage_before.memory_kb + GROWN_KB, kind
+        assert usage_after.memory_kb <= usage_before.memory_kb + ALLOWED_GROWTH_KB, kind
 
 
 def campaign(count: int) -> None:

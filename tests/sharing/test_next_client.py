@@ -216,7 +216,7 @@ def falls_silent(rng: random.Random, client: Client) -> None:
     client.beats = False
 
 
-ENDS: dict[str, Callable[[random.Random, Client], object]] = {
+END_ACTIONS: dict[str, Callable[[random.Random, Client], object]] = {
     "leaves": lambda rng, client: client.socket.close(),
     "is silent": falls_silent,
     "breaks the protocol": lambda rng, client: client.socket.send(b'{"do":"nothing"}\n'),
@@ -235,8 +235,8 @@ def comes_first(rng: random.Random, at: Desk) -> str:
         for _ in range(rng.choice((1, 1, 3))):
             asks(rng, client, rng.choice(("upload", "live")))
         at.steps(rng.choice((0, 20, 40, 60, 400)))
-    ends = rng.choice([*ENDS])
-    ENDS[ends](rng, client)
+    ends = rng.choice([*END_ACTIONS])
+    END_ACTIONS[ends](rng, client)
     if ends == "breaks off":
         at.steps(rng.choice((20, 300)))
         client.socket.close()

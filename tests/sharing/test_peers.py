@@ -16,7 +16,7 @@ from tests.support.command import Command, inside, process
 from tests.support.port_strangers import drive_robot, registration_of
 from tests.support.socket_pairs import connected_pair
 from tests.support.virtual_command import Robot, robot, visitor
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.base import files
 from tiniscript.link.sharing import peers, registry
 from tiniscript.link.sharing.registry import Registration
@@ -119,12 +119,12 @@ def test_another_user_moves_nothing(how: str) -> None:
         number = running_robot.port.rpartition(":")[2]
         words = [sys.executable, "-I", "-c", STRANGER_SCRIPT, number, how, LINE.hex()]
         for _ in range(3):
-            completed = subprocess.run(words, capture_output=True, text=True, timeout=HANGS_S)
+            completed = subprocess.run(words, capture_output=True, text=True, timeout=HANG_LIMIT_S)
             assert completed.returncode == 0, completed.stderr
             assert completed.stdout.strip() == ("0" if how == "stays" else "")
         time.sleep(1)
         with visitor(running_robot.port) as own:
-            own.settimeout(HANGS_S)
+            own.settimeout(HANG_LIMIT_S)
             own.sendall(LINE)
             heard_bytes = b""
             while not heard_bytes.endswith(b"// DONE\r\n"):
@@ -172,10 +172,10 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
                 for port in (address, address.replace("127.0.0.1", "localhost")):
                     result = inside(*words, "--port", port)
                     result.gives(3, "another user of this computer is listening")
-        server.settimeout(HANGS_S)
+        server.settimeout(HANG_LIMIT_S)
         peer, _ = server.accept()
         with peer:
-            peer.settimeout(HANGS_S)
+            peer.settimeout(HANG_LIMIT_S)
             assert peer.recv(1000) == b""  # no bytes were sent
         inside("start", "--port", address, "--lang", "es").gives(3, "escucha otro usuario")
         monkeypatch.setattr(peers, "is_of_another_user", lambda port: False)
@@ -235,7 +235,7 @@ def test_the_token_is_in_one_private_file() -> None:
                 having += [path] if any(secret in content for secret in secrets) else []
                 places.append(str(path).encode())
         assert process("stop", "--port", port).code == 0
-        places += command.communicate(timeout=HANGS_S)
+        places += command.communicate(timeout=HANG_LIMIT_S)
     assert len(having) == 1 and len(places) > 7
     assert not [data for data in places for secret in secrets if secret in data]
 

@@ -6,7 +6,7 @@ from time import monotonic
 
 from tests.support.images import image_of
 from tests.support.shared_pty_robot import Shared
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.outcomes import MOST_EVENTS, Backlog, Event, PlaceEvent, ShownEvent
 from tiniscript.link.requests import OK
@@ -16,7 +16,7 @@ from tiniscript.link.sharing.shared_connection import join
 def until_done(connection: LinkConnection) -> list[Event]:
     """Return the events up to the end of a run."""
     events: list[Event] = []
-    limit_s = monotonic() + HANGS_S
+    limit_s = monotonic() + HANG_LIMIT_S
     while monotonic() < limit_s:
         row = connection.event(0.2)
         if row is not None:

@@ -14,7 +14,7 @@ import pytest
 from tests.support.command import Command, Tsc
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.shared_pty_robot import Shared
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript import __version__
 from tiniscript.link.outcomes import ShownEvent
 from tiniscript.link.payloads import DoneEvent
@@ -29,7 +29,7 @@ def greeting(registration: Registration, **other: object) -> bytes:
 
 
 def visitor(registration: Registration) -> socket.socket:
-    return socket.create_connection((protocol.HOST, registration.number), HANGS_S)
+    return socket.create_connection((protocol.HOST, registration.number), HANG_LIMIT_S)
 
 
 def is_let_go(peer: socket.socket) -> bool:
@@ -166,7 +166,7 @@ def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:
             with pytest.raises(AttributeError):
                 while True:
                     shared_port.line.event()
-            peer.settimeout(HANGS_S)
+            peer.settimeout(HANG_LIMIT_S)
             assert is_let_go(peer)
 
 

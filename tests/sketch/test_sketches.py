@@ -56,7 +56,7 @@ ANSWERS = [
     if has_sketch(answer.program)
 ]
 START_MS = 0.5
-FAR, NEAR = 0.0, 8 * 2 / 0.0343  # echoes: none, and one of 8 cm
+NO_ECHO_US, NEAR_ECHO_US = 0.0, 8 * 2 / 0.0343  # echoes: none, and one of 8 cm
 
 
 def run_sketch(text: str, ms: float, robot: Robot | None = None) -> Ran:
@@ -98,7 +98,7 @@ def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float)
 
 
 @pytest.mark.sampled("echo_us", "path", keep=3)
-@pytest.mark.parametrize("echo_us", [FAR, NEAR], ids=["far", "near"])
+@pytest.mark.parametrize("echo_us", [NO_ECHO_US, NEAR_ECHO_US], ids=["far", "near"])
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples(path: Path, echo_us: float) -> None:
     robot = robots.load(example_robot(path))
@@ -112,7 +112,7 @@ def test_answers_of_lessons(number: int) -> None:
     liner = robots.load("liner").kit
     robot = robots.load("liner" if not compile_text(text, ROBOT.kit).is_right else "tinibot")
     assert robot.name == "tinibot" or compile_text(text, liner).is_right
-    agrees(text, robot, (FAR, NEAR)[number % 2], (300, 700)[number // 2 % 2], 2)
+    agrees(text, robot, (NO_ECHO_US, NEAR_ECHO_US)[number % 2], (300, 700)[number // 2 % 2], 2)
 
 
 ROBOT, ROBOT_WIDE = robots.load("tinibot"), with_wide_kit()
@@ -166,7 +166,9 @@ def test_servos_that_turn_get_their_pulses() -> None:
 
 def test_a_gripper_and_a_lamp_of_a_mega() -> None:
     robot = robots.load("grabber")
-    agrees("SI|GRIPPER(90);LED(TRUE);W(0.2);GRIPPER(0);LED(FALSE);W(0.2)", robot, FAR, 100, 1)
+    agrees(
+        "SI|GRIPPER(90);LED(TRUE);W(0.2);GRIPPER(0);LED(FALSE);W(0.2)", robot, NO_ECHO_US, 100, 1
+    )
 
 
 def test_a_pwm_actuator() -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support import studio
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.studio import attending, serving
 
 if TYPE_CHECKING:
@@ -28,8 +28,8 @@ def own(server: serving.Server) -> str:
 @pytest.fixture
 def no_page_timeouts(monkeypatch: pytest.MonkeyPatch) -> None:
     """A page may be silent for as long as a busy computer keeps it so: its robot drives on."""
-    monkeypatch.setattr(attending, "ATTENDED_S", HANGS_S)
-    monkeypatch.setattr(attending, "LEFT_S", HANGS_S)
+    monkeypatch.setattr(attending, "ATTENDED_S", HANG_LIMIT_S)
+    monkeypatch.setattr(attending, "LEFT_S", HANG_LIMIT_S)
 
 
 @pytest.fixture(scope="package")

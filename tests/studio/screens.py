@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from tests.support.studio import SETTLED, in_phase, turn, wait_for_blocks, write
+from tests.support.studio import SETTLED_SCRIPT, in_phase, turn, wait_for_blocks, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -132,11 +132,11 @@ def each_screen(page: Page, sizes: Callable[[str], Iterable[Size]]) -> Iterator[
     """See each screen of a page, from its start on, at its sizes; yield which one it is."""
     for screen, see in SCREENS.items():
         page.set_viewport_size({"width": 1366, "height": 768})
-        page.evaluate(SETTLED)
+        page.evaluate(SETTLED_SCRIPT)
         see(page)
         for width, height in sizes(screen):
             page.set_viewport_size({"width": width, "height": height})
             if screen not in WHOLE_SCREENS:
                 turn(page, "robot" if screen in SCREENS_BESIDE_PROGRAM else "program")
-            page.evaluate(SETTLED)
+            page.evaluate(SETTLED_SCRIPT)
             yield screen, (width, height)

@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
-from tests.support.class_room import HERE, FakeHosting, FakeRobot, Json, Room
-from tests.support.waiting import HANGS_S
+from tests.support.class_room import PUPIL_ADDRESS, FakeHosting, FakeRobot, Json, Room
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.cli.commands import studio as command
 from tiniscript.studio import class_keeping, classroom, recordings
 from tiniscript.studio import rates as rate_of
@@ -36,7 +36,7 @@ def test_a_turn_ends_after_its_time_only_if_somebody_waits() -> None:
     room.checks_in(luz, True)
     assert robot.leave_reason == "turn_over"
     assert room.checks_in(luz)["place"] == 0
-    assert room.made.answer(ana, HERE, {"do": "connect"}) == {"failure": "turn_none"}
+    assert room.made.answer(ana, PUPIL_ADDRESS, {"do": "connect"}) == {"failure": "turn_none"}
 
 
 def test_a_turn_lasts_until_its_time() -> None:
@@ -168,11 +168,13 @@ def test_another_turn_is_reached_by_no_name() -> None:
     room.checks_in(ana, True)
     room.connects(ana)
     own = room.hosting.asked[-1]["page"]
-    assert room.made.answer(eve, HERE, {"do": "connect", "page": own, "port": "port0"}) == {
-        "failure": "turn_none"
-    }
+    assert room.made.answer(
+        eve, PUPIL_ADDRESS, {"do": "connect", "page": own, "port": "port0"}
+    ) == {"failure": "turn_none"}
     for do in ("beat", "leave", "stop", "stop_all"):
-        room.made.answer(eve, HERE, {"do": do, "page": own, "asked": [{"do": "upload", "id": 1}]})
+        room.made.answer(
+            eve, PUPIL_ADDRESS, {"do": do, "page": own, "asked": [{"do": "upload", "id": 1}]}
+        )
     assert own not in [request["page"] for request in room.hosting.asked[1:]]
     assert {request["do"] for request in room.hosting.asked[1:]} == {"beat", "leave", "stop"}
     assert room.hosting.asked[-1]["asked"] == []
@@ -187,7 +189,7 @@ def test_what_only_the_teacher_may_ask(do: object) -> None:
     room = Room()
     eve = room.joins("Eve")
     with pytest.raises(BadRequest):
-        room.made.answer(eve, HERE, {"do": do, "erases": True, "pupil": 1})
+        room.made.answer(eve, PUPIL_ADDRESS, {"do": do, "erases": True, "pupil": 1})
     assert room.hosting.asked == [] and not room.made.has_ended
 
 
@@ -203,7 +205,9 @@ def test_a_robot_stays_the_teachers(asked: object) -> None:
     room.checks_in(eve, True)
     room.connects(eve)
     with pytest.raises(BadRequest):
-        room.made.answer(eve, HERE, {"do": "beat", "asked": [{"do": "hello", "id": 1}, asked]})
+        room.made.answer(
+            eve, PUPIL_ADDRESS, {"do": "beat", "asked": [{"do": "hello", "id": 1}, asked]}
+        )
     assert [request["do"] for request in room.hosting.asked] == ["connect"]
 
 
@@ -212,22 +216,22 @@ def test_codes_are_not_guessed() -> None:
     code, right = room.made.code, 0
     for k in range(5000):
         guess = {"do": "join", "code": f"{k:06}", "name": "Eve"}
-        right += room.made.answer("", HERE, guess)["failure"] == "class_wrong"
+        right += room.made.answer("", PUPIL_ADDRESS, guess)["failure"] == "class_wrong"
         room.now_s += 0.01
     assert right <= 20 + 50 / 3 + 1
     # From that address, even the right code is refused; from others it is accepted.
     known = {"do": "join", "code": code, "name": "Eve"}
-    assert room.made.answer("", HERE, known) == {"failure": "class_slow"}
+    assert room.made.answer("", PUPIL_ADDRESS, known) == {"failure": "class_slow"}
     assert "token" in room.made.answer("", "192.0.2.10", known)
     room.now_s += 4
-    assert "token" in room.made.answer("", HERE, known)
+    assert "token" in room.made.answer("", PUPIL_ADDRESS, known)
 
 
 def test_a_code_may_be_written_small_and_apart() -> None:
     room = Room()
     code = room.made.code.lower()
     given_fields = {"do": "join", "code": f" {code[:3]} {code[3:]}", "name": "Ana"}
-    assert room.made.answer("", HERE, given_fields)["name"] == "Ana"
+    assert room.made.answer("", PUPIL_ADDRESS, given_fields)["name"] == "Ana"
     assert room.made.most_bytes("") == 1000
     assert room.made.most_bytes("0" * 32) == 0
 
@@ -273,7 +277,9 @@ def test_who_comes_back_to_a_computer_is_not_a_second_one() -> None:
 def test_nobody_joins_without_a_name(name: object) -> None:
     room = Room()
     try:
-        answer = room.made.answer("", HERE, {"do": "join", "code": room.made.code, "name": name})
+        answer = room.made.answer(
+            "", PUPIL_ADDRESS, {"do": "join", "code": room.made.code, "name": name}
+        )
     except BadRequest:
         answer = {"failure": "class_nameless"}
     assert answer == {"failure": "class_nameless"}
@@ -290,9 +296,9 @@ def test_a_full_class_gives_away_the_places_of_who_has_gone() -> None:
         room.joins(f"p{k}", f"198.51.100.{k}")
     more = {"do": "join", "code": room.made.code, "name": "more"}
     room.now_s += 30
-    assert room.made.answer("", HERE, more) == {"failure": "class_full"}
+    assert room.made.answer("", PUPIL_ADDRESS, more) == {"failure": "class_full"}
     room.now_s += 31
-    assert "token" in room.made.answer("", HERE, more)
+    assert "token" in room.made.answer("", PUPIL_ADDRESS, more)
     assert len(room.teaches("class")["pupils"]) == class_keeping.MOST_PUPILS
     assert room.made.most_bytes(first) > 0  # it is her turn
 
@@ -303,7 +309,7 @@ def test_a_pupil_who_asks_without_end_is_refused_but_stops() -> None:
     with pytest.raises(BadRequest):
         for _ in range(200):
             room.checks_in(eve)
-    assert room.made.answer(eve, HERE, {"do": "stop"}) == {"news": []}
+    assert room.made.answer(eve, PUPIL_ADDRESS, {"do": "stop"}) == {"news": []}
     room.now_s += 1
     for _ in range(40):
         room.checks_in(eve)
@@ -358,8 +364,8 @@ def test_what_a_page_tells_of_its_work_is_small_and_plain() -> None:
 # -- the work
 
 
-WORK = {"text": "F(1, 50)", "robot": "tinibot", "lessons": ["01_first_line"]}
-GIVEN = {**WORK, "lessons": ("01_first_line",)}
+SENT_WORK = {"text": "F(1, 50)", "robot": "tinibot", "lessons": ["01_first_line"]}
+BROUGHT_WORK = {**SENT_WORK, "lessons": ("01_first_line",)}
 
 
 def names_of(room: Room) -> list[str]:
@@ -380,7 +386,7 @@ def take_change(arguments: Json) -> Json:
 
 def test_a_name_gets_its_work_from_the_teacher_alone() -> None:
     room = Room()
-    room.teaches("class_bring", name="Ana", **WORK)
+    room.teaches("class_bring", name="Ana", **SENT_WORK)
     eve = room.joins("Ana")  # an unknown visitor
     assert "given" not in room.checks_in(eve)
     key, number = key_of(room), room.number("Ana")
@@ -390,7 +396,7 @@ def test_a_name_gets_its_work_from_the_teacher_alone() -> None:
     assert state["kept"] == [{**row, "given": number}]
     for _ in range(2):  # an answer may be lost
         given = room.checks_in(eve)["given"]
-        assert given == {"key": key, **GIVEN}
+        assert given == {"key": key, **BROUGHT_WORK}
     assert "given" not in room.checks_in(eve, took=take_change(given))
     assert room.teaches("class")["kept"] == []
     assert room.teaches("class_give_back", key=key, pupil=number)["kept"] == []  # pressed again
@@ -398,7 +404,7 @@ def test_a_name_gets_its_work_from_the_teacher_alone() -> None:
 
 def test_work_is_brought_once_and_only_while_there_is_room() -> None:
     room = Room()
-    work = {"name": "Ana", **WORK}
+    work = {"name": "Ana", **SENT_WORK}
     for wrong in (
         {"name": " "}, {"name": 5}, {"name": "\u3164"}, {"text": None}, {"robot": "x"},
         {"lessons": [1]},
@@ -412,17 +418,17 @@ def test_work_is_brought_once_and_only_while_there_is_room() -> None:
     with pytest.raises(BadRequest):
         room.teaches("class_bring", **{**work, "name": "more"})
     more = {"do": "join", "code": room.made.code, "name": "more"}
-    assert room.made.answer("", HERE, more) == {"failure": "class_full"}
+    assert room.made.answer("", PUPIL_ADDRESS, more) == {"failure": "class_full"}
     room.teaches("class_forget", key=key_of(room))
-    assert "token" in room.made.answer("", HERE, more)
+    assert "token" in room.made.answer("", PUPIL_ADDRESS, more)
 
 
 def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
     room = Room()
-    room.teaches("class_bring", name="Ana", **WORK)
+    room.teaches("class_bring", name="Ana", **SENT_WORK)
     ana, eve = room.joins("Ana"), room.joins("Eve")
     key = key_of(room)
-    right = {"key": key, "text": WORK["text"]}
+    right = {"key": key, "text": SENT_WORK["text"]}
     room.checks_in(ana, took=right)  # it was not offered
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
     wrong: list[object] = [True, None, 5, [], {}, {"key": key}]
@@ -441,7 +447,7 @@ def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
 def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
     """It was returned to a closed page, and the pupil joins again from another device."""
     room = Room()
-    room.teaches("class_bring", name="Ana", **WORK)
+    room.teaches("class_bring", name="Ana", **SENT_WORK)
     first = room.joins("Ana")
     key = key_of(room)
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
@@ -468,7 +474,7 @@ def test_a_class_goes_on_with_its_turns_unless_others_are_given(given_s: int | N
 def test_a_crash_between_giving_and_having_loses_no_work(kept_at: Path) -> None:
     """This holds whichever state of a class was the last one saved."""
     room = Room()
-    room.teaches("class_bring", name="Ana", **WORK)
+    room.teaches("class_bring", name="Ana", **SENT_WORK)
     ana = room.joins("Ana")
     states = [room.made.state_to_keep()]
     room.teaches("class_give_back", key=key_of(room), pupil=room.number("Ana"))
@@ -487,7 +493,7 @@ def test_a_crash_between_giving_and_having_loses_no_work(kept_at: Path) -> None:
 
 def test_the_teacher_chooses_between_an_impostor_and_who_comes_later() -> None:
     room = Room()
-    room.teaches("class_bring", name="Ana", **WORK)
+    room.teaches("class_bring", name="Ana", **SENT_WORK)
     eve, ana = room.joins("Ana", "192.0.2.66"), room.joins("\u0410na")  # with a Cyrillic letter
     pupils = room.teaches("class")["pupils"]
     assert [pupil["name"] for pupil in pupils] == ["Ana", "\u0410na (2)"]
@@ -555,7 +561,7 @@ def test_who_comes_back_with_the_token_of_before_has_the_same_work() -> None:
 
     def come_back(name: str = "ana", token: object = ana) -> Json:
         request = {"do": "join", "code": room.made.code, "name": name, "before": token}
-        return room.made.answer("", HERE, request)
+        return room.made.answer("", PUPIL_ADDRESS, request)
 
     second = come_back()  # a second tab of the same pupil
     assert second["name"] == "ana (2)"
@@ -573,7 +579,7 @@ def test_who_comes_back_with_the_token_of_before_has_the_same_work() -> None:
     assert come_back() == {"token": ana, "name": "Ana"}
     assert texts_of(room) == ["F(1, 50)"] and room.teaches("class")["kept"] == []
     wrong = {"do": "join", "code": "000000", "name": "Ana", "before": ana}
-    assert room.made.answer("", HERE, wrong) == {"failure": "class_wrong"}
+    assert room.made.answer("", PUPIL_ADDRESS, wrong) == {"failure": "class_wrong"}
 
 
 def test_who_was_removed_finds_the_work_again() -> None:
@@ -635,7 +641,7 @@ def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
     with pytest.raises(BadRequest):
         room_after.checks_in(luz)
     request = {"do": "join", "code": room.made.code, "name": "Luz", "before": luz}
-    assert room_after.made.answer("", HERE, request) == {"token": luz, "name": "Luz"}
+    assert room_after.made.answer("", PUPIL_ADDRESS, request) == {"token": luz, "name": "Luz"}
     assert not room_after.teaches("class_anew")["goes_on"]
     room.teaches("class_over")
     keeper.keep(room.made.state_to_keep())
@@ -719,7 +725,7 @@ def test_a_clock_that_is_after_or_jumps_loses_no_work(kept_at: Path, keeper: Kee
         with pytest.raises(BadRequest):
             room_after.checks_in(token)
         request = {"do": "join", "code": room_after.made.code, "name": "Ana", "before": token}
-        assert room_after.made.answer("", HERE, request) == {"token": token, "name": "Ana"}
+        assert room_after.made.answer("", PUPIL_ADDRESS, request) == {"token": token, "name": "Ana"}
         assert texts_of(room_after) == ["F(1, 50)"]
 
 
@@ -802,7 +808,7 @@ def test_a_new_code_and_another_turn() -> None:
     room = Room()
     old = room.made.code
     assert room.teaches("class_code")["code"] == room.made.code != old
-    assert room.made.answer("", HERE, {"do": "join", "code": old, "name": "Eve"}) == {
+    assert room.made.answer("", PUPIL_ADDRESS, {"do": "join", "code": old, "name": "Eve"}) == {
         "failure": "class_wrong"
     }
     assert room.teaches("class_turn", seconds=300)["turn_s"] == 300
@@ -828,7 +834,7 @@ def test_the_end_reaches_every_page(erases: bool, over: str) -> None:
     assert room.made.has_ended
     assert [robot["pupil"] for robot in room.teaches("class")["robots"]] == [""]
     late = {"do": "join", "code": room.made.code, "name": "Teo"}
-    assert room.made.answer("", HERE, late) == {"failure": "class_over"}
+    assert room.made.answer("", PUPIL_ADDRESS, late) == {"failure": "class_over"}
 
 
 def test_who_has_asked_is_forgotten_after_a_thousand_others() -> None:
@@ -849,13 +855,13 @@ def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.Mo
 
     def ask() -> None:
         for do in ("stop", "beat", "here"):
-            room.made.answer(ana, HERE, {"do": do})
+            room.made.answer(ana, PUPIL_ADDRESS, {"do": do})
             answered.append(do)
 
     def slow() -> list[Json]:
         asking = Thread(target=ask, daemon=True)
         asking.start()
-        asking.join(HANGS_S / 10)
+        asking.join(HANG_LIMIT_S / 10)
         answered.append("listed")
         return [{"port": "port9", "name": "NINE"}]
 
@@ -869,7 +875,7 @@ def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() ->
     """Someone who has read the code on the board cannot fill the class with fake pupils."""
     room = Room()
 
-    def enters(name: str, address: str = HERE) -> Json:
+    def enters(name: str, address: str = PUPIL_ADDRESS) -> Json:
         request = {"do": "join", "code": room.made.code, "name": name}
         return room.made.answer("", address, request)
 
@@ -902,7 +908,7 @@ def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) 
     for _ in range(60):
         token, text = chance.choice(tokens), chance.choice(("", "F(1)", "F(2)"))
         is_up = chance.random() < 0.7
-        room.made.answer(token, HERE, {"do": "here", "text": text, "hand": is_up})
+        room.made.answer(token, PUPIL_ADDRESS, {"do": "here", "text": text, "hand": is_up})
         pupils = room.teaches("class")["pupils"]
         for one, before, after in zip(tokens, seen, pupils, strict=True):
             is_other = one == token and works[one] != text
@@ -924,7 +930,7 @@ def asks_run(room: Room, pupil: int, asks: bool = False) -> Any:
 
 def gives(room: Room, token: str, asked: int, start: int, part: str, is_last: bool) -> None:
     request = {"do": "run", "asked": asked, "from": start, "part": part, "is_last": is_last}
-    room.made.answer(token, HERE, request)
+    room.made.answer(token, PUPIL_ADDRESS, request)
 
 
 def test_the_teacher_gets_the_newest_run_of_the_pupil_who_was_asked() -> None:
@@ -966,8 +972,8 @@ def test_parts_that_do_not_fit_are_refused(wrong: Json) -> None:
     asked = room.checks_in(ana)["run"]
     right = {"do": "run", "asked": asked, "from": 0, "part": "x", "is_last": True}
     with pytest.raises(BadRequest):
-        room.made.answer(ana, HERE, {**right, **wrong})
-    room.made.answer(ana, HERE, right)
+        room.made.answer(ana, PUPIL_ADDRESS, {**right, **wrong})
+    room.made.answer(ana, PUPIL_ADDRESS, right)
     with pytest.raises(BadRequest):
-        room.made.answer(ana, HERE, {**right, "from": 1})
+        room.made.answer(ana, PUPIL_ADDRESS, {**right, "from": 1})
     assert asks_run(room, 1) == "x"

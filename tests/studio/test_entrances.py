@@ -18,7 +18,7 @@ import pytest
 from tests.support import page_server
 from tests.support.page_server import serves
 from tests.support.socket_pairs import connected_pair
-from tests.support.waiting import HANGS_S, until
+from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript.link.sharing import peers
 from tiniscript.studio import serving
 from tiniscript.studio.entrances import OPEN_TIMEOUT_S, Entrances
@@ -214,7 +214,7 @@ def test_another_user_reads_the_browser_s_command_line_and_gets_nothing(
             pid,
             str(command.pid),
         ]
-        completed = subprocess.run(stranger, capture_output=True, text=True, timeout=HANGS_S)
+        completed = subprocess.run(stranger, capture_output=True, text=True, timeout=HANG_LIMIT_S)
         assert completed.returncode == 0, completed.stderr
         entering, asking, is_shown = json.loads(completed.stdout)
         assert entering == [200, '{"failure": "host_used"}']
@@ -228,4 +228,4 @@ def test_another_user_reads_the_browser_s_command_line_and_gets_nothing(
     finally:
         (tmp_path / "closed").touch()
         command.terminate()
-        command.communicate(timeout=HANGS_S)
+        command.communicate(timeout=HANG_LIMIT_S)

@@ -29,8 +29,8 @@ from tiniscript.studio.building import MODULES
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-HERE = Path(__file__).parent
-ROM = HERE / "esp32_rom.js"
+TEST_FOLDER = Path(__file__).parent
+ROM = TEST_FOLDER / "esp32_rom.js"
 HEADS = {"esp32dev": (0x1000, 0), "esp32c3": (0, 5)}
 
 
@@ -46,7 +46,7 @@ def image(board: str, size: int = 70_001) -> bytes:
 def flash(board: str, firmware: bytes, **how: Any) -> dict[str, Any]:
     need("" if (MODULES / "esptool-js").is_dir() else "esptool-js is not fetched")
     case = {"board": board, "firmware": base64.b64encode(firmware).decode(), **how}
-    lines = in_node(HERE / "flash_esp32_in_node.mjs", str(ROM), given=json.dumps(case))
+    lines = in_node(TEST_FOLDER / "flash_esp32_in_node.mjs", str(ROM), given=json.dumps(case))
     outcome: dict[str, Any] = json.loads(lines[-1])
     assert outcome["sums"]
     assert not outcome["is_open"]  # the next one can have the port

@@ -21,7 +21,7 @@ from tests.support.platformio import firmware, shared_folder
 
 SCRIPT = Path(__file__).with_name("flash_in_node.mjs")
 PAGE = 128
-IN_SYNC, OK, END = b"\x14", b"\x10", 0x20
+IN_SYNC, OK, END_OF_COMMAND = b"\x14", b"\x10", 0x20
 UNO = b"\x1e\x95\x0f"
 
 
@@ -46,7 +46,7 @@ def hex_file(folder: Path, data: bytes) -> Path:
 # -- onto boards that lose and delay, on a clock of the script
 
 SLOW_SCRIPT = Path(__file__).with_name("slow_board_in_node.mjs")
-TRIES, SYNC_MS, ANSWER_MS = 8, 250, 1000  # values in the page's code
+TRY_COUNT, SYNC_MS, ANSWER_MS = 8, 250, 1000  # values in the page's code
 
 
 def test_what_goes_on_is_written_and_what_does_not_ends_soon() -> None:
@@ -57,12 +57,12 @@ def test_what_goes_on_is_written_and_what_does_not_ends_soon() -> None:
     assert ends == {"done", "flash_broken_off", "flash_nobody"}
     for row in rows:
         assert (row["ended"] == "done") == (row["last"] == 1 and row["isSame"]), row
-        if row["losses"] < TRIES and row["slow_ms"] < SYNC_MS and not row["silent"]:
+        if row["losses"] < TRY_COUNT and row["slow_ms"] < SYNC_MS and not row["silent"]:
             assert row["ended"] == "done", row
-        if row["losses"] >= TRIES:
+        if row["losses"] >= TRY_COUNT:
             assert row["ended"] == "flash_nobody", row
         asked = 4 * row["pages"] + 3
-        finds_ms = 2 * TRIES * (SYNC_MS + ANSWER_MS)
+        finds_ms = 2 * TRY_COUNT * (SYNC_MS + ANSWER_MS)
         assert row["took_ms"] <= finds_ms + asked * row["slow_ms"] + 2 * ANSWER_MS, row
 
 
@@ -136,7 +136,7 @@ class FakeBoard:
         return {0x55: 4, 0x64: 5 + PAGE, 0x74: 5}.get(heard_bytes[0], 2)
 
     def _answer(self, command: bytes) -> bytes:
-        assert command[-1] == END
+        assert command[-1] == END_OF_COMMAND
         if command[0] == 0x75:
             return UNO
         if command[0] == 0x55:

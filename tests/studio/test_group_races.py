@@ -18,7 +18,7 @@ import pytest
 
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.waiting import HANGS_S, until
+from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript import compile, robots
 from tiniscript.studio.attending import LATCH_S
 from tiniscript.studio.classroom import Classroom
@@ -114,7 +114,7 @@ class Group:
 
     def drives(self, mate: Mate) -> None:
         """Let a pupil drive, whoever is driving."""
-        end_s = time.monotonic() + HANGS_S
+        end_s = time.monotonic() + HANG_LIMIT_S
         while not self.robot.moves:
             assert time.monotonic() < end_s, "it never drives"
             if not mate.is_there:
@@ -154,13 +154,13 @@ class Group:
 
     def meet(self) -> None:
         for thread in self.late:
-            thread.join(HANGS_S)
+            thread.join(HANG_LIMIT_S)
         self.late.clear()
 
     def ends(self) -> None:
         self.is_over = True
         for mate in self.mates:
-            mate.thread.join(HANGS_S)
+            mate.thread.join(HANG_LIMIT_S)
         self.hosting.close()
 
 

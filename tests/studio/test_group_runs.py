@@ -13,7 +13,7 @@ from tiniscript.studio.group_runs import GroupRuns
 
 Json = dict[str, Any]
 DRIVERS = ("ana", "luz")
-ENDS: tuple[Json, ...] = (
+END_MESSAGES: tuple[Json, ...] = (
     {"event": "DONE"},
     {"event": "STOPPED", "cause": "MESSAGE"},
     {"event": "FAULT", "fault": "STUCK", "at": 3, "program": "p"},
@@ -87,7 +87,7 @@ class Robot:
     def _ends(self) -> Json:
         self.program = self.line = ""
         self.place = None
-        return self.chance.choice(ENDS)
+        return self.chance.choice(END_MESSAGES)
 
 
 class Page:

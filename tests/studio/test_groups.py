@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
-from tests.support.class_room import HERE, Room, without_ports
-from tests.support.waiting import HANGS_S, until
+from tests.support.class_room import PUPIL_ADDRESS, Room, without_ports
+from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript.studio import groups
 from tiniscript.studio.class_keeping import MOST_PUPILS
 from tiniscript.studio.classroom import Classroom
@@ -63,7 +63,7 @@ class Member:
         return self.asks("group_join", name=group, text=text, before=before)
 
     def asks(self, do: str, **more: Any) -> Json:
-        return self.school.made.answer(self.token, HERE, {"do": do, **more})
+        return self.school.made.answer(self.token, PUPIL_ADDRESS, {"do": do, **more})
 
     def request(self, **more: Any) -> Json:
         page = self.page
@@ -143,11 +143,11 @@ def test_four_have_room_and_who_is_silent_gives_the_place_away(school: School) -
     members = [Member(school, f"P{k}") for k in range(groups.MOST_MEMBERS)]
     late = school.joins("Late")
     request = {"do": "group_join", "name": "Red", "text": ""}
-    assert school.made.answer(late, HERE, request) == {"failure": "group_full"}
+    assert school.made.answer(late, PUPIL_ADDRESS, request) == {"failure": "group_full"}
     school.now_s += groups.ABSENCE_S + 1
     for member in members[1:]:
         member.sends()
-    assert school.made.answer(late, HERE, request)["group"] == "Red"
+    assert school.made.answer(late, PUPIL_ADDRESS, request)["group"] == "Red"
     assert members[0].asks("group", **members[0].request()) == {"left": True}
 
 
@@ -156,7 +156,7 @@ def test_what_is_no_program_begins_no_group(school: School) -> None:
 
     def begins(name: str, text: str) -> Json:
         request = {"do": "group_join", "name": name, "text": text}
-        return school.made.answer(token, HERE, request)
+        return school.made.answer(token, PUPIL_ADDRESS, request)
 
     assert begins("Red", "LOOP(3)\n") == {"failure": "group_mistakes"}
     assert begins("Red", "S\n" * 10_000) == {"failure": "group_long"}
@@ -166,8 +166,9 @@ def test_what_is_no_program_begins_no_group(school: School) -> None:
     for k in range(groups.MOST_FOUNDED):
         assert begins(f"Group {k}", TEXT)["group"] == f"Group {k}"
         change = {"uid": "m1:1", "ops": [{"do": "delete", "ids": ["i.1"]}]}
-        school.made.answer(token, HERE, {"do": "group", "page": "m1", "since": 0, "epoch": "",
-                                         "changes": [change]})  # fmt: skip
+        school.made.answer(token, PUPIL_ADDRESS,
+                           {"do": "group", "page": "m1", "since": 0, "epoch": "",
+                            "changes": [change]})  # fmt: skip
     assert begins("One more", TEXT) == {"failure": "group_many"}
 
 
@@ -187,7 +188,7 @@ def test_a_group_that_nobody_has_changed_goes_with_its_last_pupil(school: School
 def test_a_page_that_waits_hears_at_once_and_holds_nobody_up(
     school: School, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANGS_S)
+    monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANG_LIMIT_S)
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     ana.sends()
     luz.sends()
@@ -197,12 +198,12 @@ def test_a_page_that_waits_hears_at_once_and_holds_nobody_up(
     assert school.checks_in(luz.token)["group"] == "Red"  # the class is not held
     luz.types("80", "95")
     luz.sends()
-    waiting.join(HANGS_S)
+    waiting.join(HANG_LIMIT_S)
     assert "F(1, 95)" in json.dumps(heard)
 
 
 def test_a_page_holds_one_request(school: School, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANGS_S)
+    monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANG_LIMIT_S)
     ana = Member(school, "Ana")
     ana.sends()
     threads = []
@@ -210,10 +211,10 @@ def test_a_page_holds_one_request(school: School, monkeypatch: pytest.MonkeyPatc
         threads.append(in_thread(lambda: ana.asks("group", **ana.request(waits=True))))
         until(partial(has_held, school, ana, k + 1), "the page waits")
     for thread in threads[:-1]:
-        thread.join(HANGS_S)
+        thread.join(HANG_LIMIT_S)
         assert not thread.is_alive()
     ana.asks("group_leave")
-    threads[-1].join(HANGS_S)
+    threads[-1].join(HANG_LIMIT_S)
     assert not threads[-1].is_alive()
 
 
@@ -227,7 +228,7 @@ def test_a_held_request_ends(school: School, monkeypatch: pytest.MonkeyPatch) ->
 def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
     school: School, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANGS_S)
+    monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANG_LIMIT_S)
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     school.checks_in(ana.token, True)
     robot = school.connects(ana.token)
@@ -245,9 +246,9 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
         school.made._groups._lock,
     ):  # one of them is busy with these
         telling = in_thread(lambda: robot.witness([begins]))  # type: ignore[misc]
-        telling.join(HANGS_S)
+        telling.join(HANG_LIMIT_S)
         assert not telling.is_alive()
-    waiting.join(HANGS_S)
+    waiting.join(HANG_LIMIT_S)
     assert [run["event"] for run in heard[0]["runs"]] == ["STARTED"]
     assert "runs" not in ana.asks("group", **ana.request())  # her page has it from the robot
 
@@ -371,7 +372,7 @@ def test_a_hostile_pupil_spoils_the_own_group_alone(school: School) -> None:
         for field in chance.sample(fields, chance.randint(0, 3)):
             request[field] = chance.choice(values)
         with suppress(BadRequest):
-            school.made.answer(eve.token, HERE, json.loads(json.dumps(request)))
+            school.made.answer(eve.token, PUPIL_ADDRESS, json.loads(json.dumps(request)))
         if k % 50 == 0:
             old, new = ("80", "95") if "80" in ana.text else ("95", "80")
             ana.types(old, new)
@@ -472,7 +473,7 @@ def test_the_teacher_takes_no_place_of_a_pupil(school: School) -> None:
         Member(school, f"P{k}")
     late = school.joins("Late")
     request = {"do": "group_join", "name": "Red", "text": ""}
-    assert school.made.answer(late, HERE, request) == {"failure": "group_full"}
+    assert school.made.answer(late, PUPIL_ADDRESS, request) == {"failure": "group_full"}
     assert teacher.sends()["others"][0]["name"] == ana.name
 
 
@@ -580,7 +581,7 @@ def test_who_joins_a_group_brings_the_earlier_place(school: School) -> None:
     for token in (luz, eva, ana.token):
         school.checks_in(token, True)
     assert school.checks_in(ana.token)["place"] == 3
-    school.made.answer(luz, HERE, {"do": "group_join", "name": "Red", "text": ""})
+    school.made.answer(luz, PUPIL_ADDRESS, {"do": "group_join", "name": "Red", "text": ""})
     assert school.checks_in(ana.token)["place"] == school.checks_in(luz)["place"] == 1
     assert school.checks_in(teo)["waiting"] == 2
 
@@ -629,9 +630,9 @@ def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:
     luz.asks("stop", group_stops=2)
     luz.asks("stop")  # whatever it counts
     assert robot.stopped == 3
-    school.made.answer(eve, HERE, {"do": "stop"})
+    school.made.answer(eve, PUPIL_ADDRESS, {"do": "stop"})
     assert robot.stopped == 3
-    assert school.made.answer(eve, HERE, {"do": "connect"}) == {"failure": "turn_none"}
+    assert school.made.answer(eve, PUPIL_ADDRESS, {"do": "connect"}) == {"failure": "turn_none"}
     other = school.connects(luz.token)
     assert (robot.leave_reason, other.has_ended) == ("group_other", False)
     assert school.checks_in(ana.token)["driver"] == "Luz"
@@ -665,7 +666,7 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
                     "saw_stops": turn.stop_number - 1,
                 }  # the button was pressed before a STOP
                 refused = {"failure": "stopped_elsewhere"}
-                assert school.made.answer(member.token, HERE, early) == refused
+                assert school.made.answer(member.token, PUPIL_ADDRESS, early) == refused
                 assert turn.pupil.token != member.token
                 school.connects(member.token)
                 assert robot.leave_reason == "group_other"  # leaving stops its run
@@ -722,7 +723,7 @@ def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
     for member in members:
         member.asks("group_leave")
     for thread in threads:
-        thread.join(HANGS_S)
+        thread.join(HANG_LIMIT_S)
     assert not failed_base_exceptions
     for k in (0, 1):
         assert len({member.page.base.checksum() for member in members[k::2]}) == 1

@@ -21,8 +21,8 @@ from tiniscript.studio.hosting import Hosting
 
 Json = dict[str, Any]
 KIT = robots.load("tinibot").kit
-STICK = "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP"
-HERE = "192.0.2.9"
+STICK_PROGRAM = "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP"
+PUPIL_ADDRESS = "192.0.2.9"
 
 
 class Hand(AskingPage):
@@ -83,10 +83,11 @@ class Class:
 
     def pupil(self, name: str) -> Hand:
         join = {"do": "join", "code": self.room.code, "name": name}
-        token = self.room.answer("", HERE, join)["token"]
-        self.room.answer(token, HERE, {"do": "here", "wants": True})
+        token = self.room.answer("", PUPIL_ADDRESS, join)["token"]
+        self.room.answer(token, PUPIL_ADDRESS, {"do": "here", "wants": True})
         return Hand(
-            lambda request: self.room.answer(token, HERE, {**request, "page": name}), "turn"
+            lambda request: self.room.answer(token, PUPIL_ADDRESS, {**request, "page": name}),
+            "turn",
         )
 
 
@@ -102,7 +103,7 @@ def test_a_pupil_drives_the_own_robot_and_no_other(lesson: Class, two: list[PtyR
     for hand in (ana, beto):
         assert hand.asks("connect") == {}
         hand.beats_until(lambda item: "connected" in item, "it is met")
-        assert hand.uploads(STICK)["ok"]
+        assert hand.uploads(STICK_PROGRAM)["ok"]
     ana.drives(two[0], 60)
     assert power_of(two[1]) == 0
     ana.drives(two[0], 0)
@@ -117,7 +118,7 @@ def test_who_has_no_turn_drives_nothing(lesson: Class, two: list[PtyRobot]) -> N
     ana, beto, carla = (lesson.pupil(name) for name in ("Ana", "Beto", "Carla"))
     assert ana.asks("connect") == {}
     ana.beats_until(lambda item: "connected" in item, "it is met")
-    assert ana.uploads(STICK)["ok"]
+    assert ana.uploads(STICK_PROGRAM)["ok"]
     ana.drives(two[0], 60)
     assert carla.asks("connect") == {"failure": "turn_none"}
     word = {"do": "keys", "id": 1, "seen": 0, "keys": 0, "x": 0, "y": -80}
@@ -133,7 +134,7 @@ def test_who_has_no_turn_drives_nothing(lesson: Class, two: list[PtyRobot]) -> N
     assert power_of(two[0]) == 0 and len(two[0].actions) == moves
     assert beto.asks("connect") == {}
     beto.beats_until(lambda item: "connected" in item, "it is met")
-    assert beto.uploads(STICK)["ok"]
+    assert beto.uploads(STICK_PROGRAM)["ok"]
     beto.drives(two[1], 40)
     assert power_of(two[0]) == 0
 
@@ -143,7 +144,7 @@ def test_a_teachers_stop_is_no_key_of_a_pupils(lesson: Class, two: list[PtyRobot
     ana = lesson.pupil("Ana")
     assert ana.asks("connect") == {}
     ana.beats_until(lambda item: "connected" in item, "it is met")
-    assert ana.uploads(STICK)["ok"]
+    assert ana.uploads(STICK_PROGRAM)["ok"]
     ana.drives(two[0], 60)
     lesson.room.teach({"do": "stop_all"})
     number = ana.holds(60)
@@ -170,7 +171,7 @@ def hand(two: list[PtyRobot]) -> Iterator[Hand]:
 def test_a_page_that_falls_silent_holds_nothing(hand: Hand, two: list[PtyRobot]) -> None:
     """This holds even if the run is not its own, so that it continues."""
     robot = two[0]
-    image = compile(STICK.replace("SI|", "SB|")).image.hex()
+    image = compile(STICK_PROGRAM.replace("SI|", "SB|")).image.hex()
     sent = hand.says(do="upload", image=image, robot="tinibot", runs=False)
     assert hand.answer_to(sent)["ok"]
     robot.push()

@@ -12,7 +12,7 @@ from tests.support.command import FOREVER, Command, process
 from tests.support.pty_robot import PtyRobot
 from tests.support.rows import each_row
 from tests.support.shared_pty_robot import Shared
-from tests.support.waiting import HANGS_S, until
+from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript import compile, robots
 from tiniscript.library import opening
 from tiniscript.link.messages import STOP_BYTES
@@ -46,7 +46,7 @@ class Page:
             self.news.append(item)
 
     def until(
-        self, is_so: Callable[[dict[str, Any]], bool], limit_s: float = HANGS_S
+        self, is_so: Callable[[dict[str, Any]], bool], limit_s: float = HANG_LIMIT_S
     ) -> dict[str, Any]:
         """Wait for news, beating."""
         end_s = time.monotonic() + limit_s
@@ -424,4 +424,4 @@ def test_what_a_page_does_not_fetch_is_bounded() -> None:
     robot.attending.queue_news([{"event": "DONE"}])
     news = robot.attending.on_beat([], 0)
     assert len(news) == attending.MOST_KEPT_NEWS and news[-1]["event"] == "DONE"
-    robot.join(HANGS_S)
+    robot.join(HANG_LIMIT_S)

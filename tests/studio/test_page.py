@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 # The compiler gets its requests at once, or only when released.
-HOLD = """() => {
+HOLDING_SCRIPT = """() => {
   const { postMessage } = Worker.prototype, held = [];
   Worker.prototype.postMessage = function (...said) { held.push([this, said]); };
   window.letGo = () => {
@@ -98,7 +98,7 @@ def test_what_is_typed_is_compiled_and_not_called_right_before(page: Page) -> No
     write(page, "F(1, 80)")
     status = page.locator("#status")
     assert status.get_attribute("class") == "right"
-    page.evaluate(HOLD)
+    page.evaluate(HOLDING_SCRIPT)
     page.keyboard.type("1, ")
     status.filter(has_text=re.compile("^…$")).wait_for()
     assert status.get_attribute("class") == ""
@@ -208,7 +208,7 @@ def test_work_is_kept(page: Page, only_page: tuple[Pages, Page]) -> None:
 
 
 # The tab's stored data is useless; that of the last tab is not, or is damaged, too.
-DAMAGED = (
+DAMAGED_WORK = (
     ("no JSON", '{"text": 5}'),
     ("null", '{"text": "S", "robot": "../x", "language": "<b>"}'),
     ("[]", '{"text": "S", "robot": {"toString": 1}, "world": "__proto__", "name": 7}'),
@@ -217,7 +217,7 @@ DAMAGED = (
 
 
 def test_damaged_work_does_no_harm(page: Page, pytestconfig: pytest.Config) -> None:
-    for kept in some_of(pytestconfig, "damaged work", DAMAGED):
+    for kept in some_of(pytestconfig, "damaged work", DAMAGED_WORK):
         page.evaluate(
             "kept => { for (const s of [sessionStorage, localStorage])"
             " s.setItem('tiniscript.work', kept.shift()); }",

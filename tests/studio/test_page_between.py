@@ -34,10 +34,10 @@ from tiniscript.studio.attending import LATCH_S
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-SILENT_S, ROOM_S = 3.0, 0.5
-ENDS_S = 40.0  # the longest request, and a stop
+LONGEST_SILENCE_S, TOLERANCE_S = 3.0, 0.5
+LONGEST_END_S = 40.0  # the longest request, and a stop
 NEXT_TRY_S = 40.0  # time until the next try succeeds
-LISTEN = """(place) => {
+LISTENING_SCRIPT = """(place) => {
   const line = document.querySelector(place);
   window.told = [];
   window.listens?.disconnect();
@@ -46,10 +46,10 @@ LISTEN = """(place) => {
   window.listens.observe(line, { childList: true, characterData: true, subtree: true });
   return performance.now();
 }"""
-STANDING = re.compile(r"…|^Stopping|STOP: 0 of 1")  # texts of something still going on
-CONNECTED = "Connected: "
-CONFIRMED = "has (?:now )?confirmed the stop"
-UNCONFIRMED = "has not confirmed the stop"
+UNFINISHED_MESSAGE = re.compile(r"…|^Stopping|STOP: 0 of 1")  # texts of something still going on
+CONNECTED_PREFIX = "Connected: "
+CONFIRMED_STOP = "has (?:now )?confirmed the stop"
+UNCONFIRMED_STOP = "has not confirmed the stop"
 
 
 class Between(NamedTuple):
@@ -75,12 +75,12 @@ NETWORK_FAULTS = (
     Between("studio suspended long", held_s=12.0, suspends=True),
 )
 LINES = tuple(fault for fault in FAULTS if not fault.pulls and not fault.suspends)
-SAID = "#link_said"
+MESSAGE_PLACE = "#link_said"
 ACTIONS = ("connect", "run", "stop", "identify", "leave")
-ENDS = {
+END_PATTERNS = {
     "connect": r"^(?!Connecting|Choose)",
     "run": r"^(?!Sending)",
-    "stop": f"{CONFIRMED}|{UNCONFIRMED}",
+    "stop": f"{CONFIRMED_STOP}|{UNCONFIRMED_STOP}",
     "identify": "blinks|^(?!Waiting)",
     "leave": "Disconnected",
 }
@@ -160,10 +160,10 @@ class Scene:
         """Do something while there is a fault, then all of it without."""
         self._prepare(action, fault)
         page, place = self._place(action)
-        begun_ms = page.evaluate(LISTEN, place)
+        begun_ms = page.evaluate(LISTENING_SCRIPT, place)
         self._begin(fault)
         page.click(BUTTONS[action])
-        has_ended = self._until(ENDS[action], ENDS_S, page)
+        has_ended = self._until(END_PATTERNS[action], LONGEST_END_S, page)
         wrong = [] if has_ended else ["it has no end"]
         page.wait_for_timeout(500)
         self._mend(fault)
@@ -173,11 +173,11 @@ class Scene:
         wrong += self._next_try()
         times = [begun_ms, *(at_ms for at_ms, _ in timed_messages)]
         gaps = [(after - at) / 1000 for k, (at, after) in enumerate(pairwise(times))
-                if not k or not STANDING.search(texts[k - 1])]  # fmt: skip
-        first = [at_ms for at_ms, text in timed_messages if re.search(ENDS[action], text)]
-        took_s = ((first[0] if first else begun_ms + 1000 * ENDS_S) - begun_ms) / 1000
-        return TriedAction(action, fault.name, gaps[0] if gaps else ENDS_S, took_s,
-                     tuple(wrong), tuple(texts))  # fmt: skip
+                if not k or not UNFINISHED_MESSAGE.search(texts[k - 1])]  # fmt: skip
+        first = [at_ms for at_ms, text in timed_messages if re.search(END_PATTERNS[action], text)]
+        took_s = ((first[0] if first else begun_ms + 1000 * LONGEST_END_S) - begun_ms) / 1000
+        return TriedAction(action, fault.name, gaps[0] if gaps else LONGEST_END_S, took_s,
+                           tuple(wrong), tuple(texts))  # fmt: skip
 
     def _prepare(self, action: str, fault: Fault | Between) -> None:
         if isinstance(fault, Fault):
@@ -220,7 +220,7 @@ class Scene:
 
     def _place(self, action: str) -> tuple[Page, str]:
         """Return the page with the button, and the element with its result."""
-        return self.page, SAID
+        return self.page, MESSAGE_PLACE
 
     def _until(self, pattern: str, limit_s: float, page: Page | None = None) -> bool:
         end_s, page = CLOCK.now_s + limit_s, page or self.page
@@ -254,14 +254,14 @@ class Scene:
                 and page.locator("#link_connect").is_enabled()
             ):
                 self._choose()
-                page.evaluate(LISTEN, SAID)
+                page.evaluate(LISTENING_SCRIPT, MESSAGE_PLACE)
                 page.click("#link_connect")
                 self._until(r"^(?!Connecting)", NEXT_TRY_S)
             page.wait_for_timeout(100)
         return ""
 
     def _run(self) -> str:
-        self.page.evaluate(LISTEN, SAID)
+        self.page.evaluate(LISTENING_SCRIPT, MESSAGE_PLACE)
         self.page.click("#link_upload")
         if not self._until("The robot has the program|stopped", NEXT_TRY_S):
             return f"no run: {self._link_text()}"
@@ -273,9 +273,9 @@ class Scene:
         return ""
 
     def _stop(self) -> str:
-        self.page.evaluate(LISTEN, SAID)
+        self.page.evaluate(LISTENING_SCRIPT, MESSAGE_PLACE)
         self.page.click("#stop")
-        if not self._until(CONFIRMED, NEXT_TRY_S):
+        if not self._until(CONFIRMED_STOP, NEXT_TRY_S):
             return f"no stop: {self._link_text()}"
         return "it moves" if self.line.moves else ""
 
@@ -308,7 +308,7 @@ class ClassScene(Scene):
         self.page.locator(ASK_BUTTON).wait_for()
 
     def _place(self, action: str) -> tuple[Page, str]:
-        return (self.teacher, "#stops") if action == "stop all" else (self.page, SAID)
+        return (self.teacher, "#stops") if action == "stop all" else (self.page, MESSAGE_PLACE)
 
     def _prepare(self, action: str, fault: Fault | Between) -> None:
         if action == "ask":
@@ -338,7 +338,7 @@ class ClassScene(Scene):
 
 ASK_BUTTON = "[data-text=class_ask]"
 BUTTONS |= {"ask": ASK_BUTTON, "stop all": "#stop"}
-ENDS |= {
+END_PATTERNS |= {
     "ask": r"^(?!Connecting|Choose|$)",
     "stop all": "STOP: 1 of 1|Not confirmed|did not reach",
 }
@@ -359,8 +359,8 @@ def scene(browser: Browser, chance: Random) -> Iterator[Scene]:
         yield Scene(browser, chance, stack)
 
 
-def list_faults(tried_action: TriedAction, room_s: float = ROOM_S) -> list[str]:
-    silent = tried_action.silence_s > SILENT_S + room_s
+def list_faults(tried_action: TriedAction, room_s: float = TOLERANCE_S) -> list[str]:
+    silent = tried_action.silence_s > LONGEST_SILENCE_S + room_s
     return [
         *tried_action.wrong,
         *([f"silent for {tried_action.silence_s:.1f} s"] if silent else []),

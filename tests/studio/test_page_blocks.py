@@ -35,7 +35,7 @@ from tests.support.page_blocks import (
 from tests.support.page_screens import SCREENS
 from tests.support.sampling import some_of
 from tests.support.studio import (
-    SETTLED,
+    SETTLED_SCRIPT,
     Pages,
     finger,
     hears,
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
 
 drawn = pytest.mark.sampled(of="details of blocks", keep=4)
 
-SAMPLE = 8  # random programs
+SAMPLE_SIZE = 8  # random programs
 # Whether a text field handles the undo key itself.
 KEPT_KEY = """field => field.dispatchEvent(new KeyboardEvent('keydown',
   {key: 'z', ctrlKey: true, bubbles: true, cancelable: true, composed: true}))"""
@@ -99,7 +99,7 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None
     data = json.loads(json.dumps([without_places(data_of(form)) for form in forms]))
     for k, (want, actual) in enumerate(zip(data, round_trip(page, data), strict=True)):
         assert actual == want, k
-    assert compare(page, SAMPLE, seed=1000) > SAMPLE * 0.9
+    assert compare(page, SAMPLE_SIZE, seed=1000) > SAMPLE_SIZE * 0.9
 
 
 def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
@@ -124,11 +124,11 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     in_phase(page, "ended")
     assert image(page) == compile(text_of(page)).image
     page.set_viewport_size({"width": 1024, "height": 600})
-    page.evaluate(SETTLED)
+    page.evaluate(SETTLED_SCRIPT)
     page.locator(".blocklyToolboxCategory", has_text="Moverse").tap()
     source = page.locator(FLYOUT).nth(1)
     source.wait_for()
-    page.evaluate(SETTLED)
+    page.evaluate(SETTLED_SCRIPT)
     held, target = box_of(source), box_of(block(page, "gira a la derecha"))
     x, y = held["x"] + 8, held["y"] + 10
     to_x, to_y = target["x"] + 10, target["y"] + target["height"] + 8
@@ -178,7 +178,7 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
     page.locator(".zoom button").nth(1).click()
     page.mouse.move(600, 300)
     page.mouse.wheel(0, 500)
-    page.evaluate(SETTLED)
+    page.evaluate(SETTLED_SCRIPT)
     locator = page.locator(f"{PROGRAM} .blocklyNumberField").nth(30)
     place = locator.bounding_box()
     assert place is not None and 150 < place["y"] < 400
@@ -193,7 +193,8 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
         page.keyboard.press("Control+z")
         becomes(page, long)
         page.locator(f"{PROGRAM} .blocklyActiveFocus").wait_for(state="attached")
-        page.evaluate(SETTLED)  # Blockly scrolls to the focused block, and the page scrolls back
+        # Blockly scrolls to the focused block, and the page scrolls back
+        page.evaluate(SETTLED_SCRIPT)
         assert box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15)) == pytest.approx(
             box_before, abs=2
         )
@@ -380,7 +381,7 @@ def test_a_message_stands_on_no_block(page: Page) -> None:
         page.set_viewport_size({"width": width, "height": height})
         start(page, "SI|S;\nF(-2);\nF(2, 80);\n")  # the block below it is wider
         bubble.wait_for()
-        page.evaluate(SETTLED)
+        page.evaluate(SETTLED_SCRIPT)
         bubble_box = bubble.locator("rect").first.evaluate(
             "e => e.getBoundingClientRect().toJSON()"
         )
@@ -734,7 +735,7 @@ def numbers_of(page: Page) -> list[int]:
 
 
 # The dragged blocks with their targets, and the numbers typed: the first one is number 0.
-IN_BLOCKS = {
+BLOCKS_BY_LESSON = {
     13: ([("Repeat", "forever", "when it starts", "below"), ("Move", "forward", "forever", "in"),
           ("Events", "each time", "forever", "below"), ("Move", "turn right", "each time", "below"),
           ("Move", "back", "each time", "below")],
@@ -750,7 +751,7 @@ IN_BLOCKS = {
 
 @pytest.mark.long
 @pytest.mark.sampled("number")
-@pytest.mark.parametrize("number", IN_BLOCKS)
+@pytest.mark.parametrize("number", BLOCKS_BY_LESSON)
 def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, number: int) -> None:
     """A beginner can do it by dragging."""
     page = pages.open(view="blocks", viewport={"width": 1366, "height": 900})
@@ -761,7 +762,7 @@ def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, n
     page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
     page.locator("#lesson_steps button").last.click()
     start(page, "SI|")
-    dragged, numbers = IN_BLOCKS[number]
+    dragged, numbers = BLOCKS_BY_LESSON[number]
     for group, words, target, place in dragged:
         text_before, to = text_of(page), block(page, target)
         inside = 40 - round(box_of(to)["height"])
@@ -843,7 +844,8 @@ def test_keys_alone_add_a_block(page: Page) -> None:
 # -- sentences -------------------------------------------------------------------------------------
 
 
-LACKS = re.compile(  # things that no page has; names of shortcuts, which only a plugin shows; keys
+# things that no page has; names of shortcuts, which only a plugin shows; keys
+UNUSED_MESSAGE = re.compile(
     "SHORTCUT|VARIABLE|PROCEDURE|COLLAPSE|EXPAND_|ABLE_BLOCK|(IN|EX)[A-Z]+_INPUTS|MUTATOR|CHECKBOX"
     "|(ADD|REMOVE|DUPLICATE)_COMMENT|ARIA_LABEL_COMMENT|CONTENTS_COMMENTS"
     "|/(UNDO|REDO|HELP|HELP_PROMPT|UNKNOWN|UNNAMED_KEY|ESCAPE)$"
@@ -862,7 +864,9 @@ def test_the_catalogue_has_what_blockly_says() -> None:
     wanted = {f"blockly/{name}": json.loads(text) for name, text in rows if name in names}
     texts = page_texts("en")
     own = {key: texts[key] for key in texts if key.startswith("blockly/")}
-    assert own == {key: wanted[key] for key in wanted if key in own or not LACKS.search(key)}
+    assert own == {
+        key: wanted[key] for key in wanted if key in own or not UNUSED_MESSAGE.search(key)
+    }
 
 
 def test_no_word_of_the_sources_is_a_picture_of_a_face() -> None:

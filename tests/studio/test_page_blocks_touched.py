@@ -23,7 +23,7 @@ from tests.support.page_blocks import (
 )
 from tests.support.page_runs import run_names
 from tests.support.studio import (
-    SETTLED,
+    SETTLED_SCRIPT,
     Pages,
     axe,
     hears,
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 drawn = pytest.mark.sampled(of="touched blocks", keep=3)
 
 SCRIPT = Path(__file__).with_name("tones_in_node.mjs")
-GAP = 30  # pixels between a block and its message
+LARGEST_GAP_PX = 30  # pixels between a block and its message
 
 
 @pytest.fixture
@@ -72,7 +72,7 @@ def list_actions(page: Page) -> list[str]:
 # -- a block alone ---------------------------------------------------------------------------------
 
 
-WHOLE = """SI|F(2, 80);
+LONG_PROGRAM = """SI|F(2, 80);
 LOOP(2);
   HOP;
 END_LOOP;
@@ -91,7 +91,7 @@ def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -
     """Its defined words work too; a value is shown, and a hat runs the blocks below it."""
     runs = run_names(page)
     page.click("#runs_close")
-    start(page, WHOLE)
+    start(page, LONG_PROGRAM)
     text = text_of(page)
     for words, sounds, shows in (
         ("forward", 0, 0), ("do", 1, 0), ("repeat", 2, 0), ("each time", 1, 0), ("new word", 1, 0),
@@ -113,7 +113,7 @@ def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -
 
 @drawn
 def test_a_block_that_does_not_run_alone_says_why(page: Page) -> None:
-    start(page, WHOLE)
+    start(page, LONG_PROGRAM)
     page.select_option("#speed", "1")
     touch(page, "forward")
     page.locator(f"{PROGRAM} .alone").wait_for()
@@ -185,7 +185,7 @@ def test_a_phone_shows_the_robot_in_a_corner_while_a_block_is_tried(pages: Pages
     page.click("#side_real")
     page.click("#other")
     touch(page, "forward")
-    page.evaluate(SETTLED)
+    page.evaluate(SETTLED_SCRIPT)
     assert page.locator("html[data-peek]").count() == 0
 
 
@@ -224,7 +224,7 @@ def test_a_block_that_is_tried_goes_on_where_the_robot_is(page: Page) -> None:
 
 
 # The word of each move, and its arrow.
-ARROWS = """all => all.map((arrow) => {
+ARROWS_SCRIPT = """all => all.map((arrow) => {
   const block = arrow.closest('.blocklyBlock');
   const word = [...block.children].find((each) => each.matches('.blocklyDropdownField'));
   return [word.textContent.replace(/[^a-z ]|\\u00a0/g, ' ').trim(), arrow.getAttribute('d')];
@@ -235,14 +235,14 @@ ARROWS = """all => all.map((arrow) => {
 def test_each_move_has_its_arrow(page: Page) -> None:
     start(page, "SI|F(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
     arrows = page.locator(f"{PROGRAM} path.arrow")
-    evaluate_all_before = dict(arrows.evaluate_all(ARROWS))
+    evaluate_all_before = dict(arrows.evaluate_all(ARROWS_SCRIPT))
     assert len(evaluate_all_before) == len(set(evaluate_all_before.values())) == 4 and all(
         evaluate_all_before.values()
     )
     page.locator(f"{PROGRAM} .blocklyDropdownText", has_text="forward").click()
     page.locator(".blocklyMenuItem", has_text="turn left").click()
     becomes(page, "SI|L(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
-    evaluate_all_after = arrows.evaluate_all(ARROWS)
+    evaluate_all_after = arrows.evaluate_all(ARROWS_SCRIPT)
     assert [evaluate_all_before[text] for text, _ in evaluate_all_after] == [
         drawn for _, drawn in evaluate_all_after
     ]
@@ -280,7 +280,7 @@ def test_a_message_is_at_its_block(page: Page) -> None:
         start(page, text)
         bubble = page.locator("#blocks .blocklyBubble")
         bubble.wait_for()
-        page.evaluate(SETTLED)
+        page.evaluate(SETTLED_SCRIPT)
         bubble_box = bubble.locator("rect").first.evaluate(
             "e => e.getBoundingClientRect().toJSON()"
         )
@@ -288,7 +288,7 @@ def test_a_message_is_at_its_block(page: Page) -> None:
         others = page.locator(f"{PROGRAM} .blocklyBlock > .blocklyPath:not(.blocklyPathSelected)")
         boxes = others.evaluate_all("all => all.map((e) => e.getBoundingClientRect().toJSON())")
         if isolated:
-            assert 0 < bubble_box["left"] - own["right"] < GAP
+            assert 0 < bubble_box["left"] - own["right"] < LARGEST_GAP_PX
             assert not [box for box in boxes if meet(box, bubble_box)]
         tail = page.locator("#blocks .blocklyBubbleTail")
         begin = tail.evaluate("e => e.getBoundingClientRect().left")
@@ -477,7 +477,7 @@ def test_a_list_of_blocks_goes_with_the_block_that_is_dragged_out_of_it(
 
 
 # Whether no other pile covers the middle of a block.
-IS_SEEN = """(path) => {
+IS_SEEN_SCRIPT = """(path) => {
   const {left, top, width, height} = path.getBoundingClientRect();
   const front = document.elementFromPoint(left + width / 2, top + height / 2);
   return path.parentNode.contains(front);
@@ -500,15 +500,15 @@ def test_a_pile_that_is_tried_hides_no_smaller_one(page: Page) -> None:
     page.mouse.click(b["x"] + 6, b["y"] + b["height"] - 8)
     page.locator("#blocks .alone").first.wait_for(state="attached")
     in_phase(page, "ended")
-    assert path_of(value).evaluate(IS_SEEN)
+    assert path_of(value).evaluate(IS_SEEN_SCRIPT)
 
 
 # -- no overlays on blocks -------------------------------------------------------------------------
 
 
-WIDE = "IF(DISTANCE < 20 AND LIGHT_L > 10 AND LIGHT_R > 10)\n  BEEP(0.1, 440)\nENDIF\n"
+WIDE_BLOCK = "IF(DISTANCE < 20 AND LIGHT_L > 10 AND LIGHT_R > 10)\n  BEEP(0.1, 440)\nENDIF\n"
 # Each control that lies over a block of the program, as far as that one is seen.
-COVERED = """() => {
+COVERED_SCRIPT = """() => {
   const inside = (a, b) => a.left < b.right - 1 && b.left < a.right - 1
     && a.top < b.bottom - 1 && b.top < a.bottom - 1;
   const box = (each) => each.getBoundingClientRect();
@@ -532,19 +532,19 @@ COVERED = """() => {
 def test_no_control_lies_over_a_block_of_a_program(page: Page, size: tuple[int, int]) -> None:
     """This also holds if the blocks fill the visible area."""
     page.set_viewport_size({"width": size[0], "height": size[1]})
-    page.evaluate(SETTLED)
+    page.evaluate(SETTLED_SCRIPT)
     if page.locator("html[data-phone][data-half=robot]").count():
         page.click("#other")
-    start(page, "SI|" + 8 * WIDE, "all")
-    assert page.evaluate(COVERED) == []
+    start(page, "SI|" + 8 * WIDE_BLOCK, "all")
+    assert page.evaluate(COVERED_SCRIPT) == []
     if page.locator(".zoom").is_visible():
         width = box_of(block(page, "beep"))["width"]
         page.locator(".zoom button").nth(1).click()
-        page.evaluate(SETTLED)
+        page.evaluate(SETTLED_SCRIPT)
         assert box_of(block(page, "beep"))["width"] > width
-        assert page.evaluate(COVERED) == []
+        assert page.evaluate(COVERED_SCRIPT) == []
         page.locator(".zoom button").nth(0).click()
-        page.evaluate(SETTLED)
+        page.evaluate(SETTLED_SCRIPT)
         assert box_of(block(page, "beep"))["width"] == pytest.approx(width, abs=1)
     assert page.locator(".zoom").is_visible() == (size[0] >= 1000)
 

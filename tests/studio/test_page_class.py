@@ -42,10 +42,12 @@ pytestmark = pytest.mark.usefixtures("no_page_timeouts")
 drawn = pytest.mark.sampled(of="details of a class", keep=2)
 
 KIT = robots.load("tinibot").kit
-WHOLE = "() => wall.scrollHeight === wall.clientHeight && wall.scrollWidth === wall.clientWidth"
+WALL_FITS_SCRIPT = (
+    "() => wall.scrollHeight === wall.clientHeight && wall.scrollWidth === wall.clientWidth"
+)
 HOSTILE = "<img src=x onerror=1>"
 # The page waits for an answer however slow this computer is.
-PATIENT = """() => { window.limit = AbortSignal.timeout;
+NO_TIMEOUT_SCRIPT = """() => { window.limit = AbortSignal.timeout;
   AbortSignal.timeout = () => new AbortController().signal; }"""
 # Notes every text that the wall has from now on.
 NOTES = """() => { window.noted = '';
@@ -72,15 +74,16 @@ IN_ONE_ROW_SCRIPT = """() => ['#sides', '#bar'].map((row) => {
 })"""  # noqa: E501
 
 # A hand goes up on a page that no longer polls by itself.
-UP_AT_ONCE = """() => { for (let k = setTimeout(() => {}); k > 0; k--) clearTimeout(k);
+RAISE_HAND_SCRIPT = """() => { for (let k = setTimeout(() => {}); k > 0; k--) clearTimeout(k);
   class_hand.click(); }"""
 
 # No picture is made but by `made()`.
-HOLDS = """() => { window.held = []; const all = HTMLCanvasElement.prototype, make = all.toBlob;
+HOLD_PICTURES_SCRIPT = """() => { window.held = [];
+  const all = HTMLCanvasElement.prototype, make = all.toBlob;
   all.toBlob = function (...words) { held.push(() => make.apply(this, words)); };
   window.made = () => held.shift()();
   window.released = () => { all.toBlob = make; made(); }; }"""
-HELD = "() => held.length === 1"
+ONE_HELD_SCRIPT = "() => held.length === 1"
 
 
 @pytest.fixture(scope="module")
@@ -323,7 +326,7 @@ def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, shared_clas
             route.continue_()
 
     tile(teacher, "Eva").wait_for()
-    teacher.evaluate(PATIENT)
+    teacher.evaluate(NO_TIMEOUT_SCRIPT)
     teacher.route("**/*", hold)
     hears(teacher, lambda: late, "the wall looks")
     tile(teacher, "Eva").hover()
@@ -359,7 +362,7 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, shared_class: Cl
         speak(teacher, language)
         teacher.locator("#wall li").nth(29).wait_for()
         assert not teacher.locator("#wall .empty:visible").count()  # the picture arrives later
-        teacher.wait_for_function(WHOLE)  # a wall fits its tiles once it knows its size
+        teacher.wait_for_function(WALL_FITS_SCRIPT)  # a wall fits its tiles once it knows its size
         assert teacher.evaluate(LOOK) == []
     tile(teacher, "Pupil 7").locator("img[src^=blob]").wait_for()
     assert tile(teacher, "Pupil 7").locator("i.done").count() == 1
@@ -373,16 +376,16 @@ def test_a_picture_is_seen_large_while_the_next_one_is_made(
 ) -> None:
     only_ana(shared_class)
     teacher.locator("#wall li:only-child img[src^=blob]").wait_for()
-    teacher.evaluate(HOLDS)
+    teacher.evaluate(HOLD_PICTURES_SCRIPT)
     for language in ("es", "en"):  # each makes it anew
         with teacher.expect_response(
             lambda response: '"class_text"' in (response.request.post_data or "")
         ):
             speak(teacher, language)
-        teacher.wait_for_function(HELD)
+        teacher.wait_for_function(ONE_HELD_SCRIPT)
     first = tile(teacher, "Ana").locator("img").get_attribute("src")
     teacher.evaluate("() => made()")
-    teacher.wait_for_function(HELD)
+    teacher.wait_for_function(ONE_HELD_SCRIPT)
     assert tile(teacher, "Ana").locator("img").get_attribute("src") != first
     tile(teacher, "Ana").locator(".see").click()
     large = teacher.locator("#big_pupil img[src^=blob]")
@@ -391,9 +394,9 @@ def test_a_picture_is_seen_large_while_the_next_one_is_made(
     teacher.evaluate("() => released()")
 
 
-LONG = "SI|" + ";".join(["F(1, 50)", "IF(DISTANCE < 9)", "S", "END_IF"] * 120)
+LONG_PROGRAM = "SI|" + ";".join(["F(1, 50)", "IF(DISTANCE < 9)", "S", "END_IF"] * 120)
 # Time advances only by the test; pages without a wait are counted.
-STANDS = """() => { window.now = performance.now(); window.each = 0; window.slices = 0;
+MANUAL_CLOCK_SCRIPT = """() => { window.now = performance.now(); window.each = 0; window.slices = 0;
   performance.now = () => (window.now += window.each);
   const own = setTimeout; window.setTimeout = (does, ms, ...words) => {
     window.slices += ms === 0; return own(does, ms, ...words); }; }"""
@@ -409,10 +412,10 @@ def test_a_long_program_is_drawn_in_slices_and_not_to_its_end(
     only_ana(shared_class)
     picture = tile(teacher, "Ana").locator("img[src^=blob]")
     picture.wait_for()
-    teacher.evaluate(STANDS)
+    teacher.evaluate(MANUAL_CLOCK_SCRIPT)
     teacher.evaluate("() => { window.each = 20; }")  # each step is as long as a slice
     sizes = []
-    for text in (LONG, LONG + ";" + LONG[3:]):
+    for text in (LONG_PROGRAM, LONG_PROGRAM + ";" + LONG_PROGRAM[3:]):
         text_before, slices = picture.get_attribute("src"), teacher.evaluate("slices")
         write(first, text)
         teacher.locator(f"#wall img[src^=blob]:not([src='{text_before}'])").wait_for()
@@ -424,7 +427,7 @@ def test_a_long_program_is_drawn_in_slices_and_not_to_its_end(
 
 
 # Programs that the page has received, and those with a picture.
-DRAWINGS = """() => { window.told = []; window.drawn = [];
+COUNT_DRAWINGS_SCRIPT = """() => { window.told = []; window.drawn = [];
   const ask = fetch, post = Worker.prototype.postMessage, make = URL.createObjectURL;
   let newest = '';
   window.fetch = async (...words) => {
@@ -444,8 +447,8 @@ def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, shared_clas
     teacher = teaches(pages, shared_class)
     only_ana(shared_class)
     tile(teacher, "Ana").locator("img[src^=blob]").wait_for()
-    teacher.evaluate(DRAWINGS)
-    teacher.evaluate(STANDS)
+    teacher.evaluate(COUNT_DRAWINGS_SCRIPT)
+    teacher.evaluate(MANUAL_CLOCK_SCRIPT)
 
     def has(names: str, text: str, passed_ms: int = 0) -> bool:
         teacher.evaluate(f"() => {{ window.now += {passed_ms}; }}")
@@ -559,7 +562,7 @@ def test_everything_is_seen_and_axe_finds_nothing(
     speak(teacher, "en")
     tile(teacher, "A" * 24).locator(".hand").click()
     longest.locator("#class_hand[aria-pressed=false]").wait_for()
-    longest.evaluate(UP_AT_ONCE)
+    longest.evaluate(RAISE_HAND_SCRIPT)
     tile(teacher, "A" * 24).locator(".hand").wait_for()
     longest.close()
     only_ana(shared_class)
@@ -614,7 +617,7 @@ def test_the_work_of_a_class_is_saved_opened_and_given_back(
 
 
 # The page receives the work, but its next requests are lost.
-LOSES = """() => { window.own = fetch; window.fetch = (where, what) =>
+LOSE_ANSWERS_SCRIPT = """() => { window.own = fetch; window.fetch = (where, what) =>
   what?.body?.includes('"took"') ? Promise.reject(new TypeError('lost')) : own(where, what); }"""
 
 
@@ -626,7 +629,7 @@ def test_work_is_kept_until_the_page_has_said_that_it_has_it(
     until(lambda: "F(1, 33)" in str(shared_class.room.works()), "the class has it")
     request = {"do": "class_bring", "name": "Ana", "text": "F(1, 77)", "robot": "", "lessons": []}
     shared_class.room.teach(request)
-    ana.evaluate(LOSES)
+    ana.evaluate(LOSE_ANSWERS_SCRIPT)
     row = opened_row(teacher, "Ana")
     row.locator("button").click()
     row.filter(has_text="Ana is getting the work back.").wait_for()

@@ -10,7 +10,7 @@ import pytest
 
 from tests.support import studio
 from tests.support.needs import need
-from tests.support.page_programs import MOVE, colours, content, list_programs, share
+from tests.support.page_programs import MOVE_COLOUR, colours, content, list_programs, share
 from tests.support.studio import (
     Pages,
     dances_like_the_command,
@@ -117,7 +117,7 @@ def test_programs_are_shared_kept_and_pictured(page: Page) -> None:
     page.click("#share_picture")
     page.locator("#shared_told").filter(has_text="Saved: program.png").wait_for()
     width, height, counts = colours(page, read_saved_file(page))
-    assert width > 200 and height > 200 and counts[MOVE] > 1000
+    assert width > 200 and height > 200 and counts[MOVE_COLOUR] > 1000
     page.keyboard.press("Escape")
     page.goto(link)
     page.locator("#note").filter(has_text="This program came from a link.").wait_for()

@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
 
 # 1366x768 and 1280x1024 at 200 and 400 %, and a low window.
-LOW = ((683, 384), (640, 512), (320, 256), (1024, 500))
+LOW_SIZES = ((683, 384), (640, 512), (320, 256), (1024, 500))
 # The minimum width and height of an element.
-LEAST = {"wrong": ("#editor", 0, 96), "blocks": ("#blocks", 300, 96), "drawing": ("#arena", 120, 120),
-         "plot": ("#plot_place", 300, 60), "trace": ("#trace_place", 300, 60)}  # fmt: skip
+LEAST_SIZES = {"wrong": ("#editor", 0, 96), "blocks": ("#blocks", 300, 96), "drawing": ("#arena", 120, 120),
+               "plot": ("#plot_place", 300, 60), "trace": ("#trace_place", 300, 60)}  # fmt: skip
 # The same where the page is scrolled: it is at most too long, and STOP lies over it.
-SCROLLED = LOOK.replace(
+SCROLLED_LOOK_SCRIPT = LOOK.replace(
     ".map((e) => [e.id || e.tagName, e.getBoundingClientRect()])",
     ".filter((e) => e.id !== 'stop').map((e) => [e.id || e.tagName, e.getBoundingClientRect()])"
     ".map(([id, box]) => [id, new DOMRect(box.x, box.y + scrollY, box.width, box.height)])",
@@ -42,7 +42,7 @@ SCROLLED = LOOK.replace(
     "return found;",
 )  # fmt: skip
 # The same in the window of programs.
-DIALOG = """() => {
+DIALOG_SCRIPT = """() => {
   const found = [];
   const boxes = [...document.querySelectorAll('#programs button, #programs h2, #programs summary, #programs textarea, #programs canvas')]
     .filter((e) => e.checkVisibility()).map((e) => [e.id || e.textContent, e.getBoundingClientRect(), e]);
@@ -64,7 +64,7 @@ DIALOG = """() => {
   return found;
 }"""
 # Each choice whose name is cut in its list.
-CUT = """() => [...document.querySelectorAll('select')].filter((e) => e.checkVisibility()).flatMap((e) => {
+CUT_CHOICES_SCRIPT = """() => [...document.querySelectorAll('select')].filter((e) => e.checkVisibility()).flatMap((e) => {
   const chosen = e.value;
   const cut = [...e.options].filter((each) => {
     e.value = each.value;
@@ -84,7 +84,7 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
 ) -> None:
     """At two sizes, others in each commit; the class is in `test_page_class.py`."""
     usual = {screen: some_of(pytestconfig, screen, SCREENS) for screen in screens.SCREENS}
-    low = {screen: some_of(pytestconfig, screen, LOW) for screen in screens.SCREENS}
+    low = {screen: some_of(pytestconfig, screen, LOW_SIZES) for screen in screens.SCREENS}
     axed = {screen: some_of(pytestconfig, screen, usual[screen]) for screen in usual}
     page.emulate_media(color_scheme=theme)
     speak(page, language)
@@ -93,26 +93,26 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
         assert page.locator("#stop").is_visible()
         if screen not in ("teacher", "programs"):  # one screen scrolls, the other covers everything
             for end in (0,) if size in SCREENS else (0, 10_000):
-                look = LOOK if size in SCREENS else SCROLLED
+                look = LOOK if size in SCREENS else SCROLLED_LOOK_SCRIPT
                 problems = page.evaluate(
                     f"(end) => {{ scrollTo(0, end); return ({look})(); }}", end
                 )
                 assert problems == [], (screen, size, end)
         if size in SCREENS:
-            assert page.evaluate(CUT) == [], (screen, size)
-        if size in SCREENS and screen in LEAST:
-            where, width, height = LEAST[screen]
+            assert page.evaluate(CUT_CHOICES_SCRIPT) == [], (screen, size)
+        if size in SCREENS and screen in LEAST_SIZES:
+            where, width, height = LEAST_SIZES[screen]
             box = page.locator(where).bounding_box()
             assert box is not None and box["width"] >= width and box["height"] >= height, screen
         if screen == "drawing":
             assert page.evaluate("arena.clientHeight") >= 60, size
         if screen == "programs":
-            assert page.evaluate(DIALOG) == [], size
+            assert page.evaluate(DIALOG_SCRIPT) == [], size
             page.locator("#share").evaluate("e => { e.open = true; }")
             for how in ("link", "line"):
                 page.click(f"#share_{how}")
                 page.locator("#programs:not([data-shared=asked])").wait_for()
-                assert page.evaluate(DIALOG) == [], (how, size)
+                assert page.evaluate(DIALOG_SCRIPT) == [], (how, size)
         if size in axed[screen]:
             assert axe(page) == [], (screen, size)
     page.emulate_media(color_scheme="null")
@@ -129,7 +129,7 @@ def test_one_row_is_over_the_program_whatever_the_robots_name(page: Page, langua
         for robot in page.locator("#robot option").evaluate_all("all => all.map((e) => e.value)"):
             page.select_option("#robot", robot)
             assert page.evaluate("document.querySelector('header').clientHeight") < 60, robot
-        assert page.evaluate(CUT) == []
+        assert page.evaluate(CUT_CHOICES_SCRIPT) == []
     speak(page, "en")
 
 
@@ -196,7 +196,7 @@ def test_a_screen_reader_hears_what_is_said(page: Page) -> None:
         assert " has no ENDIF – Try: " in page.inner_text(place)
 
 
-TRY = """async (address) => {
+TRY_REQUEST_SCRIPT = """async (address) => {
   await new Promise((resolve) => setTimeout(resolve));  // what a test asks may evaluate at first
   const found = {};
   const attempt = async (name, act) => { try { await act(); found[name] = 'done'; } catch { found[name] = 'refused'; } };
@@ -220,7 +220,7 @@ def test_the_policy_holds(page: Page, only_page: tuple[Pages, Page]) -> None:
     wrong = only_page[0].wrong
     with socket.create_server(("127.0.0.1", 0)) as other:
         address = f"http://127.0.0.1:{other.getsockname()[1]}/"
-        tried: dict[str, Any] = page.evaluate(TRY, address)
+        tried: dict[str, Any] = page.evaluate(TRY_REQUEST_SCRIPT, address)
         assert [name for name, how in tried.items() if how != "refused"] == []
         other.setblocking(False)
         with pytest.raises(BlockingIOError):
@@ -230,7 +230,7 @@ def test_the_policy_holds(page: Page, only_page: tuple[Pages, Page]) -> None:
 
 
 # Waits until files of a language are kept.
-KEPT = """async (names) => {
+WAIT_FOR_FILES_SCRIPT = """async (names) => {
   const isKept = async (name) => Boolean(await caches.match(name));
   while (!(await Promise.all(names.map(isKept))).every(Boolean)) await new Promise((resolve) => setTimeout(resolve, 20));
 }"""
@@ -250,7 +250,7 @@ def test_it_works_without_its_server(playwright: Playwright, tmp_path: Path) -> 
             page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
             image_before = image(page)
             speak(page, "es")
-            page.evaluate(KEPT, ["./texts.es.json", "./messages.es.json"])
+            page.evaluate(WAIT_FOR_FILES_SCRIPT, ["./texts.es.json", "./messages.es.json"])
             write(page, "F(-2, 80)")
             assert check("F(-2, 80)", language="es")[0].message in page.inner_text("#messages li")
             write(page, text)
@@ -282,7 +282,7 @@ def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
             data = page[name].data.replace(old, new, 1)
             assert data != page[name].data
             page[name] = page[name]._replace(data=data, etag=f'"{new.hex()}"')
-        tab.evaluate(UPDATE)
+        tab.evaluate(UPDATE_SCRIPT)
         write(tab, "SI|F(3, 30)")  # the old one continues
         tab.reload()
         wait_until_checked(tab)
@@ -300,7 +300,7 @@ def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
 
 
 # Looks for a newer build, and waits until it is whole and waits.
-UPDATE = """async () => {
+UPDATE_SCRIPT = """async () => {
   const found = await navigator.serviceWorker.getRegistration();
   await found.update();
   while (!found.waiting) await new Promise((resolve) => setTimeout(resolve, 20));

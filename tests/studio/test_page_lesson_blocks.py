@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.page_blocks import drag, list_offered_blocks, start
 from tests.support.sampling import some_of
-from tests.support.studio import SETTLED, Pages, axe, speak, wait_for_blocks
+from tests.support.studio import SETTLED_SCRIPT, Pages, axe, speak, wait_for_blocks
 from tests.support.text_only_words import has_line_on_floor, text_only_words
 from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
@@ -24,7 +24,7 @@ drawn = pytest.mark.sampled(of="blocks of lessons", keep=1)
 
 LESSONS = range(1, len(catalogue.folders()) + 1)
 LEVELS = ["few", "usual", "all"]
-FRESH = ".blocklyToolboxCategory.fresh"
+FRESH_CATEGORY = ".blocklyToolboxCategory.fresh"
 
 
 @pytest.fixture
@@ -96,8 +96,8 @@ def test_the_level_rises_to_what_a_lesson_needs_and_never_falls(
 def test_each_lesson_has_a_block_that_glows_at_a_first_visit(page: Page) -> None:
     for number in LESSONS:
         open_lesson(page, number)
-        page.locator(FRESH).first.wait_for()
-        page.locator(FRESH).first.click()
+        page.locator(FRESH_CATEGORY).first.wait_for()
+        page.locator(FRESH_CATEGORY).first.click()
         page.locator(".blocklyFlyout:visible .blocklyBlockCanvas > .fresh").first.wait_for()
 
 
@@ -112,7 +112,7 @@ def test_a_lesson_takes_no_block_away(page: Page) -> None:
 def test_a_new_block_glows_until_it_is_in_the_program(page: Page) -> None:
     start(page, "SI|F(1, 80);\n")
     open_lesson(page, 6)
-    locator = page.locator(FRESH)
+    locator = page.locator(FRESH_CATEGORY)
     assert locator.all_inner_texts() == ["Wait, sound", "Robot"]
     locator.first.click()
     glowing = page.locator(".blocklyFlyout:visible .blocklyBlockCanvas > .fresh")
@@ -136,7 +136,7 @@ def test_a_glow_moves_for_nobody_who_wants_it_still(pages: Pages) -> None:
     page.click("#side_lessons")
     page.locator("#lesson:enabled").wait_for()
     open_lesson(page, 4)
-    page.locator(FRESH).click()
+    page.locator(FRESH_CATEGORY).click()
     path = page.locator(".blocklyFlyout:visible .blocklyBlockCanvas > .fresh > .blocklyPath").first
     assert path.evaluate("e => getComputedStyle(e).animationName") == "none"
 
@@ -174,7 +174,7 @@ def test_a_lesson_speaks_as_its_reader_writes(page: Page) -> None:
 
 
 # The text of a step, and its code that is not on a block.
-READ = """() => {
+READ_STEP_SCRIPT = """() => {
   const page = document.querySelector('#lessons').cloneNode(true);
   for (const each of page.querySelectorAll('.program, #lesson')) each.remove();
   const codes = [...page.querySelectorAll('code')].map((each) => each.textContent);
@@ -202,7 +202,7 @@ def test_what_a_lesson_names_of_a_block_is_what_the_block_says(
         is_line_on_floor = has_line_on_floor(number)
         for k in range(page.locator("#lesson_steps button").count()):
             page.locator("#lesson_steps button").nth(k).click()
-            texts, codes, on_blocks, names = page.evaluate(READ)
+            texts, codes, on_blocks, names = page.evaluate(READ_STEP_SCRIPT)
             assert text_only_words(texts, language, is_line_on_floor=is_line_on_floor) == []
             assert text_only_words(names, language, is_line_on_floor=True) == []
             assert not [code for code in codes if code in WORDS or not code.isidentifier()], codes
@@ -238,14 +238,14 @@ def test_what_is_below_of_a_step_is_announced_by_a_shadow(
     page: Page, size: tuple[int, int]
 ) -> None:
     page.set_viewport_size({"width": size[0], "height": size[1]})
-    page.evaluate(SETTLED)
+    page.evaluate(SETTLED_SCRIPT)
     if page.locator("html[data-phone]").count():
         page.click("#other")
     for number in (1, 7, 13):
         open_lesson(page, number, 0 if number == 1 else 1)
         place = page.locator("#lesson_page")
         for _ in range(2):
-            page.evaluate(SETTLED)
+            page.evaluate(SETTLED_SCRIPT)
             left = place.evaluate("e => e.scrollHeight - e.clientHeight - e.scrollTop")
             page.locator(f"#lesson_page{'.more' if left >= 4 else ':not(.more)'}").wait_for()
             place.evaluate("e => e.scrollTo(0, e.scrollHeight)")

@@ -12,7 +12,7 @@ from tests.support.page_lessons import check_answer, choose_lesson
 from tests.support.page_robot import wait_for_nothing_running, wait_for_running
 from tests.support.sampling import some_of
 from tests.support.studio import (
-    SETTLED,
+    SETTLED_SCRIPT,
     Pages,
     axe,
     colors_of,
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 FOLDERS = catalogue.folders()
 drawn = pytest.mark.sampled(of="details of lessons", keep=3)
 
-NIGHT = "39,50,75"
-SLOW = "SI|LOOP(FOREVER);SHOW(1);END_LOOP"  # thousands of actions in a second
+NIGHT_COLOUR = "39,50,75"
+BUSY_PROGRAM = "SI|LOOP(FOREVER);SHOW(1);END_LOOP"  # thousands of actions in a second
 
 
 @pytest.fixture
@@ -90,7 +90,7 @@ def test_any_program_can_be_checked(page: Page) -> None:
 @drawn
 def test_a_check_can_be_ended(page: Page) -> None:
     choose_lesson(page, 9)
-    write(page, SLOW)
+    write(page, BUSY_PROGRAM)
     page.click("#lesson_check")
     page.locator("#lesson_said", has_text="World 1 of 5").wait_for()
     page.click("#lesson_end")
@@ -151,7 +151,7 @@ def test_nothing_is_lit_once_a_run_is_over(page: Page, pytestconfig: pytest.Conf
 
 
 # Names of lessons that the list does not show whole, if they are chosen.
-CUT_NAMES = """() => {
+CUT_NAMES_SCRIPT = """() => {
   const shown = document.querySelector('#lesson selectedcontent span');
   const was = shown.textContent;
   const names = [...document.querySelectorAll('#lesson option')].map((each) => each.textContent);
@@ -169,7 +169,7 @@ def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
     for language, word in (("es", "Detente"), ("pt", "Pare antes"), ("en", "Stop before")):
         speak(page, language)
         page.locator("#lesson option", has_text=word).wait_for(state="attached")
-        assert page.evaluate(CUT_NAMES) == []
+        assert page.evaluate(CUT_NAMES_SCRIPT) == []
     choose_lesson(page, 2)
     assert page.locator("#lesson selectedcontent svg").is_visible()
     steps = page.locator("#lesson_steps button")
@@ -241,7 +241,7 @@ def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
     page.locator(".cm-content").focus()
     page.keyboard.type(" ")
     page.locator("#lesson_said:not([data-verdict])").wait_for(state="attached")
-    write(page, SLOW)
+    write(page, BUSY_PROGRAM)
     page.dblclick("#lesson_check")  # the second click must not hit the button that takes its place
     page.locator("#lesson_end").wait_for()
     write(page, "SI|S")
@@ -413,7 +413,7 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
 def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
     """The start page shows no verdict, and after a change of language the reason is translated."""
     choose_lesson(page, 7)
-    write(page, SLOW)
+    write(page, BUSY_PROGRAM)
     page.click("#lesson_check")
     page.locator("#lesson_said", has_text="World 1 of 5").wait_for()
     speak(page, "es")
@@ -427,7 +427,7 @@ def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
     in_phase(page, "running")
     page.click("#home")
     page.locator("html[data-screen=start]").wait_for(state="attached")
-    page.evaluate(SETTLED)
+    page.evaluate(SETTLED_SCRIPT)
     assert page.locator("#lesson_said[data-verdict]").count() == 0
     assert page.locator(".confetti").count() == 0
     page.click("#start_write")
@@ -508,4 +508,4 @@ def test_a_program_that_suits_the_lesson_stays(page: Page) -> None:
 def test_a_room_that_a_lesson_calls_dark_is_dark(page: Page) -> None:
     choose_lesson(page, 13)
     page.locator("#world option:checked", has_text="13").wait_for(state="attached")
-    assert NIGHT in colors_of(page, "#arena")
+    assert NIGHT_COLOUR in colors_of(page, "#arena")

@@ -22,22 +22,22 @@ if TYPE_CHECKING:
 
 drawn = pytest.mark.sampled(of="lost requests", keep=3)
 
-CONFIRMED = "Stopped: the robot has confirmed the stop."
-HIDDEN = "The robot was stopped because this page was hidden. Come back here to drive it."
-SILENT = (
+CONFIRMED_MESSAGE = "Stopped: the robot has confirmed the stop."
+HIDDEN_MESSAGE = "The robot was stopped because this page was hidden. Come back here to drive it."
+SILENT_MESSAGE = (
     "The robot has not confirmed the stop."
     " If it moves, lift it and remove its batteries or unplug it."
 )
-LATE = "The robot has now confirmed the stop: it is standing still."
+LATE_MESSAGE = "The robot has now confirmed the stop: it is standing still."
 # Records the messages below the buttons from now on.
-LISTEN = """() => {
+LISTENING_SCRIPT = """() => {
   const line = document.querySelector('#link_said');
   window.told = [];
   window.listens?.disconnect();
   window.listens = new MutationObserver(() => window.told.push(line.textContent));
   window.listens.observe(line, { childList: true, characterData: true, subtree: true });
 }"""
-HIDE = """(state) => {
+VISIBILITY_SCRIPT = """(state) => {
   Object.defineProperty(document, 'visibilityState', { value: state, configurable: true });
   document.dispatchEvent(new Event('visibilitychange'));
 }"""
@@ -76,7 +76,7 @@ def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobo
         torn = tear_requests(page, "stop", lambda route: route.abort(), times=9)
         page.click("#stop")
         hears(page, lambda: not robot.moves, "it stands")
-        wait_for_message(page, CONFIRMED)
+        wait_for_message(page, CONFIRMED_MESSAGE)
         assert torn
         page.unroute_all(behavior="wait")
 
@@ -115,7 +115,7 @@ def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
     page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
     page.click("#link_connect")
     wait_for_message(page, "tsc studio has stopped responding")
-    page.evaluate(LISTEN)
+    page.evaluate(LISTENING_SCRIPT)
     page.click("#link_connect")
     wait_for_message(page, "Connected: ")
     messages = page.evaluate("window.told")
@@ -160,30 +160,30 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
 ) -> None:
     connect(page, robot)
     drives(page, robot)
-    page.evaluate(LISTEN)
+    page.evaluate(LISTENING_SCRIPT)
     mute = Mute(page, "STOPPED")
 
     def stop() -> None:
         if way == "button":
             page.click("#stop")
         else:
-            page.evaluate(HIDE, "hidden")
+            page.evaluate(VISIBILITY_SCRIPT, "hidden")
 
     stop()
     hears(page, lambda: mute.withheld, "it has stopped")
     assert page.evaluate("window.told") == ["Stopping…"]
     mute.is_open = True
-    wait_for_message(page, HIDDEN if way == "hidden" else CONFIRMED)
+    wait_for_message(page, HIDDEN_MESSAGE if way == "hidden" else CONFIRMED_MESSAGE)
     mute.is_open = False
-    page.evaluate(HIDE, "visible")
+    page.evaluate(VISIBILITY_SCRIPT, "visible")
     drives(page, robot)
-    page.evaluate(LISTEN)
+    page.evaluate(LISTENING_SCRIPT)
     stop()
     page.keyboard.press("Escape")  # this is the same stop
-    wait_for_message(page, SILENT)
+    wait_for_message(page, SILENT_MESSAGE)
     mute.is_open = True
-    wait_for_message(page, LATE)
-    assert page.evaluate("window.told") == ["Stopping…", SILENT, LATE]
+    wait_for_message(page, LATE_MESSAGE)
+    assert page.evaluate("window.told") == ["Stopping…", SILENT_MESSAGE, LATE_MESSAGE]
 
 
 @drawn
@@ -192,16 +192,16 @@ def test_who_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
     for _ in range(2):  # the second round is another stop
         drives(page, robot)
         mute = Mute(page, "STOPPED")
-        page.evaluate(LISTEN)
+        page.evaluate(LISTENING_SCRIPT)
         page.dblclick("#stop")
         hears(page, partial(mute.keeps, True), "it has stopped")
         page.wait_for_timeout(300)  # waits for a second stop request, if there is one
         mute.is_open = True
-        wait_for_message(page, CONFIRMED)
+        wait_for_message(page, CONFIRMED_MESSAGE)
         hears(page, partial(mute.keeps, False), "all is told")
         page.wait_for_timeout(300)
         page.unroute_all(behavior="wait")
-        assert page.evaluate("window.told") == ["Stopping…", CONFIRMED]
+        assert page.evaluate("window.told") == ["Stopping…", CONFIRMED_MESSAGE]
 
 
 @drawn
@@ -212,12 +212,12 @@ def test_who_presses_five_times_stops_once_more_and_is_told_once(
     connect(page, robot)
     drives(page, robot)
     torn = tear_requests(page, "stop", lambda route: route.abort(), times=99)
-    page.evaluate(LISTEN)
+    page.evaluate(LISTENING_SCRIPT)
     page.evaluate("() => { for (let k = 0; k < 5; k++) document.querySelector('#stop').click(); }")
-    wait_for_message(page, CONFIRMED)
+    wait_for_message(page, CONFIRMED_MESSAGE)
     hears(page, lambda: torn, "they are lost")
     page.wait_for_timeout(300)
-    assert page.evaluate("window.told") == ["Stopping…", CONFIRMED]
+    assert page.evaluate("window.told") == ["Stopping…", CONFIRMED_MESSAGE]
     page.unroute_all(behavior="wait")
     drives(page, robot)
     page.wait_for_timeout(700)  # beats have arrived since
@@ -245,11 +245,11 @@ def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     drives(page, robot)
     robot.switch_off()
-    page.evaluate(LISTEN)
+    page.evaluate(LISTENING_SCRIPT)
     page.click("#stop")
-    wait_for_message(page, SILENT)
+    wait_for_message(page, SILENT_MESSAGE)
     page.wait_for_timeout(2500)  # the link is given up, too
-    assert page.evaluate("window.told") == ["Stopping…", SILENT]
+    assert page.evaluate("window.told") == ["Stopping…", SILENT_MESSAGE]
 
 
 @drawn
@@ -259,7 +259,7 @@ def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
     """
     connect(page, robot)
     robot.switch_off()
-    page.evaluate(LISTEN)
+    page.evaluate(LISTENING_SCRIPT)
     write(page, FOREVER)
     page.click("#link_upload")
     wait_for_message(page, "The robot has stopped responding")
@@ -276,7 +276,7 @@ def test_who_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
     connect(page, robot)
     Mute(page, "LOST")
     robot.switch_off()
-    page.evaluate(LISTEN)
+    page.evaluate(LISTENING_SCRIPT)
     page.click("#link_identify")
     wait_for_message(page, "The robot has stopped responding")
     assert page.evaluate("window.told")[0] == "Waiting for the robot…"
@@ -301,8 +301,8 @@ def test_an_end_before_the_word_of_a_stop_says_that_there_is_none(
     connect(page, robot)
     drives(page, robot)
     Mute(page, "STOPPED", "LOST")
-    page.evaluate(LISTEN)
+    page.evaluate(LISTENING_SCRIPT)
     page.click("#stop")
     page.click("#link_leave")
-    wait_for_message(page, f"Disconnected. {SILENT}")
-    assert page.evaluate("window.told") == ["Stopping…", f"Disconnected. {SILENT}"]
+    wait_for_message(page, f"Disconnected. {SILENT_MESSAGE}")
+    assert page.evaluate("window.told") == ["Stopping…", f"Disconnected. {SILENT_MESSAGE}"]

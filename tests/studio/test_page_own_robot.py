@@ -17,8 +17,12 @@ from tiniscript.lessons import catalogue
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-PLACE, STARS, DONE = "tiniscript.own_robot", "tiniscript.stars", "tiniscript.lessons"
-GREEN, PINK = "42,157,111", "208,70,143"  # the first colour, and the fourth
+OWN_ROBOT_KEY, STARS_KEY, LESSONS_KEY = (
+    "tiniscript.own_robot",
+    "tiniscript.stars",
+    "tiniscript.lessons",
+)
+GREEN_COLOUR, PINK_COLOUR = "42,157,111", "208,70,143"  # the first colour, and the fourth
 CONFETTI = "window.fell = 0; new MutationObserver((all) => { for (const {addedNodes} of all)" \
     " for (const each of addedNodes) if (each.className === 'confetti') window.fell += 1; })" \
     ".observe(document.body, {childList: true})"  # fmt: skip
@@ -40,11 +44,11 @@ def store(page: Page, place: str, what: object) -> None:
 @pytest.mark.sampled(of="pages of their own", keep=2)
 def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages) -> None:
     page = pages.open()
-    assert GREEN in colors_of(page, "#arena")
+    assert GREEN_COLOUR in colors_of(page, "#arena")
     text_before = page.inner_text("#doing")
     names(page, "  Pip ", 3)
     drawn = page.evaluate("getComputedStyle(document.querySelector('#drawn_robot path')).fill")
-    assert drawn == f"rgb({PINK.replace(',', ', ')})"
+    assert drawn == f"rgb({PINK_COLOUR.replace(',', ', ')})"
     assert page.inner_text("#start_own").split() == ["Your", "robot", "Pip"]
     page.click("#start_own")
     assert axe(page, within="#own") == []
@@ -54,7 +58,7 @@ def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages)
     enter(page, page.url)
     assert page.inner_text("#doing") == f"Pip: {text_before}"
     colors = colors_of(page, "#arena")
-    assert PINK in colors and GREEN not in colors
+    assert PINK_COLOUR in colors and GREEN_COLOUR not in colors
 
 
 @pytest.mark.sampled("what")
@@ -72,12 +76,12 @@ def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages)
 )
 def test_what_is_kept_may_be_damaged(pages: Pages, what: object) -> None:
     page = pages.open("start")
-    for place in (PLACE, STARS):
+    for place in (OWN_ROBOT_KEY, STARS_KEY):
         store(page, place, what)
-    store(page, DONE, [])
+    store(page, LESSONS_KEY, [])
     page.reload()
     enter(page, page.url)
-    assert GREEN in colors_of(page, "#arena")
+    assert GREEN_COLOUR in colors_of(page, "#arena")
     assert ":" not in page.inner_text("#doing")
     page.click("#home")
     assert not page.locator("#start_badge").is_visible()
@@ -103,8 +107,8 @@ def test_a_name_and_a_face_leave_a_run_as_it_is(pages: Pages) -> None:
 def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
     """The stars of all lessons are added up, once each."""
     page = pages.open(reduced_motion="reduce" if way == "still" else "no-preference")
-    store(page, DONE, ["01_first_line"])
-    store(page, STARS, {"01_first_line": 1, "04_none": 2})
+    store(page, LESSONS_KEY, ["01_first_line"])
+    store(page, STARS_KEY, {"01_first_line": 1, "04_none": 2})
     page.evaluate(NOTE_EFFECTS)
     page.evaluate(CONFETTI)
     if way == "muted":

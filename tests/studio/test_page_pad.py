@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
 drawn = pytest.mark.sampled(of="details of the remote control", keep=1)
 
-STICK = "LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP;\n"
+STICK_PROGRAM = "LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP;\n"
 KEYS = "LOOP(FOREVER);\nIF(KEY_UP);\nM(60, 60);\nELSE;\nM(0, 0);\nENDIF;\nW(0.02);\nEND_LOOP;\n"
-HAS_IT_OR_STANDS = re.compile("The robot has the program|Stopped: ")
+PROGRAM_OR_STOP_MESSAGE = re.compile("The robot has the program|Stopped: ")
 PHONE, DESK = {"width": 390, "height": 844}, {"width": 1366, "height": 768}
 
 
@@ -120,7 +120,7 @@ def test_the_picture_opens_the_example(pages: Pages) -> None:
 @drawn
 def test_a_run_that_is_held_stopped_or_run_again_reads_what_is_held_then(pages: Pages) -> None:
     page = pages.open()
-    write(page, STICK)
+    write(page, STICK_PROGRAM)
     page.click("#run")
     in_phase(page, "running")
     page.locator("#pad_stick").wait_for()
@@ -228,7 +228,7 @@ def drives_by(
             return
         let_go()
         page.click("#link_upload")
-        word.filter(has_text=HAS_IT_OR_STANDS).wait_for()
+        word.filter(has_text=PROGRAM_OR_STOP_MESSAGE).wait_for()
     raise AssertionError(f"stopped {UPLOADS} times")
 
 
@@ -239,7 +239,7 @@ def test_a_real_robot_is_driven_and_stands_when_the_page_is_not_seen(pages: Page
         connect(page, robot)
         write(page, KEYS)
         page.click("#link_upload")
-        page.locator("#link_said").filter(has_text=HAS_IT_OR_STANDS).wait_for()
+        page.locator("#link_said").filter(has_text=PROGRAM_OR_STOP_MESSAGE).wait_for()
         fingers = Fingers(page)
 
         def touch() -> None:

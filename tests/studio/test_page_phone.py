@@ -10,7 +10,7 @@ import pytest
 from tests.support.page_blocks import PROGRAM, box_of, start
 from tests.support.page_robot import wait_for_running
 from tests.support.studio import (
-    SETTLED,
+    SETTLED_SCRIPT,
     Pages,
     axe,
     hears,
@@ -164,7 +164,7 @@ def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
     in_phase(phone, "running")
     for width, height in ((844, 390), (390, 844), (844, 390)):
         phone.set_viewport_size({"width": width, "height": height})
-        phone.evaluate(SETTLED)
+        phone.evaluate(SETTLED_SCRIPT)
         ratio = phone.locator("#arena").evaluate(
             "(a) => a.width / a.clientWidth / (a.height / a.clientHeight)"
         )
@@ -271,7 +271,7 @@ def test_moves_and_messages_of_a_phone_are_seen_whole(pages: Pages, language: st
         )
         bubble = page.locator("#blocks .blocklyBubble rect").first
         bubble.wait_for()
-        page.evaluate(SETTLED)
+        page.evaluate(SETTLED_SCRIPT)
         bubble_box = bubble.evaluate("e => e.getBoundingClientRect().toJSON()")
         bar = page.locator("#blocks .blocklyMainWorkspaceScrollbar.blocklyScrollbarVertical")
         assert 0 < bubble_box["right"] <= bar.evaluate("e => e.getBoundingClientRect().left")

@@ -13,8 +13,8 @@ import pytest
 
 from tests.studio.programs import programs
 from tests.support.page_programs import (
-    GOOD,
-    MOVE,
+    GOOD_WORK,
+    MOVE_COLOUR,
     as_json,
     colours,
     content,
@@ -25,7 +25,7 @@ from tests.support.page_programs import (
 )
 from tests.support.rows import each_row
 from tests.support.studio import (
-    SETTLED,
+    SETTLED_SCRIPT,
     Pages,
     ask_worker,
     axe,
@@ -77,7 +77,7 @@ def test_a_link_brings_the_program_and_runs_nothing(pages: Pages, page: Page) ->
     assert image(visitor) == wanted_bytes
 
 
-REACHES = {
+ADDRESSES_BY_REACH = {
     "here": "http://127.0.0.1:7070/ http://localhost:7070/ http://[::1]:7070/ http://a.localhost/",
     "network": "http://192.168.1.7:7070/ http://10.0.0.2/ http://172.16.9.1/ http://172.31.0.1/"
     " http://169.254.3.4/ http://teacher.local:7070/ http://teacher/ http://[fe80::1]/",
@@ -130,23 +130,23 @@ def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
 
 
 def test_a_link_says_from_where_it_opens() -> None:
-    addresses = [word for row in REACHES.values() for word in row.split()]
+    addresses = [word for row in ADDRESSES_BY_REACH.values() for word in row.split()]
     code = f"import {{ reachOf }} from './src/programs/reach.js';\n{json.dumps(addresses)}"
     completed = subprocess.run(
         [*find_tools().node, "--input-type=module", "-e",
          f"{code}.forEach((each) => console.log(reachOf(each)));"],
         cwd=MODULES.parent, capture_output=True, text=True, check=True,
     )  # fmt: skip
-    wanted_texts = [name for name, row in REACHES.items() for _ in row.split()]
+    wanted_texts = [name for name, row in ADDRESSES_BY_REACH.items() for _ in row.split()]
     assert dict(zip(addresses, completed.stdout.split(), strict=True)) == dict(
         zip(addresses, wanted_texts, strict=True)
     )
 
 
-WRONG = {
+WRONG_LINKS = {
     "nothing": "",
     "no letters": "<img src=x onerror=alert(1)>",
-    "cut": GOOD[:-8],
+    "cut": GOOD_WORK[:-8],
     "not deflated": base64.urlsafe_b64encode(b'{"text": "S"}').decode().rstrip("="),
     "no JSON": pack(b"SI|F(9, 90)"),
     "no UTF-8": pack(b'{"text": "\xff", "robot": "tinibot"}'),
@@ -161,12 +161,12 @@ WRONG = {
 
 
 @drawn
-@each_row("name", WRONG)
+@each_row("name", WRONG_LINKS)
 def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
     write(page, "SI|F(4, 80)")
     image_before = image(page)
     page.evaluate("document.querySelector('#note').textContent = ''")
-    page.evaluate("packed => { location.hash = '#program=' + packed; }", WRONG[name])
+    page.evaluate("packed => { location.hash = '#program=' + packed; }", WRONG_LINKS[name])
     wait_for_note(page, "The link is incomplete")
     wait_until_checked(page)
     assert (content(page), image(page)) == ("SI|F(4, 80)", image_before)
@@ -223,14 +223,14 @@ def test_every_line_is_that_of_the_command(page: Page, part: int) -> None:
 
 
 # Reads the modules of the code as a camera would see them: another package than the one that draws.
-READ = """
+READ_CODE_SCRIPT = """
 import decodeQR from 'qr/decode.js';
 let whole = '';
 for await (const part of process.stdin) whole += part;
 const { width, height, data } = JSON.parse(whole);
 process.stdout.write(decodeQR({ width, height, data: Uint8ClampedArray.from(data) }));
 """
-PIXELS = """() => {
+PIXELS_SCRIPT = """() => {
   const code = document.querySelector('#shared_picture');
   const large = document.createElement('canvas');
   large.width = code.width * 4; large.height = code.height * 4;
@@ -244,9 +244,9 @@ PIXELS = """() => {
 
 def read_picture(page: Page) -> str:
     completed = subprocess.run(
-        [*find_tools().node, "--input-type=module", "-e", READ],
+        [*find_tools().node, "--input-type=module", "-e", READ_CODE_SCRIPT],
         cwd=MODULES.parent,
-        input=str(page.evaluate(PIXELS)),
+        input=str(page.evaluate(PIXELS_SCRIPT)),
         capture_output=True,
         text=True,
         check=True,
@@ -333,7 +333,8 @@ def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
         large = picture_of_blocks(page)
         page.keyboard.press("Escape")
         assert large[1] > small[1] * 1.8, view  # rows
-        assert large[2][MOVE] > 4 * small[2][MOVE] > 4000, view  # the blocks are filled
+        # the blocks are filled
+        assert large[2][MOVE_COLOUR] > 4 * small[2][MOVE_COLOUR] > 4000, view
         assert small[2]["255,255,255"] > small[0] * small[1] / 10  # letters and their surroundings
         assert "0,0,0" not in small[2], view  # every block has its colour
     write(page, "S;" * 1600)
@@ -391,22 +392,22 @@ def test_earlier_programs_come_back(page: Page) -> None:
     assert content(page) == "SI|F(3, 30)"
 
 
-SAME = (
+SAME_PROGRAMS = (
     "SI|F(1, 10);\nB(2, 20);",
     "SI|F(1, 10)\nB(2, 20)",
     "SI|F(1,10)\n\n  B( 2,20 ) ;\n",
 )
-OTHER = ("SI|F(1, 10)\nB(2, 2 0)", "SI|F(1, 10) // B(2, 20)", "SI|F(1, 10)\n// B(2, 20)")
+OTHER_PROGRAMS = ("SI|F(1, 10)\nB(2, 2 0)", "SI|F(1, 10) // B(2, 20)", "SI|F(1, 10)\n// B(2, 20)")
 
 
 def test_a_program_is_kept_once_however_it_is_written(page: Page) -> None:
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
-    for text in SAME:
+    for text in SAME_PROGRAMS:
         write(page, text)
         page.click("#my_programs")
         assert len(list_programs(page)) == 1
         page.keyboard.press("Escape")
-    for count, text in enumerate(OTHER, 2):
+    for count, text in enumerate(OTHER_PROGRAMS, 2):
         write(page, text)
         page.click("#my_programs")
         assert len(list_programs(page)) == count, text
@@ -460,13 +461,13 @@ def test_no_more_is_kept_than_has_room(page: Page) -> None:
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
 
 
-DAMAGED = ("no JSON", "null", "7", '{"length": 3}', '[null, 1, {"text": 5}]',
-           '[{"text": "S", "robot": "__proto__", "name": "", "at_ms": 1}]',
-           '[{"text": "S", "robot": "tinibot", "name": {}, "at_ms": 1}]',
-           '[{"text": "S", "robot": "tinibot", "name": "", "at_ms": 1e300}]')  # fmt: skip
+DAMAGED_TEXTS = ("no JSON", "null", "7", '{"length": 3}', '[null, 1, {"text": 5}]',
+                 '[{"text": "S", "robot": "__proto__", "name": "", "at_ms": 1}]',
+                 '[{"text": "S", "robot": "tinibot", "name": {}, "at_ms": 1}]',
+                 '[{"text": "S", "robot": "tinibot", "name": "", "at_ms": 1e300}]')  # fmt: skip
 
 
-@each_row("kept_text", DAMAGED)
+@each_row("kept_text", DAMAGED_TEXTS)
 def test_damaged_programs_do_no_harm(page: Page, kept_text: str) -> None:
     write(page, "SI|F(6, 60)")
     page.evaluate("kept => localStorage.setItem('tiniscript.versions', kept)", kept_text)
@@ -506,7 +507,7 @@ def test_escape_closes_a_window_and_only_then_stops(page: Page) -> None:
         page.click(opens)
         page.keyboard.press("Escape")
         page.locator(window).wait_for(state="hidden")
-        page.evaluate(SETTLED)
+        page.evaluate(SETTLED_SCRIPT)
         in_phase(page, "running")
     page.keyboard.press("Escape")
     in_phase(page, "ended")

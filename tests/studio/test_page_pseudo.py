@@ -10,7 +10,7 @@ import pytest
 from tests.studio.screens import each_screen
 from tests.support import studio
 from tests.support.pseudo import pseudo
-from tests.support.studio import SETTLED, Pages
+from tests.support.studio import SETTLED_SCRIPT, Pages
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 SIZES = ((1366, 768), (390, 844), (844, 390))
 WINDOWS = (("#class_come", "#big_code"), ("#wall .see >> nth=0", "#big_pupil"),
            ("#class_settings", "#class_window"))  # fmt: skip
-WANTS = {"do": "here", "text": "SI|F(1, 50)", "robot": "tinibot", "lessons": [], "wants": True,
-         "hand": True}  # fmt: skip
+PUPIL_MESSAGE = {"do": "here", "text": "SI|F(1, 50)", "robot": "tinibot", "lessons": [],
+                 "wants": True, "hand": True}  # fmt: skip
 # Each visible text, and whether its container cuts it, or it leaves its button or the page.
 # Scrollable parts, and text for screen readers only, count as not cut; the title of a person's own
 # program ends in an ellipsis.
-CUT = """() => {
+CUT_TEXTS_SCRIPT = """() => {
   const found = new Set();
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   const range = document.createRange();
@@ -51,7 +51,7 @@ CUT = """() => {
 
 # Texts that are visible or read aloud, and are in no catalogue of the page. Python provides the
 # others: measured values, mistakes, lessons and robots.
-PLAIN = """() => {
+PLAIN_TEXTS_SCRIPT = """() => {
   const is_plain = (text) => /[a-z]{3}/.test(text) && !/[äéîñöûóÄÉÎÑÖÛ]/.test(text);
   const found = [];
   const others = 'option, .cm-editor, svg, #values, #messages, #lesson, #lesson_findings,' +
@@ -80,20 +80,20 @@ def test_longer_texts_fit_into_every_screen(pages: Pages) -> None:
     page.locator("#start_title", has_text="lóñg").wait_for()
     would_be_noticed(page, "#start_write")
     page.evaluate("document.querySelector('#start_title').append(' in English')")
-    assert page.evaluate(PLAIN) == [" in English"]
+    assert page.evaluate(PLAIN_TEXTS_SCRIPT) == [" in English"]
     page.evaluate("document.querySelector('#start_title').lastChild.remove()")
     wrong = {}
     for screen, size in each_screen(page, lambda screen: SIZES):
-        wrong[screen, size] = page.evaluate(CUT)
+        wrong[screen, size] = page.evaluate(CUT_TEXTS_SCRIPT)
         if size == SIZES[0]:
-            wrong[screen, size] += page.evaluate(PLAIN)
+            wrong[screen, size] += page.evaluate(PLAIN_TEXTS_SCRIPT)
     assert {where: value for where, value in wrong.items() if value} == {}
 
 
 def would_be_noticed(page: Page, button: str) -> None:
     """A button that is too narrow for its text."""
     page.evaluate("(button) => { document.querySelector(button).style.width = '3em'; }", button)
-    assert page.evaluate(CUT) != []
+    assert page.evaluate(CUT_TEXTS_SCRIPT) != []
     page.evaluate("(button) => { document.querySelector(button).style.width = ''; }", button)
 
 
@@ -105,7 +105,7 @@ def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
         for number in range(10):
             join = {**joins, "name": f"Maximiliano {number}"}
             token = taught_class.room.answer("", f"192.0.2.{number}", join)["token"]
-            taught_class.room.answer(token, f"192.0.2.{number}", WANTS)
+            taught_class.room.answer(token, f"192.0.2.{number}", PUPIL_MESSAGE)
         pages = Pages(browser, taught_class.server.address)
         page = pages.blank()
         page.route("**/texts.en.json", _answer)
@@ -116,13 +116,13 @@ def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
         cut = {}
         for width, height in SIZES:
             page.set_viewport_size({"width": width, "height": height})
-            page.evaluate(SETTLED)
-            cut["wall", width] = page.evaluate(CUT)
+            page.evaluate(SETTLED_SCRIPT)
+            cut["wall", width] = page.evaluate(CUT_TEXTS_SCRIPT)
             for opens, window in WINDOWS:
                 page.click(opens)
                 page.locator(f"{window} [data-text=close]").wait_for()
-                page.evaluate(SETTLED)
-                cut[window, width] = page.evaluate(CUT)
+                page.evaluate(SETTLED_SCRIPT)
+                cut[window, width] = page.evaluate(CUT_TEXTS_SCRIPT)
                 page.click(f"{window} [data-text=close]")
         assert {where: value for where, value in cut.items() if value} == {}
         pages.close()

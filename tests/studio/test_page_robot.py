@@ -18,7 +18,7 @@ from tests.support.page_robot import (
 from tests.support.page_screens import SCREENS
 from tests.support.rows import each_row
 from tests.support.studio import (
-    SETTLED,
+    SETTLED_SCRIPT,
     ask_worker,
     colors_of,
     dances_like_the_command,
@@ -208,7 +208,7 @@ def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) ->
             page.locator("#push").wait_for()
             page.click("#stop")
             in_phase(page, "ended")
-        page.evaluate(SETTLED)
+        page.evaluate(SETTLED_SCRIPT)
         before = page.evaluate(PLACES)
         page.click("#run")
         page.locator("#push").wait_for()

@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.page_blocks import PROGRAM, becomes, block, box_of
 from tests.support.studio import (
-    SETTLED,
+    SETTLED_SCRIPT,
     Pages,
     axe,
     finger,
@@ -34,7 +34,7 @@ AREA_SCRIPT = (
     "(() => { const { width, height } = arena.getBoundingClientRect(); return width * height; })()"
 )
 # How long the robot is on the screen: its green does not occur on any floor.
-LONG = """() => {
+ROBOT_LENGTH_SCRIPT = """() => {
   const { width, height } = arena;
   const pen = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
   pen.drawImage(arena, 0, 0);
@@ -52,7 +52,7 @@ LONG = """() => {
 }"""  # noqa: E501
 
 
-COLORS = """() => {
+COLORS_SCRIPT = """() => {
   const { width, height } = arena;
   const pen = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
   pen.drawImage(arena, 0, 0);
@@ -86,7 +86,11 @@ def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -
     page.click("#run")
     in_phase(page, "running")
     hears(page, lambda: page.evaluate(AREA_SCRIPT) >= 1366 * 768 / 3, "a third of the page")
-    hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
+    hears(
+        page,
+        lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
+        "a robot of 70 pixels, its edge apart",
+    )
     page.keyboard.press("Escape")
     in_phase(page, "ended")
     assert page.evaluate(AREA_SCRIPT) >= 1366 * 768 / 3  # until someone continues to write
@@ -123,7 +127,11 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
         page.click("#run")
         in_phase(page, "running")
         hears(page, lambda: page.evaluate(AREA_SCRIPT) >= large, "a large part of the page")
-        hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
+        hears(
+            page,
+            lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
+            "a robot of 70 pixels, its edge apart",
+        )
         assert not page.locator("#lesson_page").is_visible()
         assert page.locator("#lesson_check").is_visible() and page.locator("#stop").is_visible()
         if is_ended:
@@ -154,7 +162,11 @@ def test_a_run_that_is_judged_is_as_large_until_it_is_told(
         if not is_still:
             in_phase(page, "running")
             hears(page, lambda: page.evaluate(AREA_SCRIPT) >= large, "a large part of the page")
-            hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
+            hears(
+                page,
+                lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
+                "a robot of 70 pixels, its edge apart",
+            )
             page.click("#lesson_end")  # the button leads to the lesson's result
         page.locator("#lesson_said[data-verdict]").wait_for()
         assert page.locator("html[data-big]").count() == 0
@@ -188,14 +200,14 @@ def test_a_finger_drags_the_block_that_it_touches_after_a_run(pages: Pages) -> N
     hears(page, lambda: page.evaluate("blocks.clientWidth") > narrow, "the room that it had")
     editor = page.locator(".blocklyWidgetDiv input")
     editor.wait_for()
-    page.evaluate(SETTLED)
+    page.evaluate(SETTLED_SCRIPT)
     over = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
     own = field.evaluate("e => e.querySelector('text').getBoundingClientRect().toJSON()")
     assert over["left"] <= own["left"] + 1 and over["right"] >= own["right"] - 1
 
 
 # Running blocks that the edges of the program cut off.
-UNSEEN = """() => {
+UNSEEN_BLOCKS_SCRIPT = """() => {
   const seen = document.querySelector('#blocks .blocklySvg').getBoundingClientRect();
   const left = document.querySelector('#blocks .blocklyToolbox').getBoundingClientRect().right;
   return [...document.querySelectorAll('#blocks .running')].filter((each) => {
@@ -204,9 +216,9 @@ UNSEEN = """() => {
   }).map((each) => each.textContent);
 }"""  # noqa: E501
 # Stacks whose hat is cut off.
-CUT = UNSEEN.replace("'#blocks .running'", "`${PROGRAM} > .blocklyBlock`").replace(
-    "PROGRAM", "'#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas'"
-)
+CUT_HATS_SCRIPT = UNSEEN_BLOCKS_SCRIPT.replace(
+    "'#blocks .running'", "`${PROGRAM} > .blocklyBlock`"
+).replace("PROGRAM", "'#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas'")
 AFTER_RUN_MS = 700  # time after which blocks have their old size
 HATS = """SI|LOOP(FOREVER);
   F(1, 60);
@@ -248,19 +260,19 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
         transform = canvas.get_attribute("transform") or ""
         return [round(100 * float(number)) for number in re.findall(r"[-\d.e]+(?=[,)])", transform)]
 
-    whole, cut = place(), page.evaluate(CUT)
+    whole, cut = place(), page.evaluate(CUT_HATS_SCRIPT)
     assert size[0] != 1366 or cut == []
     page.click("#run")
     in_phase(page, "running")
     hears(page, lambda: page.locator("#blocks .running").count() == 3, "all hats run")
-    hears(page, lambda: not page.evaluate(UNSEEN), "all are seen")
+    hears(page, lambda: not page.evaluate(UNSEEN_BLOCKS_SCRIPT), "all are seen")
     page.click("#stop")
     in_phase(page, "ended")
     page.locator("#blocks .running").first.wait_for(state="detached")
     # The view stays for someone who looks at the robot.
     assert page.locator("html[data-big]").count()
     page.wait_for_timeout(AFTER_RUN_MS)
-    assert page.evaluate(CUT) == cut, "what was seen before the run is seen"
+    assert page.evaluate(CUT_HATS_SCRIPT) == cut, "what was seen before the run is seen"
     page.hover("#views")
     hears(page, lambda: place() == whole, "as before")
     page.click("#view_text")
@@ -284,7 +296,7 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
         box = box_of(hat)
         x, y = box["x"] + 20, box["y"] + 20
         page.mouse.move(x, y, steps=steps)
-        page.evaluate(SETTLED)
+        page.evaluate(SETTLED_SCRIPT)
         page.mouse.down()
         page.mouse.move(x + right, y + down, steps=4)
         page.wait_for_timeout(AFTER_RUN_MS)
@@ -410,11 +422,11 @@ def test_a_camera_follows_from_above_and_from_behind(page: Page) -> None:
     lengths = {}
     for camera in ("whole", "above", "behind"):
         choose(page, camera)
-        lengths[camera] = page.evaluate(LONG)
+        lengths[camera] = page.evaluate(ROBOT_LENGTH_SCRIPT)
         assert page.locator("#arena.behind").count() == (camera == "behind")
     assert lengths["whole"] < 60 < lengths["above"] < lengths["behind"]
     page.click("#world_draw:enabled")  # all of the floor is seen to be changed
-    assert page.evaluate(LONG) < lengths["behind"]
+    assert page.evaluate(ROBOT_LENGTH_SCRIPT) < lengths["behind"]
     page.click("#world_done")
     choose(page, "whole")
 
@@ -426,7 +438,10 @@ def test_what_stands_on_the_floor_has_sides_from_behind_the_robot(page: Page) ->
         in_phase(page, "off")
         for camera in ("whole", "above", "behind"):
             choose(page, camera)
-            assert (raised_text in page.evaluate(COLORS)) == (camera == "behind"), (world, camera)
+            assert (raised_text in page.evaluate(COLORS_SCRIPT)) == (camera == "behind"), (
+                world,
+                camera,
+            )
     choose(page, "whole")
 
 
@@ -441,12 +456,14 @@ def test_each_start_picture_leads_to_its_world(page: Page) -> None:
         in_phase(page, "running")
         assert page.input_value("#world") == world
         if begin == "dance":
-            assert {"251,238,252", "227,240,253", "255,243,207"} <= set(page.evaluate(COLORS))
+            assert {"251,238,252", "227,240,253", "255,243,207"} <= set(
+                page.evaluate(COLORS_SCRIPT)
+            )
         if begin == "light":
-            assert "39,50,75" in set(page.evaluate(COLORS))
-            assert "255,253,246" not in set(page.evaluate(COLORS))
+            assert "39,50,75" in set(page.evaluate(COLORS_SCRIPT))
+            assert "255,253,246" not in set(page.evaluate(COLORS_SCRIPT))
         if begin == "square":  # a camera that follows shows that it drives
-            assert "230,220,196" in set(page.evaluate(COLORS))
+            assert "230,220,196" in set(page.evaluate(COLORS_SCRIPT))
         page.click("#stop")
         in_phase(page, "ended")
 
@@ -456,7 +473,7 @@ def test_a_city_has_lawns_and_streets_with_a_line_in_the_middle(page: Page) -> N
     for world in ("delivery", "free"):
         page.select_option("#world", world)
         in_phase(page, "off")
-        colors = set(page.evaluate(COLORS))
+        colors = set(page.evaluate(COLORS_SCRIPT))
         assert ({lawn, street} <= colors) == (world == "delivery")
         assert (lawn in colors or street in colors) == (world == "delivery")
 
@@ -485,6 +502,10 @@ def test_cameras_and_the_whole_page_are_there_on_small_screens(
     choose(page, "above")  # the default position
     page.click("#run")
     in_phase(page, "running")
-    hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
+    hears(
+        page,
+        lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
+        "a robot of 70 pixels, its edge apart",
+    )
     page.keyboard.press("Escape")
     turn(page, "program")

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.support.page_programs import GOOD
+from tests.support.page_programs import GOOD_WORK
 from tests.support.studio import (
-    SETTLED,
+    SETTLED_SCRIPT,
     Pages,
     hears,
     image,
@@ -165,12 +165,12 @@ def test_the_address_says_which_screen_is_seen(start: Page) -> None:
 
 @drawn
 def test_a_link_opens_its_program_and_not_the_start(pages: Pages, start: Page) -> None:
-    start.goto(f"{pages.address}#program={GOOD}")
+    start.goto(f"{pages.address}#program={GOOD_WORK}")
     wait_for_note(start, "This program came from a link.")
     assert screen(start) == "program"
     wait_until_checked(start)
     assert image(start) == compile("SI|F(9, 90)").image
-    other = pages.visit(f"{pages.address}#program={GOOD[:-8]}")
+    other = pages.visit(f"{pages.address}#program={GOOD_WORK[:-8]}")
     wait_for_note(other, "The link is incomplete")
     assert screen(other) == "program"
 
@@ -203,7 +203,7 @@ def test_no_name_of_a_picture_is_covered(pages: Pages) -> None:
             page.evaluate(NO_MARKS)
         page.set_viewport_size({"width": width, "height": height})
         speak(page, language)
-        page.evaluate(SETTLED)
+        page.evaluate(SETTLED_SCRIPT)
         page.mouse.move(2, 2)
         shots = [page.screenshot(clip=words_of(name)) for name in names.all()]
         assert shots_by_size.setdefault((language, width, height), shots) == shots, (
@@ -284,11 +284,11 @@ def test_a_new_program_finds_the_robot_at_its_start(start: Page) -> None:
     start.click("#bar_new")
     start.wait_for_function("document.documentElement.dataset.phase === 'off'")
     assert set(start.locator("#values dd").all_inner_texts()) == {"–"}
-    start.evaluate(SETTLED)
+    start.evaluate(SETTLED_SCRIPT)
     fresh = start.locator("#arena").screenshot()
     assert fresh != screenshot_before
     start.click("#erase_ways")
-    start.evaluate(SETTLED)
+    start.evaluate(SETTLED_SCRIPT)
     assert start.locator("#arena").screenshot() == fresh
 
 

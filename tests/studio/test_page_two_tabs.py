@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 # Simulates a full storage, which keeps its old content.
-FULL = """(full) => {
+FULL_STORAGE_SCRIPT = """(full) => {
   const put = Storage.prototype.setItem;
   Storage.prototype.setItem = function (place, whole) {
     if (full.some((name) => this === window[name])) {
@@ -35,7 +35,7 @@ FULL = """(full) => {
 REFUSED = """for (const name of ['localStorage', 'sessionStorage']) {
   Object.defineProperty(window, name, { get() { throw new DOMException('no', 'SecurityError'); } });
 }"""
-PASTE = """(count) => {
+PASTE_SCRIPT = """(count) => {
   const data = new DataTransfer();
   data.setData('text/plain', '// a long note\\n'.repeat(count));
   const options = { clipboardData: data, bubbles: true, cancelable: true };
@@ -121,7 +121,7 @@ def test_a_program_of_a_tab_that_is_hidden_is_kept(page: Page) -> None:
 def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Pages) -> None:
     """Otherwise the next tab would begin with an older program for no visible reason."""
     page = pages.open(is_alone=True)
-    page.evaluate(FULL, ["localStorage"])
+    page.evaluate(FULL_STORAGE_SCRIPT, ["localStorage"])
     write(page, "SI|F(2, 20)")
     wait_for_note(page, "This browser does not save anything for this page. Save")
     page.locator("#world_draw:enabled").wait_for()
@@ -149,7 +149,7 @@ def test_a_program_that_is_too_long_to_be_kept_says_so(page: Page) -> None:
         write(page, "")
         page.locator(".cm-content").focus()
         page.evaluate("document.querySelector('#note').textContent = ''")
-        page.evaluate(PASTE, count)
+        page.evaluate(PASTE_SCRIPT, count)
         if count == 30_000:
             assert page.inner_text("#note") == ""
             page.click("#my_programs")

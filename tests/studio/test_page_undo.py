@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.support.page_blocks import PROGRAM, becomes, block, box_of, drag, start, text_of
-from tests.support.studio import SETTLED, Pages, hears, speak, wait_for_blocks, write
+from tests.support.studio import SETTLED_SCRIPT, Pages, hears, speak, wait_for_blocks, write
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -44,7 +44,7 @@ def page(only_page: tuple[Pages, Page]) -> Any:
 
 
 def state_of(page: Page) -> BlocksState:
-    page.evaluate(SETTLED)  # Blockly reports a change a moment later
+    page.evaluate(SETTLED_SCRIPT)  # Blockly reports a change a moment later
     text = text_of(page)
     return text, page.locator(f"{PROGRAM} > .blocklyBlock").evaluate_all(STACKS)
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
 
 # It lets all through but a code, which it tells to its own server; and it keeps a page for later.
-EVIL = """
+EVIL_WORKER = """
 self.addEventListener('install', (event) => { skipWaiting(); event.waitUntil(
   caches.open('tiniscript-studio-VERSION').then((cache) =>
     cache.put('./?', new Response('evil', {headers: {'Content-Type': 'text/html'}})))); });
@@ -36,15 +36,15 @@ self.addEventListener('fetch', (event) => {
   })());
 });
 """
-LEAVES = """async ([name, options]) => {
+LEAVE_WORKER_SCRIPT = """async ([name, options]) => {
   await navigator.serviceWorker.register(name, options);
   const {active} = await navigator.serviceWorker.ready;
   while (active.state !== 'activated') await new Promise((done) => setTimeout(done, 20));
 }"""
-CONTROLLED = "() => navigator.serviceWorker.controller?.scriptURL ?? ''"
+CONTROLLER_SCRIPT = "() => navigator.serviceWorker.controller?.scriptURL ?? ''"
 WORKERS = """async () => (await navigator.serviceWorker.getRegistrations())
   .map(({active, waiting, installing}) => (active ?? waiting ?? installing).scriptURL)"""
-TOKEN = "sessionStorage.getItem('tiniscript.token')"
+TOKEN_SCRIPT = "sessionStorage.getItem('tiniscript.token')"
 
 
 class Stranger(ThreadingHTTPServer):
@@ -112,19 +112,19 @@ def leave_worker(
     context: BrowserContext, loot: Stranger, name: str, options: dict[str, str]
 ) -> int:
     """Install the worker of another server; return its port, which is free afterwards."""
-    evil = EVIL.replace("VERSION", version())
+    evil = EVIL_WORKER.replace("VERSION", version())
     evil = evil.replace("LOOT", f"http://{serving.HOST}:{loot.server_port}/")
     with page_server.serves(Stranger(0, {f"/{name}": evil.encode()})) as stranger:
         page = context.new_page()
         page.goto(f"http://{serving.HOST}:{stranger.server_port}/")
-        page.evaluate(LEAVES, [f"./{name}", options])
+        page.evaluate(LEAVE_WORKER_SCRIPT, [f"./{name}", options])
         page.close()
         return stranger.server_port
 
 
 def check_own_worker(page: Page, server: serving.Server) -> None:
     """The page has the robots, and only its own worker is or comes there."""
-    assert page.evaluate(TOKEN) == server.entrances.token
+    assert page.evaluate(TOKEN_SCRIPT) == server.entrances.token
     assert "code" not in page.evaluate("location.href")
     page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
     assert page.evaluate(WORKERS) == [f"{server.address}{serving.WORKER_FILE}"]
@@ -146,7 +146,7 @@ def test_no_worker_of_a_stranger_hears_the_code(
         page = context.new_page()
         enter(page, server.entrance())  # no stored answers are shown later
         check_own_worker(page, server)
-        assert page.evaluate(CONTROLLED) == f"{server.address}{serving.WORKER_FILE}"
+        assert page.evaluate(CONTROLLER_SCRIPT) == f"{server.address}{serving.WORKER_FILE}"
     assert loot.taken == []
 
 
@@ -173,7 +173,7 @@ def test_a_worker_that_does_not_go_gets_no_code(context: BrowserContext, loot: S
         page.goto(entrance)
         locator = page.locator("#note").filter(has_text="Delete this address’s data in the browser")
         locator.wait_for()
-        assert page.evaluate(TOKEN) is None and server.is_unused(entrance)
+        assert page.evaluate(TOKEN_SCRIPT) is None and server.is_unused(entrance)
     assert loot.taken == []
 
 

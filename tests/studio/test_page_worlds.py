@@ -16,7 +16,7 @@ from tests.support.page_worlds import (
     wait_for_status,
 )
 from tests.support.studio import (
-    SETTLED,
+    SETTLED_SCRIPT,
     Pages,
     finger,
     in_phase,
@@ -105,7 +105,7 @@ def test_an_undo_while_a_finger_moves_a_part_puts_it_back(floor: Page) -> None:
 
 def picture(page: Page) -> str:
     """Return the floor's picture once it is drawn."""
-    page.evaluate(SETTLED)
+    page.evaluate(SETTLED_SCRIPT)
     url: str = page.evaluate("document.querySelector('#arena').toDataURL()")
     return url
 
@@ -253,7 +253,7 @@ def test_nothing_leaves_the_floor(floor: Page) -> None:
 
 def draw(page: Page, way: Sequence[Place]) -> None:
     """Go along a way on the floor with a finger."""
-    page.evaluate(SETTLED)  # earlier taps may have changed the floor's size
+    page.evaluate(SETTLED_SCRIPT)  # earlier taps may have changed the floor's size
     finger(page, [on_screen(page, place) for place in way])
 
 

@@ -19,7 +19,7 @@ from typing import Any, ClassVar, cast
 import pytest
 
 from tests.support.page_server import serves
-from tests.support.waiting import HANGS_S, until
+from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript.library import opening
 from tiniscript.studio import hosted_robot, serving
 from tiniscript.studio import hosting as hosting_of
@@ -363,7 +363,7 @@ class HeldClient:
         return SimpleNamespace(name="TINI")
 
     def hold_for_others(self, goes_on: Callable[[], bool]) -> None:
-        assert HeldClient.all_left.wait(HANGS_S)
+        assert HeldClient.all_left.wait(HANG_LIMIT_S)
         HeldClient.was_held = goes_on()
 
     def close(self, has_run: bool) -> None:
@@ -386,7 +386,7 @@ def test_a_port_that_is_let_go_once_is_held_for_nobody(
     for lets_go in leaves:
         robot.leave(is_letting_go=bool(lets_go))
     HeldClient.all_left.set()
-    robot.join(HANGS_S)
+    robot.join(HANG_LIMIT_S)
     assert HeldClient.was_held == (not any(leaves))
     assert robot.has_ended and not robot.is_parting
 
@@ -448,7 +448,7 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
 ) -> None:  # fmt: skip
     """The kind and the number of earlier requests there do not matter."""
     chance = Random(seed)
-    httpconnection = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
+    httpconnection = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
     longest = begun = 0
     for _ in range(40):
         is_odd = chance.random() < 0.06
@@ -456,7 +456,7 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
             ("/nothing", "{}", STRANGE) if is_odd else ("/", "/main.js", BEAT.decode())
         )
         padding = chance.choice(PADDINGS if is_odd else PADDINGS[:-1])
-        fresh = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
+        fresh = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
         wanted = ask(fresh, what, padding)
         fresh.close()
         assert ask(httpconnection, what, padding) == wanted, (what, padding)

@@ -19,7 +19,7 @@ SCRIPT = Path(__file__).with_name("second_time_in_node.mjs")
 WHOLE_PAGE = Path(__file__).with_name("whole_page_in_node.mjs")
 SEEDS = 80
 # What the first one has to have met, for the row to be about something.
-ENDS = {
+ENDS_BY_PART = {
     "bluetooth": {"open", "failed", "link_silent"},
     "simulator": {"stop", "leave", "wait", "failure", "ended"},
     "panel": {"stop", "wait", "running", "paused", "ended", "off", "refused", "breaks", "fault"},
@@ -81,19 +81,19 @@ ENDS = {
 
 
 @pytest.mark.sampled("part", keep=3)
-@pytest.mark.parametrize("part", ENDS)
+@pytest.mark.parametrize("part", ENDS_BY_PART)
 def test_it_is_as_on_a_page_that_was_just_loaded(page_data: Path, part: str) -> None:
     lines = in_node(SCRIPT, str(page_data), part, str(SEEDS))
     rows: list[dict[str, Any]] = [json.loads(line) for line in lines]
     assert len(rows) == SEEDS
-    assert ENDS[part] <= {end for row in rows for end in row["ends"]}
+    assert ENDS_BY_PART[part] <= {end for row in rows for end in row["ends"]}
     for row in rows:
         assert row["isSame"] and not row["unhandled"], row
 
 
 # Of the whole page: what each row of seeds has to have done first, for it to be about something.
-DONE = {"run", "stop", "step", "types", "builds", "robot"}
-LEAST_WAYS = 30  # of doing something
+NEEDED_ACTIONS = {"run", "stop", "step", "types", "builds", "robot"}
+LEAST_ACTION_KINDS = 30  # of doing something
 ROW = 8  # seeds
 
 
@@ -109,6 +109,6 @@ def test_who_begins_anew_sees_what_a_tab_that_is_loaded_again_shows(
     rows: list[dict[str, Any]] = [json.loads(line) for line in lines]
     assert len(rows) == ROW
     done = {end for row in rows for end in row["ends"]}
-    assert done >= DONE and len(done) > LEAST_WAYS
+    assert done >= NEEDED_ACTIONS and len(done) > LEAST_ACTION_KINDS
     for row in rows:
         assert row["isSame"] and not row["unhandled"], row

@@ -11,7 +11,7 @@ import pytest
 
 from tests.support.command import Command, Tsc
 from tests.support.page_server import ask, serves
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.studio import serving
 from tiniscript.studio.serving import POLICY
 
@@ -41,7 +41,7 @@ def test_the_next_studio_has_the_port_as_soon_as_the_last_one_has_ended(folder: 
     with serves(serving.Server(page, 0)) as first:
         with pytest.raises(OSError):
             serving.Server(page, first.server_port)
-        with socket.create_connection((serving.HOST, first.server_port), HANGS_S) as browser:
+        with socket.create_connection((serving.HOST, first.server_port), HANG_LIMIT_S) as browser:
             browser.sendall(b"GET / HTTP/1.0\r\n\r\n")
             while browser.recv(4096):  # the server is the first that closes
                 pass
@@ -60,7 +60,9 @@ def test_the_page_comes_with_its_policy(own: str) -> None:
     assert response.getheader("Content-Type") == "text/javascript; charset=utf-8"
     response, data = ask(own, "/main.js", "HEAD")
     assert (response.status, data, response.getheader("Content-Length")) == (200, b"", "1")
-    with socket.create_connection((serving.HOST, int(own.rpartition(":")[2])), HANGS_S) as browser:
+    with socket.create_connection(
+        (serving.HOST, int(own.rpartition(":")[2])), HANG_LIMIT_S
+    ) as browser:
         browser.sendall(f"HEAD /main.js HTTP/1.0\r\nHost: {own}\r\n\r\n".encode())
         reply = b"".join(iter(lambda: browser.recv(4096), b""))
     assert b" 200 " in reply and reply.endswith(b"\r\n\r\n")  # the answer has no body
@@ -109,7 +111,9 @@ def test_nothing_can_be_sent_to_it(server: serving.Server, own: str) -> None:
 
 
 def test_two_names_of_a_host_are_none(server: serving.Server, own: str) -> None:
-    with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
+    with socket.create_connection(
+        (serving.HOST, server.server_port), timeout=HANG_LIMIT_S
+    ) as client:
         client.sendall(f"GET / HTTP/1.1\r\nHost: {own}\r\nHost: evil.example\r\n\r\n".encode())
         assert client.recv(100).startswith(b"HTTP/1.1 403")
 

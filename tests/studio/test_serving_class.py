@@ -21,14 +21,14 @@ from tests.support.command import Tsc
 from tests.support.crowd import HALF_A_REQUEST, crowd
 from tests.support.page_server import ask, serves
 from tests.support.studio import Class
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.studio import class_keeping, serving
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
 
 HOST = "127.0.0.2"  # it stands for an address of the network here
-ELSEWHERE = "127.0.0.3"
-STRANGERS = int(os.environ.get("STRANGERS", "2000"))
+OTHER_HOST = "127.0.0.3"
+STRANGER_COUNT = int(os.environ.get("STRANGERS", "2000"))
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def post(taught: Class, request: object, token: str = "", **headers: str) -> int
 
 def joins(taught: Class) -> str:
     request = {"do": "join", "code": taught.room.code, "name": "Ana"}
-    return str(taught.room.answer("", ELSEWHERE, request)["token"])
+    return str(taught.room.answer("", OTHER_HOST, request)["token"])
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,7 @@ def test_the_host_is_the_shown_address_exactly(served_class: Class, host: str) -
 
 
 def test_the_page_is_packed_marked_and_fetched_once(served_class: Class) -> None:
-    connection = HTTPConnection(own(served_class), timeout=HANGS_S)
+    connection = HTTPConnection(own(served_class), timeout=HANG_LIMIT_S)
     connection.request("GET", "/", headers={"Accept-Encoding": "gzip, deflate"})
     answer = connection.getresponse()
     data = answer.read()
@@ -118,13 +118,13 @@ def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) ->
     """
     token = joins(served_class)
     headers = {"Origin": f"http://{own(served_class)}", serving.TOKEN_HEADER: token}
-    pupil = HTTPConnection(own(served_class), timeout=HANGS_S)
+    pupil = HTTPConnection(own(served_class), timeout=HANG_LIMIT_S)
     pupil.request("POST", serving.ROBOTS_PATH, '{"do": "here"}', headers)
     assert pupil.getresponse().read()
     kept_socket, before = pupil.sock, active_count()
-    source = kept_socket.getsockname()[0] if is_same else ELSEWHERE
+    source = kept_socket.getsockname()[0] if is_same else OTHER_HOST
     with ExitStack() as strangers:
-        for _ in range(0, STRANGERS, 500):
+        for _ in range(0, STRANGER_COUNT, 500):
             some = crowd(
                 served_class.server.server_port, count=500, says=(b"", HALF_A_REQUEST), host=HOST,
                 source=source,
@@ -140,13 +140,13 @@ def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) ->
 
 def test_a_slow_stranger_does_not_close_who_loads_the_page(served_class: Class) -> None:
     """The address that has most connections loses one, not the one that asked first."""
-    early = HTTPConnection(own(served_class), timeout=HANGS_S)
+    early = HTTPConnection(own(served_class), timeout=HANG_LIMIT_S)
     early.connect()
     with crowd(
         served_class.server.server_port,
         count=serving.MOST_CLASS_CONNECTIONS + 50,
         host=HOST,
-        source=ELSEWHERE,
+        source=OTHER_HOST,
     ):
         assert ask(own(served_class))[0].status == 200  # therefore all of them have arrived
         early.request("GET", "/")
@@ -188,7 +188,7 @@ def test_the_second_class_of_a_user_is_refused_and_touches_nothing(
     words = ("studio", "--class", "--address", HOST, "--no-browser", "--lang", "en")
     with closing(class_keeping.Keeper()) as first:
         room = Classroom(Hosting(), [])
-        room.answer("", ELSEWHERE, {"do": "join", "code": room.code, "name": "Ana"})
+        room.answer("", OTHER_HOST, {"do": "join", "code": room.code, "name": "Ana"})
         first.keep(room.state_to_keep())
         kept_bytes = class_keeping.path().read_bytes()
         result = tsc(*words)

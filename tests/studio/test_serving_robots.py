@@ -15,7 +15,7 @@ import pytest
 
 from tests.support.crowd import HALF_A_REQUEST, crowd
 from tests.support.page_server import ask, post, serves
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.studio import serving
 from tiniscript.studio.robot_link import BadRequest
 
@@ -106,7 +106,9 @@ def test_a_wrong_length_and_two_tokens_are_refused(
         f"POST {serving.ROBOTS_PATH} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://{own}\r\n"
         f"{serving.TOKEN_HEADER}: {server.entrances.token}\r\n{field}\r\n\r\n"
     )
-    with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
+    with socket.create_connection(
+        (serving.HOST, server.server_port), timeout=HANG_LIMIT_S
+    ) as client:
         client.sendall(head.encode() + b'{"do"')
         assert client.recv(100).startswith(f"HTTP/1.1 {status}".encode())
     assert robots.asked == []
@@ -141,7 +143,7 @@ def test_a_server_without_robots_has_none(tmp_path: Path) -> None:
 def test_a_thousand_connections_keep_nobody_out(server: serving.Server, own: str) -> None:
     """They send nothing, or half a request; the page's own connection stays."""
     headers = {"Origin": f"http://{own}", serving.TOKEN_HEADER: server.entrances.token}
-    page = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
+    page = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
 
     def ask() -> int:
         page.request("POST", serving.ROBOTS_PATH, PORTS, headers)
@@ -169,7 +171,7 @@ def test_pages_that_were_closed_take_no_place(server: serving.Server, own: str) 
     with ExitStack() as browser:
         connections = [
             browser.enter_context(
-                closing(HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S))
+                closing(HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S))
             )
             for _ in range(6)
         ]
@@ -183,14 +185,16 @@ def test_pages_that_were_closed_take_no_place(server: serving.Server, own: str) 
 @pytest.mark.parametrize("line", [b"X-More: " + b"x" * 1000 + b"\r\n", b"x" * 70_000, b"X: y\r\n"])
 def test_a_head_ends_at_16_kilobytes(server: serving.Server, own: str, line: bytes) -> None:
     """However its bytes are divided into lines, and whether it ends or not."""
-    with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
+    with socket.create_connection(
+        (serving.HOST, server.server_port), timeout=HANG_LIMIT_S
+    ) as client:
         client.sendall(b"GET / HTTP/1.1\r\n")
         sent, heard_bytes = 0, b""
         while not heard_bytes and sent < 20 * serving.HEAD_BYTES:
             try:
                 client.sendall(line)
                 sent += len(line)
-                client.settimeout(0.01 if sent < serving.HEAD_BYTES else HANGS_S)
+                client.settimeout(0.01 if sent < serving.HEAD_BYTES else HANG_LIMIT_S)
                 heard_bytes = client.recv(100)
             except TimeoutError:
                 continue
@@ -206,10 +210,12 @@ def test_the_page_that_has_asked_last_is_kept(
     server: serving.Server, own: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """If all have shown the token, the one idle for longest is closed."""
-    monkeypatch.setattr(serving._Handler, "timeout", 10 * HANGS_S)  # so silence drops none
+    monkeypatch.setattr(serving._Handler, "timeout", 10 * HANG_LIMIT_S)  # so silence drops none
     server.most_connections = 2
     headers = {"Origin": f"http://{own}", serving.TOKEN_HEADER: server.entrances.token}
-    pages = [HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S) for _ in range(3)]
+    pages = [
+        HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S) for _ in range(3)
+    ]
     kept = []
     for k in (0, 1, 0, 2, 0):
         pages[k].request("POST", serving.ROBOTS_PATH, PORTS, headers)

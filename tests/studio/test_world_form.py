@@ -95,17 +95,17 @@ def open_world(data: bytes, name: str = "own.toml", language: str = "en") -> dic
     return answer
 
 
-GOOD = b"[floor]\nwidth_cm = 100\nheight_cm = 80\n[start]\nx_cm = 30\ny_cm = 30\n"
+GOOD_WORLD = b"[floor]\nwidth_cm = 100\nheight_cm = 80\n[start]\nx_cm = 30\ny_cm = 30\n"
 HOSTILE = {
     "nothing": (b"", "floor"),
     "no TOML": (b"SI|F(2, 80)", "Line 1"),
     "no UTF-8": (b"\xff\xfe[floor]", "UTF-8"),
     "too large": (b"#" * 2_000_000, "has more than"),
-    "another key": (GOOD + b"[lamp]\nx = 1\n", "lamp"),
-    "a start outside": (GOOD.replace(b"x_cm = 30", b"x_cm = 300"), "starts outside"),
-    "endless": (GOOD.replace(b"100", b"inf"), "width_cm"),
-    "too many parts": (GOOD + b"[[lamps]]\nx_cm = 1\ny_cm = 1\n" * 101, "101 parts"),
-    "a long number": (GOOD.replace(b"100", b"9" * 5000), ""),
+    "another key": (GOOD_WORLD + b"[lamp]\nx = 1\n", "lamp"),
+    "a start outside": (GOOD_WORLD.replace(b"x_cm = 30", b"x_cm = 300"), "starts outside"),
+    "endless": (GOOD_WORLD.replace(b"100", b"inf"), "width_cm"),
+    "too many parts": (GOOD_WORLD + b"[[lamps]]\nx_cm = 1\ny_cm = 1\n" * 101, "101 parts"),
+    "a long number": (GOOD_WORLD.replace(b"100", b"9" * 5000), ""),
     "deep": (b"a = " + b"[" * 5000, ""),
 }
 
@@ -122,7 +122,7 @@ def test_a_file_that_is_no_world_says_why(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["a.toml", ".toml", "", "x" * 5000 + ".toml", "\x1b[31m\n.toml"])
 def test_any_name_of_a_file_can_be_opened_and_written(name: str) -> None:
-    opened_world = open_world(GOOD, name)
+    opened_world = open_world(GOOD_WORLD, name)
     request = {
         "do": "write_world",
         "form": opened_world["world"],
@@ -135,7 +135,7 @@ def test_any_name_of_a_file_can_be_opened_and_written(name: str) -> None:
 
 
 def test_a_robot_that_does_not_fit_or_is_off_its_floor_is_told() -> None:
-    world = open_world(GOOD.replace(b"x_cm = 30", b"x_cm = 3"))["world"]
+    world = open_world(GOOD_WORLD.replace(b"x_cm = 30", b"x_cm = 3"))["world"]
     request = {"do": "write_world", "form": world, "robot": "tinibot", "language": "en"}
     assert json.loads(worker.answer(json.dumps(request)))["is_blocked"]
     start = {"do": "power_on", "robot": "tinibot", "world": {"form": world}, "language": "en"}
@@ -150,7 +150,7 @@ def test_a_robot_that_does_not_fit_or_is_off_its_floor_is_told() -> None:
 
 
 def test_a_robot_begins_where_it_is_to_if_it_has_room_there() -> None:
-    world = open_world(GOOD)["world"]
+    world = open_world(GOOD_WORLD)["world"]
     start = {"do": "power_on", "robot": "tinibot", "world": {"form": world}, "language": "en"}
     image = compile("SI|S").image
     at = (world["start"]["x_cm"], world["start"]["y_cm"], world["start"]["heading"])
@@ -161,6 +161,6 @@ def test_a_robot_begins_where_it_is_to_if_it_has_room_there() -> None:
 
 def test_the_limits_are_those_of_the_reader() -> None:
     parts, points = limits()["parts"], limits()["points"]
-    form = open_world(GOOD)["world"]
+    form = open_world(GOOD_WORLD)["world"]
     form["walls"] = [{"points": [[1, 1]] * points}] * parts
     assert len(read(toml_of(form), "").walls) == parts

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from tests.support.cpp_checks import FAR
+from tests.support.cpp_checks import FAR_JUMP
 
 WRAP = 2**32  # period of the clock
 SOON = 600
@@ -41,21 +41,21 @@ TASK;W(0.01);W(FOREVER) UNTIL(N > 5);END_TASK""",
         {"DISTANCE": [50_000] * 20 + [80_000]},
     ),
     "S ends the M of a lower task, and a fault all": Runs(
-        f"""{FAR}F(0.2, 30);SHOW(TIME);A = 0
+        f"""{FAR_JUMP}F(0.2, 30);SHOW(TIME);A = 0
 TASK;W(0.1);S;W(0.02);F(0.02, 50);W(0.1);SHOW(1 / A);END_TASK
 TASK;M(20, 20);W(0);W(1);SHOW(TIME);END_TASK
 TASK;LOOP(FOREVER);W(0.01);SHOW(TIME);END_LOOP;END_TASK""",
         ((0, 0, 0, SOON),),
     ),
     "a SHOW finds no room": Runs(
-        f"""{FAR}TASK;LOOP(9);LIGHT_L;F(0.004, 60);W(0.003);END_LOOP;END_TASK
+        f"""{FAR_JUMP}TASK;LOOP(9);LIGHT_L;F(0.004, 60);W(0.003);END_LOOP;END_TASK
 TASK;LOOP(9);SHOW(TIME);SHOW(TRUE);S;A = LIGHT_L;W(0.004);END_LOOP;END_TASK
 LOOP(9);B(0.01, 30) UNTIL(DISTANCE < 15 OR LIGHT_L > 500);SHOW(TIME);END_LOOP""",
         ((2, 0, 0, SOON), (3, 0, 0, SOON)),
         {"DISTANCE": [50_000] * 12 + [12_000]},
     ),
     "the motors are taken while a check waits for a reading": Runs(
-        f"""{FAR}TASK;LOOP(9);SHOW(1);F(0.03, 60);END_LOOP;END_TASK
+        f"""{FAR_JUMP}TASK;LOOP(9);SHOW(1);F(0.03, 60);END_LOOP;END_TASK
 LOOP(9);B(0.03, 30) UNTIL(DISTANCE < 15 OR LIGHT_L > 500);SHOW(TIME);END_LOOP""",
         ((2, 0, 0, SOON),),
         {"DISTANCE": [50_000]},
@@ -65,7 +65,7 @@ LOOP(9);B(0.03, 30) UNTIL(DISTANCE < 15 OR LIGHT_L > 500);SHOW(TIME);END_LOOP"""
         ((0, 0, 0, SOON),),
     ),
     "a move is taken after its end": Runs(
-        f"""{FAR}F(0.09, 30);SHOW(TIME);F(FOREVER, 20)
+        f"""{FAR_JUMP}F(0.09, 30);SHOW(TIME);F(FOREVER, 20)
 TASK;W(0.1);B(0.1, 50);SHOW(TIME);END_TASK""",
         ((0, 36, 0, SOON),),
     ),

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
-from tests.support.owners import HELD, KIT, PRESSED, RELEASED, Keys
+from tests.support.owners import BUTTON_HELD, BUTTON_PRESSED, BUTTON_RELEASED, KIT, Keys
 from tests.support.robot_on_host import computer, send, switched_on, wait_until_saved
 from tests.support.text_robot import type_text
 from tiniscript.link.messages import KEY_OWNER, OWNED
@@ -142,10 +142,10 @@ def begin_claim(table: Table) -> None:
 
 def enter_owned(table: Table) -> None:
     begin_claim(table)
-    table.talk(1, PRESSED)
+    table.talk(1, BUTTON_PRESSED)
     table.talk(31)
-    table.talk(2100, HELD)
-    table.talk(1, RELEASED)
+    table.talk(2100, BUTTON_HELD)
+    table.talk(1, BUTTON_RELEASED)
     table.talk(1000)
     assert table.session.robot and table.session.robot.values.features & OWNED
     table.quiet()

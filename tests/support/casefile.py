@@ -25,10 +25,10 @@ from tools.site.documents import language_of
 ROOT = Path(__file__).resolve().parent.parent.parent
 PARTS = ("tiniscript", "senses", "robot", "bytecode", "plain", "line", "mistake", "warning",
          "formatted")  # fmt: skip
-LISTED = re.compile("[0-9a-f]{4}  ")
+LISTING_ROW = re.compile("[0-9a-f]{4}  ")
 TIMES = re.compile(r"([0-9a-f]{4})  (((?:[0-9a-f]{2} )+) .*), (\d+) times")
-FOLDED = 4  # rows alike, and more, are one
-SHOWN = re.compile(r"(?:line|línea) 1:  (.*\n)")
+LEAST_FOLDED_ROWS = 4  # rows alike, and more, are one
+FIRST_LINE = re.compile(r"(?:line|línea) 1:  (.*\n)")
 TITLE_LINE = re.compile(r"(?m)^(\S.*)\n(?=(?:line|línea) \d+:  )")
 
 
@@ -82,7 +82,7 @@ def read(path: Path) -> list[Case]:
                         name = title if count == 1 else f"{title} #{count}"
                         cases.append(Case(path, number, name, {}))
         elif fence == "refused":
-            if LISTED.match(row):
+            if LISTING_ROW.match(row):
                 cases[-1].parts["bytecode"] += "".join(f"{line}\n" for line in _unfold(row))
             elif not row.startswith("//"):
                 rule, name = row.split(": ", 1)
@@ -106,9 +106,11 @@ def _unfold(row: str) -> list[str]:
 def _fold(text: str) -> str:
     """Return a disassembly with one row for several that are alike."""
     lines = []
-    for _, group in groupby(text.splitlines(), lambda row: row[4:] if LISTED.match(row) else row):
+    for _, group in groupby(
+        text.splitlines(), lambda row: row[4:] if LISTING_ROW.match(row) else row
+    ):
         rows = list(group)
-        is_many = len(rows) >= FOLDED and LISTED.match(rows[0])
+        is_many = len(rows) >= LEAST_FOLDED_ROWS and LISTING_ROW.match(rows[0])
         lines += [f"{rows[0]}, {len(rows)} times"] if is_many else rows
     return "".join(f"{row}\n" for row in lines)
 
@@ -125,7 +127,7 @@ def _split_by_message(case: Case, fence: str, text: str, end: int) -> Iterator[C
         line += 1 + part_text.count("\n")
     for example, part_text in parts:
         example.parts[fence] = part_text and part_text.rstrip("\n") + "\n"
-        if shown_match := SHOWN.match(part_text):
+        if shown_match := FIRST_LINE.match(part_text):
             example.parts.setdefault("tiniscript", shown_match[1])
         yield example
 

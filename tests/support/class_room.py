@@ -12,7 +12,7 @@ from tiniscript.studio import classroom
 from tiniscript.studio.classroom import Classroom
 
 Json = dict[str, Any]
-HERE = "192.0.2.9"
+PUPIL_ADDRESS = "192.0.2.9"
 
 
 @dataclasses.dataclass
@@ -71,16 +71,19 @@ class Room:
         ports = [f"port{k}" for k in range(robots)]
         self.made = Classroom(self.hosting, ports, 60, lambda: self.now_s)  # type: ignore[arg-type]
 
-    def joins(self, name: str, address: str = HERE) -> str:
+    def joins(self, name: str, address: str = PUPIL_ADDRESS) -> str:
         answer = self.made.answer("", address, {"do": "join", "code": self.made.code, "name": name})
         return str(answer["token"])
 
     def checks_in(self, token: str, wants: bool | None = None, **more: Any) -> Json:
         request = {"do": "here", **more} | ({} if wants is None else {"wants": wants})
-        return self.made.answer(token, HERE, request)
+        return self.made.answer(token, PUPIL_ADDRESS, request)
 
     def connects(self, token: str) -> FakeRobot:
-        assert self.made.answer(token, HERE, {"do": "connect", "page": "x", "port": "y"}) == {}
+        assert (
+            self.made.answer(token, PUPIL_ADDRESS, {"do": "connect", "page": "x", "port": "y"})
+            == {}
+        )
         return self.hosting.robots[self.hosting.asked[-1]["page"]]
 
     def teaches(self, do: str, **more: Any) -> Json:

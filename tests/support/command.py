@@ -16,7 +16,7 @@ from weakref import WeakSet
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.cli import main
 
 PROGRAM = "SI|F(5,80)"
@@ -81,7 +81,7 @@ def inside(*arguments: str | Path, data: bytes = b"") -> CommandResult:
 def process(*arguments: str | Path, data: bytes = b"") -> CommandResult:
     """Run `tsc` as a process of its own."""
     words = [*TSC, *map(str, arguments)]
-    completed = subprocess.run(words, input=data, capture_output=True, timeout=HANGS_S)
+    completed = subprocess.run(words, input=data, capture_output=True, timeout=HANG_LIMIT_S)
     return CommandResult(completed.returncode, completed.stdout.decode(), completed.stderr.decode())
 
 
@@ -127,7 +127,7 @@ class Command:
         self.process.communicate()
 
     def wait_for_result(self) -> CommandResult:
-        out, err = self.process.communicate(timeout=HANGS_S)
+        out, err = self.process.communicate(timeout=HANG_LIMIT_S)
         return CommandResult(self.process.returncode, out.decode(), err.decode())
 
 

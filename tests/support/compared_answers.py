@@ -8,7 +8,7 @@ from typing import Any
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.requests import OK
 
-COUNTS = ("run", "damaged", "dropped", "nonce", "reset", "count", "epoch")
+RUN_FIELDS = ("run", "damaged", "dropped", "nonce", "reset", "count", "epoch")
 
 
 def answer_without_counts(request: PendingRequest[Any] | None, *but: str) -> object:
@@ -24,7 +24,7 @@ def without_counts(values: Any, *but: str) -> object:
     if not hasattr(values, "_asdict"):
         return values
     return [
-        (name, value) for name, value in values._asdict().items() if name not in (*COUNTS, *but)
+        (name, value) for name, value in values._asdict().items() if name not in (*RUN_FIELDS, *but)
     ]
 
 

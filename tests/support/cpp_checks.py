@@ -54,8 +54,8 @@ from tiniscript.vm.runner import MachineOf
 from tiniscript.vm.state import DONE, FAULT, WAITING
 from tiniscript.vm.tasks import NEVER_MS, machine_of
 
-KIT, WIDE = KITS[0][1], KITS[1][1]
-SIZES = len(WIDE.sensors), len(WIDE.actuators)
+KIT, WIDE_KIT = KITS[0][1], KITS[1][1]
+SIZES = len(WIDE_KIT.sensors), len(WIDE_KIT.actuators)
 MAX_MS, MAX_STEPS = 3000, 300  # limits for accepted random codes
 TASK_MS = 600  # limit for programs with tasks
 
@@ -138,7 +138,7 @@ def run_late(
 
 # Ticks at 2^31 - 8 and 2^32 - 16 ms, both multiples of 20, and then on time, for waits since 0.
 ROUND_MS = (2**31 - 28, 2**31 - 28, 0, 0, 0, 7, 30, 0, 0)
-ROUND = "F(FOREVER, 80) UNTIL(DISTANCE < 10); W(0.1)"
+ROUND_PROGRAM = "F(FOREVER, 80) UNTIL(DISTANCE < 10); W(0.1)"
 ROUND_TRACE = """\
 0 READ DISTANCE 50
 0 MOTORS 80 80
@@ -157,7 +157,7 @@ def check_round(run: Callable[[bytes, Kit, Senses, Sequence[int]], str]) -> None
     """The checks of an UNTIL go on in the same row where the clock wraps around."""
     senses = Senses({"DISTANCE": [50_000] * 7 + [9_000]})
     kit = KITS[0][1]
-    assert run(compile_text(ROUND, kit).image, kit, senses, ROUND_MS) == ROUND_TRACE
+    assert run(compile_text(ROUND_PROGRAM, kit).image, kit, senses, ROUND_MS) == ROUND_TRACE
 
 
 # -- arithmetic ---------------------------------------------------------------------------------
@@ -186,14 +186,14 @@ ROUNDED_TOO_LARGE = [
     for a, b in ((2047, 2_098_176_500), (2832, 1_516_584_497), (304_942_678, 71), (420_906_795, 98))
     for sign in (1, -1)
 ]
-NUMBER_OF = {name: number for number, name, _ in FAULTS}
+FAULT_NUMBER_BY_NAME = {name: number for number, name, _ in FAULTS}
 
 
 def python_result(name: str, a: int, b: int) -> tuple[int, int]:
     try:
         return 0, OPERATIONS[name](a, b)
     except fixed_point.Fault as fault:
-        return NUMBER_OF[fault.name], 0
+        return FAULT_NUMBER_BY_NAME[fault.name], 0
 
 
 def check_arithmetic(machine: Process, name: str, count: int) -> None:
@@ -211,7 +211,7 @@ def check_arithmetic(machine: Process, name: str, count: int) -> None:
 
 # -- tasks --------------------------------------------------------------------------------------
 
-FAR = f"A = 0;N = 0;IF(N > 0);{'SHOW(8);' * 140}ENDIF;"  # more than 256 bytes
+FAR_JUMP = f"A = 0;N = 0;IF(N > 0);{'SHOW(8);' * 140}ENDIF;"  # more than 256 bytes
 
 
 def some_task_programs(
@@ -287,14 +287,14 @@ def slow_run(image: bytes, senses: Senses, not_ready: int, late_ms: int = 0) -> 
 
 # -- ways ---------------------------------------------------------------------------------------
 
-WAYS = [op.opcode for op in ESCAPED_OPS.values()]
+ESCAPED_OPCODES = [op.opcode for op in ESCAPED_OPS.values()]
 
 
 def way_code(rng: random.Random) -> bytes:
     """Return a move by any way and power, mostly right; with an UNTIL or without."""
     values = (any_number(rng), rng.choice((any_number(rng), rng.randrange(-5, 105) * 1000)))
     pushes = [simple("PUSH32") + value.to_bytes(4, "little", signed=True) for value in values]
-    code = b"".join(pushes) + rng.choice(WAYS)
+    code = b"".join(pushes) + rng.choice(ESCAPED_OPCODES)
     if (code[-1] & 8) and rng.random() < 0.9:
         code += simple(rng.choice(("PUSH_TRUE", "PUSH_FALSE"))) + simple("UNTIL")
     return code
@@ -334,7 +334,7 @@ def check_way_codes(machine: Process, seed: int, count: int) -> None:
         if needs != GO:
             continue
         for code in accepted_bytes:
-            ends[compare_runs(machine, code, WIDE, Senses({}, MAX_MS, MAX_STEPS))] += 1
+            ends[compare_runs(machine, code, WIDE_KIT, Senses({}, MAX_MS, MAX_STEPS))] += 1
     assert {"DONE", "LIMIT", "NO_POWER", "OVERFLOW"} <= set(ends), ends
     assert "BAD_CODE" not in ends
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
 HALF_A_REQUEST = b"POST /robots HTTP/1.1\r\nHost: "
-EACH = 100  # connections of a process: not more than wait for a listener at once
+CONNECTIONS_PER_PROCESS = 100  # connections of a process: not more than wait for a listener at once
 CODE = """
 import contextlib, socket, sys
 host, port, source, count, says = sys.argv[1:]
@@ -40,8 +40,10 @@ def crowd(
     """Open so many connections to each port, which send one of `says` in turn."""
     with ExitStack() as stack:
         for port in ports:
-            for begin in range(0, count, EACH):
-                stack.enter_context(_some(port, min(EACH, count - begin), says, host, source))
+            for begin in range(0, count, CONNECTIONS_PER_PROCESS):
+                stack.enter_context(
+                    _some(port, min(CONNECTIONS_PER_PROCESS, count - begin), says, host, source)
+                )
         yield
 
 

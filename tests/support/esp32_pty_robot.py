@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.machines.esp32 import EMPTY, POWER_ON, TASK_WATCHDOG, Esp32Robot, Kept
+from tests.machines.esp32 import EMPTY_MEMORY, POWER_ON, TASK_WATCHDOG, Esp32Robot, Kept
 from tests.machines.host_firmware import HostFirmware
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
@@ -15,7 +15,7 @@ class Esp32PtyRobot(PtyRobot):
         """`seed` makes its id."""
         self.profile = robots.load(name)
         self.seed = seed
-        self._kept: Kept = EMPTY
+        self._kept: Kept = EMPTY_MEMORY
         super().__init__(self.profile.kit)
 
     def hang(self, milliseconds: int) -> None:

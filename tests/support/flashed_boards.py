@@ -13,11 +13,11 @@ from tests.machines.uno import build_uno
 from tests.support.casefile import ROOT
 from tests.support.command import CommandResult
 from tests.support.copies import link_copy
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tools.uno import Uno
 
 # The ways in which a child program may end badly: by itself, or ended from outside.
-ENDS = (
+CHILD_ENDS = (
     "sys.exit(3)",
     "sys.exit(255)",
     *(f"os.kill(os.getpid(), signal.{name})" for name in ("SIGKILL", "SIGTERM", "SIGSEGV")),
@@ -35,11 +35,11 @@ def to_hex(elf: Path, file: Path) -> None:
 
 # An avrdude has its own session: killed tests leave it reading forever from a vanished port.
 # Therefore each process has a limit of processor seconds.
-LIMITED = ("/bin/sh", "-c", 'ulimit -t 60; exec "$@"', "sh")
+CPU_LIMIT_COMMAND = ("/bin/sh", "-c", 'ulimit -t 60; exec "$@"', "sh")
 
 
 def command(*words: str) -> list[str]:
-    return [*LIMITED, sys.executable, "-m", "tiniscript", "firmware", "--yes", *words]
+    return [*CPU_LIMIT_COMMAND, sys.executable, "-m", "tiniscript", "firmware", "--yes", *words]
 
 
 def tsc(package: Path, *words: str, **variables: str) -> CommandResult:
@@ -62,7 +62,7 @@ def run_interrupted(ready_file: Path, *words: str, **variables: str) -> CommandR
     while not (ready_file.exists() and ready_file.read_text()):
         assert running.poll() is None
     running.send_signal(signal.SIGINT)
-    _, output = running.communicate(timeout=HANGS_S)
+    _, output = running.communicate(timeout=HANG_LIMIT_S)
     return CommandResult(running.returncode, "", output)
 
 

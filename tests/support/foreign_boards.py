@@ -29,7 +29,7 @@ C3_DOWNLOAD = (
     b"ESP-ROM:esp32c3-api1-20210207\r\nBuild:Feb  7 2021\r\n"
     b"rst:0x1 (POWERON),boot:0x4 (DOWNLOAD(USB/UART0/1))\r\nwaiting for download\r\n"
 )
-EMPTY = (
+EMPTY_FLASH = (
     b"rst:0x10 (RTCWDT_RTC_RESET),boot:0x13 (SPI_FAST_FLASH_BOOT)\r\n"
     b"invalid header: 0xffffffff\r\ninvalid header: 0xffffffff\r\n"
 )
@@ -97,7 +97,7 @@ RECORDINGS: Mapping[str, Recording] = {
     "download": Recording(
         "esp32_download", C3_DOWNLOAD, "rst:0x1 (POWERON),boot:0x4 (DOWNLOAD(USB/UART0/1))"
     ),
-    "empty": Recording("esp32_empty", EMPTY, "invalid header: 0xffffffff"),
+    "empty": Recording("esp32_empty", EMPTY_FLASH, "invalid header: 0xffffffff"),
     "at": Recording(
         "at_firmware", AT_VERSION, "AT version:2.2.0.0-dev(ca41ec4 - ESP32 - Sep 16 2020 11:28:1"
     ),
@@ -256,7 +256,7 @@ class DownloadBoard(Board):
 class EmptyBoard(Board):
     """A board without a program, which its watchdog restarts repeatedly."""
 
-    starts, boot_ms, again_ms = EMPTY, 20, 300
+    starts, boot_ms, again_ms = EMPTY_FLASH, 20, 300
 
 
 class EchoSketch(Board):

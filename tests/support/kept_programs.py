@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.machines.host_firmware import EMPTY, HostFirmware
+from tests.machines.host_firmware import EMPTY_EEPROM, HostFirmware
 from tests.support.images import image_of
 from tests.support.robot_on_host import computer, outcome, switched_on
 from tiniscript.bytecode.image import pack, with_checksum
@@ -10,8 +10,9 @@ from tiniscript.link.messages import SAVED_STATES
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
-DRIVES = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
-FIRST, SECOND, EACH = 128, 576, 31  # offsets of the program's slots, and bytes of a record
+DRIVE_PROGRAM = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
+# offsets of the program's slots, and bytes of a record
+FIRST_SLOT, SECOND_SLOT, RECORD_BYTES = 128, 576, 31
 
 
 def read_saved_state(robot: HostFirmware, session: Session) -> str:
@@ -44,12 +45,12 @@ def later_version_image(code: bytes, start: str = "SI") -> bytes:
     return with_checksum(image[:2] + b"\3\0" + image[4:])
 
 
-LATER_VERSION = later_version_image(b"\x44\x32\x50")
+LATER_VERSION_IMAGE = later_version_image(b"\x44\x32\x50")
 
 
 def eeprom_with(*slots: tuple[int, int, bytes]) -> bytes:
     """Return an EEPROM with images: the place of each slot, its generation, and its content."""
-    memory = bytearray(EMPTY)
+    memory = bytearray(EMPTY_EEPROM)
     for place, generation, image in slots:
         mark = generation ^ 0xA5
         body = bytes([image[0] ^ generation]) + image[1:]

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.needs import need
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.base.languages import SOURCE_LANGUAGE, language_info, languages
 from tiniscript.studio import block_kinds
 from tiniscript.studio.building import SOURCES
@@ -28,7 +28,7 @@ def in_node(script: Path, *words: str, given: str = "") -> list[str]:
         need(str(why))
     command = [*node, str(script), str(SOURCES / "src"), *words]
     result = subprocess.run(
-        command, input=given, capture_output=True, text=True, timeout=2 * HANGS_S, check=False
+        command, input=given, capture_output=True, text=True, timeout=2 * HANG_LIMIT_S, check=False
     )
     assert result.returncode == 0, result.stderr
     return result.stdout.splitlines()

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.machines.host_firmware import EMPTY, HostFirmware
+from tests.machines.host_firmware import EMPTY_EEPROM, HostFirmware
 from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.link.authority import KeyRing, RobotKey, ownership_of
@@ -17,7 +17,7 @@ from tiniscript.link.messages import BY_NAME, BY_NUMBER, FIRST_EVENT, STATUS_NAM
 from tiniscript.link.session import Session
 
 KIT = robots.load("tinibot").kit
-PRESSED, RELEASED, HELD = 1, 2, 32
+BUTTON_PRESSED, BUTTON_RELEASED, BUTTON_HELD = 1, 2, 32
 FOREVER = "SI|F(200, 40)"
 # Requests that anyone may send to a claimed robot.
 OPEN_TO_ALL = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}
@@ -73,7 +73,10 @@ class Owned:
     DEFINES: tuple[str, ...] = ()
 
     def __init__(
-        self, memory: bytes = EMPTY, seed: int = 0x12345678, defines: tuple[str, ...] | None = None
+        self,
+        memory: bytes = EMPTY_EEPROM,
+        seed: int = 0x12345678,
+        defines: tuple[str, ...] | None = None,
     ) -> None:
         given = self.DEFINES if defines is None else defines
         self.robot = HostFirmware(KIT, memory, seed=seed, defines=given)
@@ -119,10 +122,10 @@ class Owned:
 
     def hold(self, session: Session | None, milliseconds: int) -> None:
         """Hold the button down, while a computer talks."""
-        self.pass_time(session, 1, PRESSED)
+        self.pass_time(session, 1, BUTTON_PRESSED)
         self.pass_time(session, 30)
-        self.pass_time(session, milliseconds - 31, HELD)
-        self.pass_time(session, 1, RELEASED)
+        self.pass_time(session, milliseconds - 31, BUTTON_HELD)
+        self.pass_time(session, 1, BUTTON_RELEASED)
 
     def pass_time(self, session: Session | None, milliseconds: int, flags: int = 0) -> None:
         self.robot.pass_time(session, milliseconds, flags)

@@ -47,8 +47,8 @@ def as_json(content: Any) -> str:
     return pack(json.dumps(content).encode())
 
 
-GOOD = as_json({"text": "SI|F(9, 90)", "robot": "tinibot"})
-COLOURS = """async (letters) => {
+GOOD_WORK = as_json({"text": "SI|F(9, 90)", "robot": "tinibot"})
+COLOURS_SCRIPT = """async (letters) => {
   const image = await createImageBitmap(new Blob([Uint8Array.from(atob(letters), (c) => c.charCodeAt(0))]));
   const sheet = document.createElement('canvas');
   Object.assign(sheet, { width: image.width, height: image.height });
@@ -66,8 +66,8 @@ COLOURS = """async (letters) => {
 
 def colours(page: Page, data: bytes) -> tuple[int, int, dict[str, int]]:
     assert data.startswith(b"\x89PNG\r\n")
-    width, height, counts = page.evaluate(COLOURS, base64.b64encode(data).decode())
+    width, height, counts = page.evaluate(COLOURS_SCRIPT, base64.b64encode(data).decode())
     return width, height, counts
 
 
-MOVE = "11,79,158"  # the colour of blocks that move, as blocks/colours.js has it
+MOVE_COLOUR = "11,79,158"  # the colour of blocks that move, as blocks/colours.js has it

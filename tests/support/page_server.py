@@ -9,7 +9,7 @@ from socketserver import BaseServer
 from threading import Thread
 from typing import TypeVar
 
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.studio import serving
 
 Served = TypeVar("Served", bound=BaseServer)
@@ -33,7 +33,7 @@ def ask(
 ) -> tuple[HTTPResponse, bytes]:  # fmt: skip
     """Ask the server at `own`, a host and its port. A header with the value None is left out."""
     given_headers = {name: value for name, value in (headers or {}).items() if value is not None}
-    connection = HTTPConnection(own, timeout=HANGS_S)
+    connection = HTTPConnection(own, timeout=HANG_LIMIT_S)
     try:
         connection.request(method, path, body, given_headers)
         response = connection.getresponse()

@@ -13,12 +13,12 @@ from tiniscript import __version__
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
 
-OURS = __version__.encode()
-GREETING = b'{"tsc":"%s","token":"%s","verb":"link"}\n' % (OURS, b"0" * 32)
-STRANGE = (
+OWN_VERSION = __version__.encode()
+GREETING = b'{"tsc":"%s","token":"%s","verb":"link"}\n' % (OWN_VERSION, b"0" * 32)
+STRANGE_LINES = (
     b'{"token":"\\ud800","verb":"x"}\n',
-    b'{"tsc":"' + OURS + b'","token":"\\ud800","verb":"x"}\n',
-    b'{"tsc":"' + OURS + b'","token":"' + b"0" * 32 + b'","verb":"\\udfff"}\n',
+    b'{"tsc":"' + OWN_VERSION + b'","token":"\\ud800","verb":"x"}\n',
+    b'{"tsc":"' + OWN_VERSION + b'","token":"' + b"0" * 32 + b'","verb":"\\udfff"}\n',
     '{"token":"é","verb":"x"}\n'.encode(),
     b'{"token":"\xff\xfe","verb":"x"}\n',
     b'{"token":NaN,"verb":Infinity}\n',
@@ -45,7 +45,7 @@ STRANGE = (
 
 def mutate_data(chance: Random) -> bytes:
     """Return something strange that is a little otherwise."""
-    data = bytearray(chance.choice(STRANGE)[:1200] or b"{")
+    data = bytearray(chance.choice(STRANGE_LINES)[:1200] or b"{")
     for _ in range(chance.randrange(1, 6)):
         at = chance.randrange(len(data))
         kind = chance.randrange(4)
@@ -56,7 +56,7 @@ def mutate_data(chance: Random) -> bytes:
         elif kind == 2:
             del data[at : at + chance.randrange(20)]
         else:
-            data += chance.choice(STRANGE)[:200]
+            data += chance.choice(STRANGE_LINES)[:200]
         data = data or bytearray(b"{")
     return bytes(data)
 
@@ -79,7 +79,7 @@ def say(registration: Registration, data: bytes, chance: Random) -> None:
 def say_all(port: str, seed: int, count: int) -> None:
     """Send everything strange, and so many variations."""
     chance, registration = Random(seed), registration_of(port)
-    for data in (*STRANGE, *(mutate_data(chance) for _ in range(count))):
+    for data in (*STRANGE_LINES, *(mutate_data(chance) for _ in range(count))):
         say(registration, data, chance)
 
 
@@ -89,14 +89,17 @@ def registration_of(port: str) -> Registration:
     return registration
 
 
-FEW = ["sh", "-c", 'ulimit -n 256; exec "$@"', "sh", *TSC]  # files, as on macOS
+FEW_FILES_COMMAND = ["sh", "-c", 'ulimit -n 256; exec "$@"', "sh", *TSC]  # files, as on macOS
 
 
 @contextmanager
 def few(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
     """A `tsc` that may have few files open."""
     process = subprocess.Popen(
-        [*FEW, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        [*FEW_FILES_COMMAND, *arguments],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
     )
     try:
         yield process

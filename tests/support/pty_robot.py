@@ -15,13 +15,13 @@ from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 
-from tests.machines.host_firmware import EMPTY, POWER_ON, HostFirmware
+from tests.machines.host_firmware import EMPTY_EEPROM, POWER_ON, HostFirmware
 from tests.support import waiting
 from tests.support.command import FOREVER, Command, CommandResult, inside
 from tests.support.simulated_port import STRIDE_MS, PtyPort, simulate
 from tiniscript.base.kit import Kit
 
-PUSHED, RELEASED, HELD = 1, 2, 32  # flags of a step
+BUTTON_PRESSED, BUTTON_RELEASED, BUTTON_HELD = 1, 2, 32  # flags of a step
 LARGEST_LAG_MS = 50  # largest lag before the robot's clock slows down
 
 
@@ -34,7 +34,7 @@ def drives_now(actions: Sequence[str]) -> bool:
 class PtyRobot(PtyPort):
     """A robot and its port; its UART takes and sends `bytes_per_ms`, 1 at 9600 baud."""
 
-    def __init__(self, kit: Kit, memory: bytes = EMPTY, bytes_per_ms: int = 12) -> None:
+    def __init__(self, kit: Kit, memory: bytes = EMPTY_EEPROM, bytes_per_ms: int = 12) -> None:
         super().__init__()
         self.kit = kit
         self.bytes_per_ms = bytes_per_ms
@@ -84,16 +84,22 @@ class PtyRobot(PtyPort):
 
     def push(self) -> None:
         """Push the button, and let it go."""
-        self._flags = [PUSHED, *[0] * 20, RELEASED]
+        self._flags = [BUTTON_PRESSED, *[0] * 20, BUTTON_RELEASED]
 
     def hold(self, milliseconds: int = 2300, after_ms: int = 0, times: int = 1) -> None:
         """Hold the button down, after a while; so many times, or until `let_go`."""
-        press = [PUSHED, *[0] * 30, HELD, *[0] * (milliseconds - 32), RELEASED]
+        press = [
+            BUTTON_PRESSED,
+            *[0] * 30,
+            BUTTON_HELD,
+            *[0] * (milliseconds - 32),
+            BUTTON_RELEASED,
+        ]
         self._flags = [*[0] * after_ms, *press] * times
 
     def let_go(self) -> None:
         if self._flags:
-            self._flags = [RELEASED]
+            self._flags = [BUTTON_RELEASED]
 
     def switch_off(self) -> None:
         """Switch the robot off: only its memory is kept."""

@@ -51,8 +51,8 @@ def is_right(data: bytes, kit: Kit) -> bool:
 
 # Messages of a robot about a correct text whose DEFs have yes-no values, or values for several
 # tasks.
-NO_VALUES = ("ONE_TASK", "WANTS_NUMBER", "WANTS_YES_NO", "KIND", "COMPARE", "FULL")
-CONTROL = re.compile(rb"[\x01-\x07\x0b\x0c\x0e-\x1f]")
+PROBLEMS_WITHOUT_VALUES = ("ONE_TASK", "WANTS_NUMBER", "WANTS_YES_NO", "KIND", "COMPARE", "FULL")
+CONTROL_CHARACTER = re.compile(rb"[\x01-\x07\x0b\x0c\x0e-\x1f]")
 
 
 def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | None:
@@ -61,16 +61,20 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
     """
     answer = reader_of(kit, room).read(data)
     right = is_right(data, kit)
-    if right and CONTROL.search(data):  # on a wire such characters are noise
+    if right and CONTROL_CHARACTER.search(data):  # on a wire such characters are noise
         assert not answer.is_program, f"{answer}\n{data!r}"
         return None
     if right and UNREAD_WORDS & {token.text for token in scan(decode(data)).tokens}:
         # a word with fixed values is right where `line_of` writes it out
-        problems = ("FULL", "RESERVED", *(NO_VALUES if lacks_values(data, kit) else ()))
+        problems = (
+            "FULL",
+            "RESERVED",
+            *(PROBLEMS_WITHOUT_VALUES if lacks_values(data, kit) else ()),
+        )
         assert answer.problem in problems, f"{answer}\n{data!r}"
         return None
     if right and lacks_values(data, kit):
-        assert answer.problem in NO_VALUES, f"{answer}\n{data!r}"
+        assert answer.problem in PROBLEMS_WITHOUT_VALUES, f"{answer}\n{data!r}"
         return None
     if right:
         check_code(data, kit, answer, room)

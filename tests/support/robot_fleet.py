@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from unittest import mock
 
-from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
+from tests.machines.host_firmware import EMPTY_EEPROM, TICKS, HostFirmware
 from tests.support import waiting
 from tests.support.pty_robot import drives_now
 from tests.support.simulated_port import PtyPort, simulate
@@ -30,7 +30,7 @@ class Pupil(PtyPort):
     def __init__(self, kit: Kit, number: int) -> None:
         super().__init__()
         self.number = number
-        self.robot = HostFirmware(kit, EMPTY, seed=0x1000 + number)
+        self.robot = HostFirmware(kit, EMPTY_EEPROM, seed=0x1000 + number)
         self.babble = b""  # bytes that it sends repeatedly, as fast as its port accepts them
         self.deaf_after: int | None = None  # bytes after which it neither hears nor answers
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from tests.machines.host_firmware import EMPTY, HostFirmware
+from tests.machines.host_firmware import EMPTY_EEPROM, HostFirmware
 from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.link.connection import PendingRequest
@@ -17,7 +17,7 @@ LONG_PROGRAM = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
 AWAY_PROGRAM = "SI|F(60, 80)"
 
 
-def switched_on(memory: bytes = EMPTY, **options: float) -> HostFirmware:
+def switched_on(memory: bytes = EMPTY_EEPROM, **options: float) -> HostFirmware:
     """Return a robot that has read its stored data."""
     robot = HostFirmware(KIT, memory, **options)  # type: ignore[arg-type]
     robot.wait(200)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-RUNS = b"SI|F(60,80)\n"
+RUNNING_LINE = b"SI|F(60,80)\n"
 SILENCE_MS = 1000
-HELD_MS, MOST_MS = 100, 1.0
+SHORTEST_STOP_MS, MOST_MS = 100, 1.0
 # Bytes before the line of the stop, after a running program and a second of silence.
 PREFIXES = {
     "nothing": b"",
@@ -42,25 +42,25 @@ PREFIXES = {
     "a module's message": b"OK+CONN\r\n",
 }
 # The same inside a started frame.
-FRAMED = {
+FRAME_PREFIXES = {
     "a frame that has begun": b"\0\x08\x02\x02\n",
     "a zero and lines without anything": b"\0\n\n",
     "a zero and UTF-8": "\0ñandú\n".encode(),
     "a zero and noise": b"\0\x7f\x80\xff\n",
 }
-ALL_PREFIXES = PREFIXES | FRAMED
-STRICT = (b"S\n", b"s\r", b"STOP\r\n", b"stop\n", b" \t;S ;\n", b";sToP\r\n")
-LOOSE = (
+ALL_PREFIXES = PREFIXES | FRAME_PREFIXES
+STRICT_SPELLINGS = (b"S\n", b"s\r", b"STOP\r\n", b"stop\n", b" \t;S ;\n", b";sToP\r\n")
+LOOSE_SPELLINGS = (
     b"SS\n", b"S.\r", b"Stop.\r\n", b"stop!\n", b"S()\n", b"stop();\r\n", b"STOP NOW\n", b"alto\r",
     b"PARA\n", b"parar\r\n", b"detente\n", b"halt\r", "¡Alto!\n".encode(), b"S\0", b"STOP\0",
 )  # fmt: skip
-SPELLINGS = STRICT + LOOSE
+SPELLINGS = STRICT_SPELLINGS + LOOSE_SPELLINGS
 
 
 def spellings_after(name: str) -> tuple[bytes, ...]:
     """Return the spellings that stop after a prefix. Bytes next to a 0x00 must be printable."""
-    if name in FRAMED:
-        return STRICT
+    if name in FRAME_PREFIXES:
+        return STRICT_SPELLINGS
     prefix = PREFIXES[name]
     line = re.split(rb"[\r\n\0]|\x1b\[[\d;]*.|\x1bO.", prefix)[-1].lstrip(b" \t\b\x7f")
     spellings = tuple(

@@ -20,7 +20,7 @@ from weakref import WeakKeyDictionary
 from tests.support.command import FOREVER
 from tests.support.needs import need
 from tests.support.page_server import serves
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 from tiniscript import run
 from tiniscript.studio import serving
 from tiniscript.studio.attending import LEFT_S
@@ -35,16 +35,17 @@ if TYPE_CHECKING:
     from tests.support.pty_robot import PtyRobot
 
 # No sandbox: root cannot use one, and these pages are our own.
-WHOLE: tuple[str, ...] = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-           "--disable-background-networking", "--disable-component-update",
-           "--disable-sync")  # fmt: skip
-SHARED = Path("/dev/shm")
+BROWSER_OPTIONS: tuple[str, ...] = ("--no-sandbox", "--disable-gpu", "--disable-quic",
+                                    "--no-first-run",
+                                    "--disable-background-networking", "--disable-component-update",
+                                    "--disable-sync")  # fmt: skip
+SHARED_MEMORY = Path("/dev/shm")
 # A container's shared memory is small.
-if not SHARED.is_dir() or shutil.disk_usage(SHARED).free < 1 << 30:
-    WHOLE += ("--disable-dev-shm-usage",)
+if not SHARED_MEMORY.is_dir() or shutil.disk_usage(SHARED_MEMORY).free < 1 << 30:
+    BROWSER_OPTIONS += ("--disable-dev-shm-usage",)
 # Code is compiled once and not again for speed: a page of a test does little. The tabs of a context
 # share a renderer and its compiled code.
-OPTIONS = (*WHOLE, "--js-flags=--liftoff-only --no-maglev --no-opt", "--process-per-site")
+OPTIONS = (*BROWSER_OPTIONS, "--js-flags=--liftoff-only --no-maglev --no-opt", "--process-per-site")
 UPLOADS = 10  # number of consecutive stops that cannot be the computer's fault
 
 
@@ -141,7 +142,7 @@ def driver(of_studio: bool = True) -> Iterator[Playwright]:
 @contextmanager
 def browser(playwright: Playwright, *more: str, is_whole: bool = False) -> Iterator[Browser]:
     """A browser; the complete one is the one that people have. `more` are options of it."""
-    path, options = (chromium(), WHOLE) if is_whole else (headless(), OPTIONS)
+    path, options = (chromium(), BROWSER_OPTIONS) if is_whole else (headless(), OPTIONS)
     browser = playwright.chromium.launch(executable_path=path, args=[*options, *more])
     try:
         yield browser
@@ -150,11 +151,11 @@ def browser(playwright: Playwright, *more: str, is_whole: bool = False) -> Itera
 
 
 # A tab that stays in a context keeps its renderer, and the WebAssembly of Python compiled in it.
-STILL = "licences.txt"
-HOLD = """async () => {
+STILL_FILE = "licences.txt"
+HOLDING_SCRIPT = """async () => {
   window.held = await WebAssembly.compileStreaming(fetch('./pyodide.asm.wasm'));
 }"""
-_LEFT: WeakKeyDictionary[Browser, list[BrowserContext]] = WeakKeyDictionary()
+_LEFT_CONTEXTS: WeakKeyDictionary[Browser, list[BrowserContext]] = WeakKeyDictionary()
 
 
 class Pages:
@@ -234,15 +235,15 @@ class Pages:
         return self._contexts[-1]
 
     def _lend_context(self) -> BrowserContext:
-        left = _LEFT.setdefault(self._browser, [])
+        left = _LEFT_CONTEXTS.setdefault(self._browser, [])
         if left:
             context = left.pop()
         else:
             context = self._own({})
             self._contexts.remove(context)
             still = context.new_page()
-            still.goto(self.address + STILL)
-            still.evaluate(HOLD)
+            still.goto(self.address + STILL_FILE)
+            still.evaluate(HOLDING_SCRIPT)
         self._to_leave.append(context)
         return context
 
@@ -266,7 +267,7 @@ class Pages:
             whole = {"origin": self.address.rstrip("/"), "storageTypes": "all"}
             session.send("Storage.clearDataForOrigin", whole)
             session.detach()
-            _LEFT[self._browser].append(context)
+            _LEFT_CONTEXTS[self._browser].append(context)
 
     def _note_message(self, kind: str, text: str) -> None:
         if kind in ("error", "warning") and "blocked by Playwright" not in text:
@@ -286,7 +287,7 @@ def enter(page: Page, address: str) -> None:
 
 
 # Actions of a person who starts again: the home button ends a lesson, a drawing and a run.
-_ANEW = """() => {
+_START_AGAIN_SCRIPT = """() => {
   const at = (id) => document.getElementById(id);
   for (const each of document.querySelectorAll('dialog[open]')) each.close();
   const pressed = ['stop', 'home', 'start_write', 'view_text', 'seen_arena', 'bar_new'];
@@ -310,12 +311,12 @@ def begin_anew(page: Page) -> None:
     page.set_viewport_size({"width": 1366, "height": 768})
     if page.input_value("#language") != "en":
         speak(page, "en")
-    page.evaluate(_ANEW)
+    page.evaluate(_START_AGAIN_SCRIPT)
     wait_until_checked(page)
 
 
 # After a new size of the screen has been noticed and drawn.
-SETTLED = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+SETTLED_SCRIPT = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
 
 def finger(page: Page, way: Sequence[tuple[float, float]]) -> None:
@@ -344,7 +345,7 @@ def colors_of(page: Page, canvas: str) -> set[str]:
 
 def turn(page: Page, half: str) -> None:
     """See the `program` or the `robot`, where the page shows one of them at a time."""
-    page.evaluate(SETTLED)
+    page.evaluate(SETTLED_SCRIPT)
     if page.locator(f"html[data-phone]:not([data-half={half}])").count():
         page.click("#other")
 
@@ -356,9 +357,9 @@ def in_phase(page: Page, phase: str) -> None:
 
 def hears(page: Page, is_so: Callable[[], object], what: str) -> None:
     """Wait until something is so that a page tells of while it is waited for."""
-    end_s = monotonic() + HANGS_S
+    end_s = monotonic() + HANG_LIMIT_S
     while not is_so():
-        assert monotonic() < end_s, f"not after {HANGS_S} s: {what}"
+        assert monotonic() < end_s, f"not after {HANG_LIMIT_S} s: {what}"
         page.wait_for_timeout(20)
 
 
@@ -397,7 +398,7 @@ def drives(page: Page, robot: PtyRobot) -> None:
 
 
 # Longer than any robot goes on without a word, and a second shorter than a page has left after.
-HUNG_MS = round(1000 * (LEFT_S - 1))
+LONGEST_HANG_MS = round(1000 * (LEFT_S - 1))
 
 
 def hang(page: Page, milliseconds: int) -> None:
@@ -434,12 +435,12 @@ def axe(page: Page, *rules: str, within: str = "html") -> list[tuple[str, str]]:
     """
     if not page.evaluate("'axe' in window"):
         page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
-    problems: list[tuple[str, str]] = page.evaluate(_AXE, [within, *rules])
+    problems: list[tuple[str, str]] = page.evaluate(_AXE_SCRIPT, [within, *rules])
     return [(rule, html) for rule, html in problems]
 
 
 # Passing results are neither described nor sent to Python.
-_AXE = """async ([within, ...rules]) => {
+_AXE_SCRIPT = """async ([within, ...rules]) => {
   const only = rules.length ? {runOnly: rules} : {};
   const found = await axe.run(within, {...only, resultTypes: ['violations']});
   return found.violations.map(({id, nodes}) => [id, nodes[0].html]);
@@ -454,7 +455,7 @@ def image(page: Page) -> bytes:
 # the bytes of `text`, or of `image` in hexadecimal digits.
 # One worker answers all that a page is asked: Python takes a while to start. After an error it is
 # another one.
-_ASK = """async (requests) => {
+_ASK_WORKER_SCRIPT = """async (requests) => {
   const worker = window.answers ?? new Worker('./worker.js', {type: 'module'});
   window.answers = undefined;
   const send = (requests) => new Promise((resolve, reject) => {
@@ -481,7 +482,7 @@ _ASK = """async (requests) => {
 
 def ask_worker(page: Page, requests: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the answers of a worker to requests, in their order."""
-    answers: list[dict[str, Any]] = page.evaluate(_ASK, requests)
+    answers: list[dict[str, Any]] = page.evaluate(_ASK_WORKER_SCRIPT, requests)
     return answers
 
 

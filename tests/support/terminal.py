@@ -20,10 +20,18 @@ from time import monotonic
 import pyte
 
 from tests.support.command import TSC, rest_of
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 
-GLANCE = 1000  # bytes
-HIDDEN = ("COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR", "CI", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
+CHUNK_BYTES = 1000  # bytes
+HIDDEN_VARIABLES = (
+    "COLUMNS",
+    "LINES",
+    "NO_COLOR",
+    "FORCE_COLOR",
+    "CI",
+    "TTY_COMPATIBLE",
+    "TTY_INTERACTIVE",
+)
 
 
 class Terminal:
@@ -42,7 +50,9 @@ class Terminal:
         modes = termios.tcgetattr(theirs)
         modes[3] |= termios.NOFLSH  # without NOFLSH, Ctrl-C may drop later output
         termios.tcsetattr(theirs, termios.TCSANOW, modes)
-        variables = {name: value for name, value in os.environ.items() if name not in HIDDEN}
+        variables = {
+            name: value for name, value in os.environ.items() if name not in HIDDEN_VARIABLES
+        }
         with output.open("wb") if output else nullcontext(theirs) as out:
             self.process = subprocess.Popen(
                 [*command, *map(str, words)], stdin=theirs if types else subprocess.DEVNULL,
@@ -71,7 +81,7 @@ class Terminal:
 
     def until(self, pattern: str) -> re.Match[str]:
         """Wait until something is to be seen."""
-        end_s = monotonic() + HANGS_S
+        end_s = monotonic() + HANG_LIMIT_S
         while True:
             match = re.search(pattern, "\n".join(self.lines()))
             if match:
@@ -92,15 +102,15 @@ class Terminal:
             pass
         self._reader.join()
         os.close(self._ours)
-        return self.process.wait(HANGS_S)
+        return self.process.wait(HANG_LIMIT_S)
 
     def take(self) -> bool:
         """Draw a small part of the output, so that brief displays are not missed."""
         if not self._unseen and not self._is_over:
-            self._unseen = self._read.get(timeout=HANGS_S)
+            self._unseen = self._read.get(timeout=HANG_LIMIT_S)
             self._is_over = not self._unseen
             self.written += self._unseen
-        part, self._unseen = self._unseen[:GLANCE], self._unseen[GLANCE:]
+        part, self._unseen = self._unseen[:CHUNK_BYTES], self._unseen[CHUNK_BYTES:]
         self._stream.feed(part)
         return bool(part)
 

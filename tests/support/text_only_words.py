@@ -9,8 +9,8 @@ from tiniscript.lessons import catalogue
 
 CODE = re.compile("`([^`]*)`")
 LINES = {"en": r"\blines?\b", "es": r"\bl[ií]neas?\b", "pt": r"\blinhas?\b"}
-WRITING = {"en": r"\b(writ\w+|wrote)\b", "es": r"\bescri\w+", "pt": r"\bescr[ei]\w+"}
-ENDS = re.compile(r"\bEND\w*")
+WRITING_WORDS = {"en": r"\b(writ\w+|wrote)\b", "es": r"\bescri\w+", "pt": r"\bescr[ei]\w+"}
+END_WORD = re.compile(r"\bEND\w*")
 TEXT_SIGNS = re.compile(r"\w\(|`; `|\[\[|\]\]")
 STOP = "STOP"  # a button of the page
 CAPITAL_WORDS = re.compile(r"\b[A-Z][A-Z_]*\b")
@@ -19,9 +19,9 @@ CAPITAL_WORDS = re.compile(r"\b[A-Z][A-Z_]*\b")
 def text_only_words(sentences: str, language: str, *, is_line_on_floor: bool = False) -> list[str]:
     """Return the words of a block sentence that only exist in text, apart from code."""
     prose = CODE.sub("``", sentences)
-    patterns = [WRITING[language], *([] if is_line_on_floor else [LINES[language]])]
+    patterns = [WRITING_WORDS[language], *([] if is_line_on_floor else [LINES[language]])]
     words = [match[0] for pattern in patterns for match in re.finditer(pattern, prose, re.I)]
-    words += [match[0] for pattern in (ENDS, TEXT_SIGNS) for match in pattern.finditer(prose)]
+    words += [match[0] for pattern in (END_WORD, TEXT_SIGNS) for match in pattern.finditer(prose)]
     return words + [word for word in CAPITAL_WORDS.findall(prose) if word in WORDS and word != STOP]
 
 

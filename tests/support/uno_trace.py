@@ -18,8 +18,8 @@ SHORT_MS = 95  # settings that are over sooner: between two instructions, or whi
 OFF_MS = 5  # tolerance of a change's time in the trace
 PING_MS = 25
 READING_MS = 55  # extra tolerance for each earlier reading, which may need confirmation
-FIRST_MS = 85  # extra tolerance for the first reading of the run
-TELLING_MS = 200  # time at the end in which SHOW and DONE may be on the wire
+FIRST_READING_MS = 85  # extra tolerance for the first reading of the run
+LAST_MESSAGE_MS = 200  # time at the end in which SHOW and DONE may be on the wire
 
 
 class Setting(NamedTuple):
@@ -121,7 +121,7 @@ def check_pins(case: Case, uno: Uno) -> None:
         began = uno.run_until("left forward", "high", limit_ms=500).cycle - 1
     triggers = 0
     distances = simulate_pings(distances)
-    last_ms = end_ms + FIRST_MS + READING_MS * len(reads) + TELLING_MS
+    last_ms = end_ms + FIRST_READING_MS + READING_MS * len(reads) + LAST_MESSAGE_MS
     while (uno.cycle - began) / CYCLES_PER_MS < last_ms:
         wired_uno.run(2)
         pulses = [
@@ -139,7 +139,7 @@ def check_pins(case: Case, uno: Uno) -> None:
     assert [setting[1:] for setting in settings] == [setting[1:] for setting in expected]
     for pins, line in zip(settings, expected, strict=True):
         before = sum(read_ms <= line.ms for read_ms in reads)
-        late_ms = OFF_MS + READING_MS * before + (FIRST_MS - READING_MS) * bool(before)
+        late_ms = OFF_MS + READING_MS * before + (FIRST_READING_MS - READING_MS) * bool(before)
         assert -OFF_MS <= pins.ms - line.ms <= late_ms, (pins, line)
     if is_over:
         lines = [line.split(" ", 1)[1] for line in trace.splitlines()]

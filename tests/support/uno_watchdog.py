@@ -9,9 +9,9 @@ from tests.support.platformio import build_changed_sketch
 from tests.support.robot_on_uno import states
 from tools.uno import Uno
 
-PRESSED = "if (press == Press::kPressed) firmware_on_pressed();"
+PRESS_HANDLER = "if (press == Press::kPressed) firmware_on_pressed();"
 WATCHDOG, STALL = 4, 66  # a reset and a fault in docs/develop/link.md
-HANGS, HANGS_ALONE = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
+HANGING_LOOP, HANGING_LOOP_WITHOUT_INTERRUPTS = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
 TIMER_MS, WATCHDOG_MS = 110, 300
 
 
@@ -19,7 +19,7 @@ def build_hanging_firmware(folder: Path, hang: str, environment: str = "uno") ->
     """Return the firmware that hangs when the button is pressed."""
     skip_unless_available()
     hangs = f"if (press == Press::kPressed) {hang}"
-    return build_changed_sketch(folder, "main.cpp", PRESSED, hangs, environment)
+    return build_changed_sketch(folder, "main.cpp", PRESS_HANDLER, hangs, environment)
 
 
 def is_on(uno: Uno) -> bool:

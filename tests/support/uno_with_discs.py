@@ -22,7 +22,7 @@ from tools.uno.log import Event
 
 ROBOT = robots.load("tinibot2", "uno")
 ENVIRONMENT = "uno_tinibot2"  # environment in vm_arduino/platformio.ini
-FULL = 255  # PWM value of 100 %
+FULL_PWM = 255  # PWM value of 100 %
 
 
 class Driven(Wired):
@@ -78,9 +78,9 @@ class Driven(Wired):
         """Return the power of a motor, in percent."""
         pins = ROBOT.board.motors.pins
         pwm = self._pins[f"D{pins[f'{side}_pwm']}"]
-        level: int = pwm["value"] if pwm["is"] == "pwm" else FULL * (pwm["is"] == "high")
+        level: int = pwm["value"] if pwm["is"] == "pwm" else FULL_PWM * (pwm["is"] == "high")
         is_backward = self._pins[f"D{pins[f'{side}_backward']}"]["is"] == "high"
-        return (-level if is_backward else level) * 100 / FULL
+        return (-level if is_backward else level) * 100 / FULL_PWM
 
     def drive(self, text: str, limit_ms: int = 20_000) -> str:
         """Run a program to its end and a little longer; return the cause of its end."""

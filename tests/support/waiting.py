@@ -6,10 +6,10 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-HANGS_S = 120.0
+HANG_LIMIT_S = 120.0
 
 
-def until(is_so: Callable[[], bool], what: str, limit_s: float = HANGS_S) -> None:
+def until(is_so: Callable[[], bool], what: str, limit_s: float = HANG_LIMIT_S) -> None:
     """Wait until something is so."""
     end_s = time.monotonic() + limit_s
     while not is_so():

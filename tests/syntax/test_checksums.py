@@ -14,7 +14,7 @@ from tiniscript.syntax.formatter import format_source
 
 TINIBOT = robots.load("tinibot")
 LINE = "SI|F(2, 80)"
-CHECKED = f"{LINE}~B77E7BD9"
+LINE_WITH_CHECKSUM = f"{LINE}~B77E7BD9"
 
 
 def compile_program(text: str) -> Compilation:
@@ -30,21 +30,21 @@ def messages(text: str) -> list[tuple[str, str]]:
 
 
 def test_the_checksum_is_the_crc_32_of_the_bytes_of_the_line() -> None:
-    assert with_checksum(LINE) == CHECKED
+    assert with_checksum(LINE) == LINE_WITH_CHECKSUM
     assert checksum_of("// ñ") == crc32("// ñ".encode())
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        CHECKED,
-        CHECKED.lower().replace("si|f", "SI|F"),  # digits in any case
-        CHECKED + "\n",
-        CHECKED + "\r\n",
-        CHECKED + "\r",
-        CHECKED + " \t\u00a0\ufeff\n",
-        "\ufeff" + CHECKED,
-        "\n" + CHECKED,
+        LINE_WITH_CHECKSUM,
+        LINE_WITH_CHECKSUM.lower().replace("si|f", "SI|F"),  # digits in any case
+        LINE_WITH_CHECKSUM + "\n",
+        LINE_WITH_CHECKSUM + "\r\n",
+        LINE_WITH_CHECKSUM + "\r",
+        LINE_WITH_CHECKSUM + " \t\u00a0\ufeff\n",
+        "\ufeff" + LINE_WITH_CHECKSUM,
+        "\n" + LINE_WITH_CHECKSUM,
     ],
 )
 def test_a_line_with_its_checksum_is_the_line(text: str) -> None:
@@ -53,7 +53,7 @@ def test_a_line_with_its_checksum_is_the_line(text: str) -> None:
 
 
 def test_a_byte_order_mark_of_a_file_does_not_count() -> None:
-    assert compile_source(b"\xef\xbb\xbf" + CHECKED.encode(), TINIBOT, "", True).is_right
+    assert compile_source(b"\xef\xbb\xbf" + LINE_WITH_CHECKSUM.encode(), TINIBOT, "", True).is_right
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])

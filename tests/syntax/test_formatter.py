@@ -23,7 +23,7 @@ from tiniscript.syntax.formatter import format_source
 from tiniscript.syntax.lexer import END, NEWLINE, scan
 from tiniscript.syntax.parser import parse
 
-CHUNKS = 16
+CHUNK_COUNT = 16
 PROGRAMS_PER_CHUNK = 150
 
 
@@ -252,7 +252,7 @@ def laid_out_anew(rng: random.Random, text: str) -> str:
 
 
 @pytest.mark.sampled("chunk")
-@pytest.mark.parametrize("chunk", range(CHUNKS))
+@pytest.mark.parametrize("chunk", range(CHUNK_COUNT))
 def test_every_program_stays_the_same_program(chunk: int) -> None:
     """Same image, same comments; as written by the generator and in a wilder layout."""
     rng = random.Random(f"formatter {chunk}")

@@ -273,24 +273,24 @@ def test_reading_ends_where_more_diagnostics_help_nobody() -> None:
 
 # -- any text -------------------------------------------------------------------------------------
 
-DEEP = 20_000
+NESTING_DEPTH = 20_000
 
 
 @pytest.mark.sampled("text", keep=4)
 @pytest.mark.parametrize(
     "text",
     [
-        "X = " + "(" * DEEP + "1" + ")" * DEEP,
-        "X = " + "(" * DEEP,
-        "X = " + "-" * DEEP + "A",
-        "X = " + "NOT " * DEEP + "A",
-        "X = " + "ABS(" * DEEP + "A" + ")" * DEEP,
-        "X = " + "1 + (" * DEEP + "A",
-        "IF(A);" * DEEP + "ENDIF;" * DEEP,
-        "LOOP(2);" * DEEP,
-        "IF(A);" + "ELSEIF(A);" * DEEP + "ENDIF",
-        "}" * DEEP + "{" * DEEP,
-        "F(" * DEEP,
+        "X = " + "(" * NESTING_DEPTH + "1" + ")" * NESTING_DEPTH,
+        "X = " + "(" * NESTING_DEPTH,
+        "X = " + "-" * NESTING_DEPTH + "A",
+        "X = " + "NOT " * NESTING_DEPTH + "A",
+        "X = " + "ABS(" * NESTING_DEPTH + "A" + ")" * NESTING_DEPTH,
+        "X = " + "1 + (" * NESTING_DEPTH + "A",
+        "IF(A);" * NESTING_DEPTH + "ENDIF;" * NESTING_DEPTH,
+        "LOOP(2);" * NESTING_DEPTH,
+        "IF(A);" + "ELSEIF(A);" * NESTING_DEPTH + "ENDIF",
+        "}" * NESTING_DEPTH + "{" * NESTING_DEPTH,
+        "F(" * NESTING_DEPTH,
     ],
     ids=lambda text: text[:12],
 )

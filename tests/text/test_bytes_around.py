@@ -18,7 +18,7 @@ from tests.support.campaign import each_seed, make_options
 from tests.support.robot_on_host import KIT
 
 LINE = "SI|BEEP(0.1,97);W(9)"
-ENDS = (b"\n", b"\r\n", b"\r")
+LINE_ENDS = (b"\n", b"\r\n", b"\r")
 BEEPS = "BEEP 97 100"
 # The bytes between two zeros are a frame unless each is one of a line; a damaged frame is not
 # answered.
@@ -41,7 +41,7 @@ def check(seed: int) -> str:
     robot = rng.choice((HostFirmware, SmallRobot))(KIT)
     robot.wait(rng.choice((200, 4000)))
     bytes_before, bytes_after = draw_surroundings(rng)
-    line, end = LINE.encode(), rng.choice(ENDS)
+    line, end = LINE.encode(), rng.choice(LINE_ENDS)
     is_spread = rng.random() < 0.7
     sent_bytes = b""
     for data in (bytes_before, line + end, bytes_after):

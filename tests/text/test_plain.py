@@ -30,12 +30,12 @@ from tiniscript.semantics.task_copies import copy_defs_per_task
 
 TINIBOT, GRABBER = robots.load("tinibot").kit, robots.load("grabber").kit
 # Syntax for the optimizing compiler only, absent from `docs/develop/text.md`.
-FUSED = re.compile(
+FUSED_OPCODE = re.compile(
     r"PUSH_READ|(SET_VAR|ADD_VAR|WAIT|BEEP|MOTORS|LOOP|UNTIL|IF|IF_VAR)(8|16)|MOVE8|IF_NOT|INC_|DEC_"
     r"|ADD_VAR|AND$|OR$|END$|\w+_FAR$"
 )
-PLAIN = {op.name for op in OPS if not FUSED.match(op.name)}
-ENOUGH = 4 * 500  # random programs
+PLAIN_OPCODES = {op.name for op in OPS if not FUSED_OPCODE.match(op.name)}
+PROGRAM_COUNT = 4 * 500  # random programs
 
 
 def plain_of(text: str, kit: Kit = TINIBOT) -> PlainCode:
@@ -157,13 +157,13 @@ def test_the_page_names_every_instruction_of_plain_code_and_no_other() -> None:
     page = (ROOT / "docs" / "develop" / "text.md").read_text(encoding="utf-8")
     page = page[page.index("## Plain code") : page.index("## A program, byte")]
     names = {word for part in re.findall(r"`([^`]+)`", page) for word in part.split()}
-    for name in PLAIN:
+    for name in PLAIN_OPCODES:
         kind = re.sub(r"_\d+$", "", name)
         kind = {"PUSH_NUM": "PUSH_NUM_n"}.get(kind, kind)
         kind = re.sub(r"(MOVE|GO|WATCH|WATCH_GO|WATCH_FOREVER)_[BLR]$", r"\1_F", kind)
         assert kind in names, name
     known_names = {op.name for op in OPS}
-    assert names & known_names <= PLAIN | {"AND", "OR"}  # words of the language as well
+    assert names & known_names <= PLAIN_OPCODES | {"AND", "OR"}  # words of the language as well
 
 
 def check_same(compilation: Compilation, kit: Kit, senses: Senses) -> None:
@@ -175,13 +175,13 @@ def check_same(compilation: Compilation, kit: Kit, senses: Senses) -> None:
     assert (code.short_length == len(code.code)) == short
     if short:
         used = {row[25:].split()[0] for row in disassemble(code.code).splitlines()}
-        assert not [name for name in used if FUSED.match(name)], used
+        assert not [name for name in used if FUSED_OPCODE.match(name)], used
     trace = run_python(image_for(code.code, kit, compilation.program.start), kit, senses)
     assert same(run_python(compilation.image, kit, senses), trace), compilation.source.text
 
 
 @pytest.mark.sampled("first")
-@pytest.mark.parametrize("first", range(0, ENOUGH, 500))
+@pytest.mark.parametrize("first", range(0, PROGRAM_COUNT, 500))
 def test_random_programs_do_the_same_in_plain_code(first: int) -> None:
     for seed in range(first, first + 500):
         rng = random.Random(seed)

@@ -15,7 +15,7 @@ from tests.support.reader_agreement import some_texts
 from tools.builds import chips
 
 KIT = KITS[1][1]
-EACH = [
+CASES = [
     pytest.param(name, marks=pytest.mark.skipif(bool(why), reason=why or "there is a chip"))
     for name in chips.CHIPS
     for why in [missing(name)]
@@ -30,7 +30,7 @@ def texts() -> list[bytes]:
 
 
 @pytest.mark.sampled("name")
-@pytest.mark.parametrize("name", EACH)
+@pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("room", [200, 374, LARGEST_ROOM])
 def test_the_chip_says_the_same(name: str, room: int) -> None:
     all_texts = texts()

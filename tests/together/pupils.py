@@ -24,7 +24,7 @@ VALUES = {
     "LOOP": "LOOP({})", "WHILE": "WHILE(X < {})", "IF": "IF(X > {})", "ELSEIF": "ELSEIF(X > {})",
     "SHOW": "SHOW({})", "BEEP": "BEEP({}, 440)",
 }  # fmt: skip
-DEEDS = (
+EDIT_KINDS = (
     *["insert"] * 5, *["delete"] * 4, *["move"] * 4, *["wrap"] * 2, *["unwrap"] * 2,
     *["replace"] * 6, "note", "arm", "comment", "start", "undo", "undo",
 )  # fmt: skip
@@ -32,7 +32,7 @@ PLANS = (
     *["change"] * 6, *["new"] * 5, *["around"] * 2, *["cut"] * 2, *["gone"] * 2, *["lines"] * 2,
     "unround", "arm", "note", "blank", "layout", "two", "anew",
 )  # fmt: skip
-LARGE = 60  # instructions: from then on more is deleted
+LARGE_PROGRAM = 60  # instructions: from then on more is deleted
 
 
 class Pupil:
@@ -89,7 +89,7 @@ class Pupil:
         page.leave()
         view = page.view
         ids = [id for id in view.subtree_ids()[1:] if id != START]
-        deeds = DEEDS + ("delete",) * 8 if len(ids) > LARGE else DEEDS
+        deeds = EDIT_KINDS + ("delete",) * 8 if len(ids) > LARGE_PROGRAM else EDIT_KINDS
         deed = self._chance.choice(deeds) if ids else "insert"
         if deed == "undo":
             was_done = page.undo()

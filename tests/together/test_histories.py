@@ -18,8 +18,8 @@ import pytest
 from tests.support.campaign import make_options
 from tests.together.world import World
 
-DEEDS = 120  # of a history
-LOOK = 40  # deeds between two looks at the whole program
+EDIT_COUNT = 120  # of a history
+EDITS_PER_COMPARISON = 40  # deeds between two looks at the whole program
 LESSON_S = 300.0
 MOST_REFUSED = 0.01
 
@@ -35,7 +35,7 @@ def history(seed: int, deeds: int, pages: int) -> World:
         pupil.acts()
         if not pupil.stages:
             change_count += 1
-            if change_count % LOOK == 0:
+            if change_count % EDITS_PER_COMPARISON == 0:
                 world.check()
         drafts = len(pupil.page.drafts)
         if drafts > 2 or (drafts and not pupil.stages and chance.random() < 0.1):
@@ -106,7 +106,7 @@ def lesson(seed: int, pages: int, lesson_s: float = LESSON_S) -> World:
 @pytest.mark.sampled("seed", keep=3)
 @pytest.mark.parametrize("seed", range(30))
 def test_all_pages_end_with_the_same_program(seed: int) -> None:
-    history(seed, DEEDS, 2 + seed % 3)
+    history(seed, EDIT_COUNT, 2 + seed % 3)
 
 
 @pytest.mark.long

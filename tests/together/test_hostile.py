@@ -24,7 +24,7 @@ from tiniscript.together.ordering import SharedProgram
 from tiniscript.together.page import Page
 from tiniscript.together.tree import MOST_FORMER_PLACES
 
-SENT = 1500
+MESSAGE_COUNT = 1500
 TEXT = "SI|F(1, 80)\nLOOP(3)\nB(1, 40)\nEND_LOOP\nIF(X < 1)\nS\nELSE\nW(1)\nENDIF\n"
 VALUES: list[Any] = [
     None, 0, -1, True, "", "root", "start", "i.1", "i.2", "i.5", "zz", "q.9", "a:1", [], {},
@@ -39,14 +39,14 @@ VALUES: list[Any] = [
     {"text": "a:9", "place": "b:3"}, {"i.2": ""},
 ]  # fmt: skip
 # Likely values for each operation, and random other fields.
-LIKELY: dict[str, list[Any]] = {
+LIKELY_VALUES: dict[str, list[Any]] = {
     "id": ["i.1", "i.2", "i.3", "i.5", "start", "q.1"], "ids": [["i.1"], ["i.2", "i.3"], ["q.1"]],
     "at": [["root", ""], ["i.2", ""], ["i.4", "i.6"], ["root", "q.1"]],
     "nodes": [[{"id": "q.1", "text": "S"}], [{"id": "i.3", "text": "S"}],
               [{"id": "q.2", "text": "LOOP(2)", "in": [{"id": "q.3", "text": "S"}]}]],
     "node": [{"id": "q.4", "text": "LOOP(4)"}], "text": ["F(2, 80)", "LOOP(5)", "// c"],
 }  # fmt: skip
-NEEDED = {
+NEEDED_FIELDS = {
     "insert": ("at", "nodes"), "delete": ("ids",), "move": ("ids", "at"), "wrap": ("ids", "node"),
     "unwrap": ("id",), "replace": ("id", "text"), "no": (),
 }  # fmt: skip
@@ -54,9 +54,9 @@ FIELDS = ("id", "ids", "at", "nodes", "node", "text", "note", "apart", "end", "a
 
 
 def an_operation(chance: Random) -> Any:
-    operation: Any = {"do": chance.choice(list(NEEDED))}
-    for field in NEEDED[operation["do"]]:
-        operation[field] = chance.choice(LIKELY[field])
+    operation: Any = {"do": chance.choice(list(NEEDED_FIELDS))}
+    for field in NEEDED_FIELDS[operation["do"]]:
+        operation[field] = chance.choice(LIKELY_VALUES[field])
     for field in FIELDS:
         if chance.random() < 0.07:
             operation[field] = chance.choice(VALUES)
@@ -70,7 +70,7 @@ def test_no_change_spoils_the_program(seed: int) -> None:
     program = SharedProgram(parse_tree(TEXT, lambda: f"i.{next(ids)}"), "e", rows.append)
     page = Page.of("z", program.news("z", -1, ""))
     came: Counter[str] = Counter()
-    for k in range(1, SENT + 1):
+    for k in range(1, MESSAGE_COUNT + 1):
         operation = an_operation(chance)
         uid = f"m:{program.last_count_by_page.get('m', 0) + 1}"
         sent = json.loads(json.dumps({"uid": uid, "ops": [operation] * chance.choice((1, 1, 3))}))
@@ -88,8 +88,8 @@ def test_no_change_spoils_the_program(seed: int) -> None:
             assert tree_of(json.loads(json.dumps(tree.snapshot()))).checksum() == tree.checksum()
             page.receive(json.loads(json.dumps(program.news("z", page.number, "e"))))
             assert not page.is_astray
-    assert came["taken"] > SENT / 50
-    assert came[BAD] > SENT / 50
+    assert came["taken"] > MESSAGE_COUNT / 50
+    assert came[BAD] > MESSAGE_COUNT / 50
 
 
 @pytest.mark.parametrize("value", VALUES, ids=repr)

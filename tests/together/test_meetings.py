@@ -308,7 +308,7 @@ def test_a_copy_of_a_page_goes_its_own_way(two: Two) -> None:
     assert "F(3, 80)" in two.meet()
 
 
-FLAT = "SI|S\n" + "".join(f"F({number}, 80)\n" for number in range(1, 6))
+FLAT_PROGRAM = "SI|S\n" + "".join(f"F({number}, 80)\n" for number in range(1, 6))
 
 
 def edits(page: Page, chance: Random) -> None:
@@ -341,7 +341,7 @@ def exchange(two: Two, message: str) -> None:
 def story(seed: int, makes_copies: bool) -> list[Any]:
     """Return what Ana's page shows after each step, with a copy in its place each time, or as it
     is. Nothing hears of what is changed on the old page then."""
-    chance, other_chance, two = Random(seed), Random(seed), Two(FLAT)
+    chance, other_chance, two = Random(seed), Random(seed), Two(FLAT_PROGRAM)
     seen = list[Any]()
     for _ in range(40):
         if makes_copies:
@@ -371,7 +371,7 @@ def test_a_copy_goes_on_as_the_page_itself_and_hears_nothing_of_it(seed: int) ->
 def test_what_is_typed_before_and_after_any_reload_is_the_program(seed: int) -> None:
     """Whichever messages were sent, received or lost then, no text is refused, lost or
     duplicated."""
-    chance, two = Random(seed), Two(FLAT)
+    chance, two = Random(seed), Two(FLAT_PROGRAM)
     for _ in range(60):
         typed = program_of(two.ana)
         match chance.choice(("edit", "edit", "send", "lose", "hear", "reload", "reload")):
@@ -421,7 +421,7 @@ def test_a_redo_takes_back_an_undo_until_something_else_is_done(two: Two) -> Non
 
 @pytest.mark.parametrize("seed", range(6))
 def test_as_many_redos_as_undos_bring_all_back(seed: int) -> None:
-    chance, two = Random(seed), Two(FLAT)
+    chance, two = Random(seed), Two(FLAT_PROGRAM)
     texts = [two.meet()]
     for number in range(1, 6):
         two.types(two.ana, f"F({number}, 80)", f"F({number}1, 80)")

@@ -26,8 +26,8 @@ from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.robot import RESET_BUTTON
 
 WALL = "[[boxes]]\nx_cm = 140\ny_cm = 140\nlength_cm = 20\nwidth_cm = 20\nheading = 20\n"
-NEAR_CM, NEAR_DEGREES = 0.5, 1.0
-RUNS_MS = 2500
+TOLERANCE_CM, TOLERANCE_DEGREES = 0.5, 1.0
+RUN_MS = 2500
 
 
 def pushes(talk: Talk) -> None:
@@ -45,7 +45,7 @@ def computer_stops(talk: Talk) -> None:
     talk.wait(200)
 
 
-ENDS: dict[str, Callable[[Talk], object]] = {
+END_ACTIONS: dict[str, Callable[[Talk], object]] = {
     "nothing": lambda talk: talk.wait(4000),
     "zeros": lambda talk: talk.robot.step(talk.robot.now_ms + 20, bytes(STOP_BYTES)),
     "a line": types,
@@ -81,7 +81,7 @@ def does(talk: Talk, text: str) -> Did:
     robot = talk.robot
     robot.take_events()
     assert talk.upload(text).status == 0
-    talk.wait(RUNS_MS)
+    talk.wait(RUN_MS)
     state = robot.fault, robot.is_running, robot.ended_ms is None, robot.saved_state
     return Did(trace(robot.take_events()), state, robot.pose, robot.actuators)
 
@@ -93,8 +93,8 @@ def check(seed: int) -> str:
     talk = Talk(robot)
     assert talk.upload(program(rng, name), is_detached=rng.random() < 0.3).status == 0
     talk.wait(rng.choice((0, 1, 30, 300, 900)))
-    ends = rng.choice([*ENDS])
-    ENDS[ends](talk)
+    ends = rng.choice([*END_ACTIONS])
+    END_ACTIONS[ends](talk)
     assert ends not in OFF or (not robot.is_running and robot.offset is None), seed
     robot.step(robot.now_ms + 20, b"\0S\n")
     robot.step(robot.now_ms + 1500)  # until the robot stops
@@ -107,10 +107,10 @@ def check(seed: int) -> str:
     explanation = f"seed {seed} {ends} {name} {text}\n{actions}\nnot\n{want}"
     assert actions[:2] == want[:2], explanation
     did_pose, want_pose = actions.pose, want.pose
-    assert hypot(did_pose.x_cm - want_pose.x_cm, did_pose.y_cm - want_pose.y_cm) < NEAR_CM, (
+    assert hypot(did_pose.x_cm - want_pose.x_cm, did_pose.y_cm - want_pose.y_cm) < TOLERANCE_CM, (
         explanation
     )
-    assert abs(did_pose.heading - want_pose.heading) < NEAR_DEGREES, explanation
+    assert abs(did_pose.heading - want_pose.heading) < TOLERANCE_DEGREES, explanation
     left = {k: value for k, value in actions.actuators.items() if k not in want.actuators}
     assert {**want.actuators, **left} == actions.actuators, explanation
     # Outputs that the program's own end leaves on.

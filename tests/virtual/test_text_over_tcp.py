@@ -8,14 +8,14 @@ from pathlib import Path
 
 from tests.support.edited_robots import TEXTS
 from tests.support.virtual_command import FOREVER, robot, visitor
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANG_LIMIT_S
 
 SILENT_S = 3  # longer than the second that a robot waits for, whose clock may go slower
 
 
 def lines_until(client: socket.socket, end: str) -> list[str]:
     """Return the answer up to a line with this end."""
-    client.settimeout(HANGS_S)
+    client.settimeout(HANG_LIMIT_S)
     data = b""
     while not data.endswith(end.encode() + b"\r\n"):
         more = client.recv(1000)

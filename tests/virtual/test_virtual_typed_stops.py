@@ -7,7 +7,7 @@ from random import Random
 import pytest
 
 from tests.support.simulator_visits import until, visit
-from tests.support.stop_spellings import RUNS, SILENCE_MS
+from tests.support.stop_spellings import RUNNING_LINE, SILENCE_MS
 from tests.support.virtual_robot import robot_in
 from tiniscript.link.messages import STOP_BYTES, TEXT_MS
 from tiniscript.link.typed_stop import is_at_stop
@@ -25,7 +25,7 @@ def wait(robot: VirtualRobot, milliseconds: int, data: bytes = b"") -> None:
 def test_the_next_client_begins_a_line(simulator: Simulator) -> None:
     """Unfinished text of the previous client ends with its connection."""
     with visit(simulator) as client:
-        client.sendall(RUNS)
+        client.sendall(RUNNING_LINE)
         until(simulator, lambda: simulator.robot.is_running)
         client.sendall(b"F(1,")
         until(simulator, lambda: bool(simulator.waiting_bytes))
@@ -38,7 +38,7 @@ def test_the_next_client_begins_a_line(simulator: Simulator) -> None:
 def test_blank_lines_cost_no_client_its_line(simulator: Simulator) -> None:
     for _ in range(2):
         with visit(simulator) as client:
-            client.sendall(b"\n\n" + RUNS)
+            client.sendall(b"\n\n" + RUNNING_LINE)
             until(simulator, lambda: simulator.robot.is_running)
             client.sendall(b"S\n")
             until(simulator, lambda: not simulator.robot.is_running)
@@ -49,7 +49,7 @@ def test_blank_lines_cost_no_client_its_line(simulator: Simulator) -> None:
 def test_silence_ends_the_stop_of_who_may_be_a_web_page(simulator: Simulator, word: bytes) -> None:
     assert sniff_robot_client(word) is None
     with visit(simulator) as client:
-        client.sendall(RUNS)
+        client.sendall(RUNNING_LINE)
         until(simulator, lambda: simulator.robot.is_running)
     with visit(simulator) as client:
         client.sendall(word)
@@ -67,7 +67,7 @@ def test_the_host_knows_such_lines_as_a_robot_does() -> None:
         word = b"".join(chance.choices(parts, k=chance.randrange(1, 4)))
         word += chance.choice((b"S", b"S", b"Stop", b"Halt!", b"now"))
         wait(robot, TEXT_MS + SILENCE_MS)  # the robot's text comes after its frames
-        wait(robot, 100, RUNS)
+        wait(robot, 100, RUNNING_LINE)
         assert robot.is_running
         wait(robot, SILENCE_MS + 100, b"\n" + word)
         assert robot.is_running is not is_at_stop(word), word

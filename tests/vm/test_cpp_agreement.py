@@ -29,7 +29,7 @@ from tests.support.cpp_checks import (
     MAX_STEPS,
     OPERATIONS,
     SIZES,
-    WIDE,
+    WIDE_KIT,
     check_arithmetic,
     check_codes,
     check_round,
@@ -91,7 +91,7 @@ def test_number_of_devices(devices: int) -> None:
 
 def check_and_run(codes: Sequence[bytes]) -> None:
     for code in compare_verdicts(host(), codes, *SIZES):
-        compare_runs(host(), code, WIDE, Senses(max_ms=100, max_steps=50))
+        compare_runs(host(), code, WIDE_KIT, Senses(max_ms=100, max_steps=50))
 
 
 def test_all_codes_of_up_to_two_bytes() -> None:
@@ -158,7 +158,7 @@ def test_whatever_the_code_the_machine_keeps_to_its_memory() -> None:
     """Unverified code ends, waits or faults; sanitizers notice everything else."""
     endings: Counter[str] = Counter()
     for code in random_codes(1, 20_000):
-        run = host().run_unverified(code, WIDE, Senses(max_ms=MAX_MS, max_steps=MAX_STEPS))
+        run = host().run_unverified(code, WIDE_KIT, Senses(max_ms=MAX_MS, max_steps=MAX_STEPS))
         endings[run.trace.split()[-1]] += 1
     assert endings["BAD_CODE"] > 1000, endings
     assert endings["DONE"] > 1000, endings

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.support.cpp_checks import NUMBER_OF, OPERATIONS, python_result
+from tests.support.cpp_checks import FAULT_NUMBER_BY_NAME, OPERATIONS, python_result
 from tests.support.random_codes import EDGES
 from tiniscript.base import fixed_point
 from tiniscript.bytecode.opcodes import BY_NAME
@@ -42,7 +42,7 @@ class Operation(NamedTuple):
         try:
             return 0, fixed_point.random_between(self.a, self.b, state)
         except fixed_point.Fault as fault:
-            return NUMBER_OF[fault.name], 0
+            return FAULT_NUMBER_BY_NAME[fault.name], 0
 
 
 def numbers(state: int) -> Iterator[int]:

@@ -279,7 +279,9 @@ def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
 @pytest.mark.sampled("chip")
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE_CHIP)
 def test_late_tasks_after_byte_256(chip: str) -> None:
-    for number, (image, senses) in enumerate(cpp_checks.some_task_programs(0, 40, cpp_checks.FAR)):
+    for number, (image, senses) in enumerate(
+        cpp_checks.some_task_programs(0, 40, cpp_checks.FAR_JUMP)
+    ):
         late_ms = (0, 7, 36)[number % 3]
         pace = Pace(every_ms=late_ms + 1)
         run = avr.ran_on(chip, image, cpp_checks.KIT, senses, pace=pace, begin_ms=2**32 - 100)

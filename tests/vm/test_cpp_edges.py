@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from tests.machines import Senses
 from tests.machines.host import host
-from tests.support.cpp_checks import WIDE, compare_runs, compare_verdicts
+from tests.support.cpp_checks import WIDE_KIT, compare_runs, compare_verdicts
 from tests.support.edge_codes import kit_with_sensors, unverified_code
 from tests.support.images import image_for
 from tests.support.random_codes import jump, loop, simple
@@ -67,7 +67,7 @@ def test_what_is_closed_takes_no_room() -> None:
     )
     for piece in pieces:
         compare_verdicts(host(), [piece * count for count in range(40)], 3, 2)
-        compare_runs(host(), piece * 40, WIDE, Senses(max_ms=1000, max_steps=1000))
+        compare_runs(host(), piece * 40, WIDE_KIT, Senses(max_ms=1000, max_steps=1000))
     # Needs of one procedure are not needs of the next.
     for needs in (0, 8, COUNTERS):
         for around in range(COUNTERS + 1):
@@ -151,11 +151,11 @@ def test_a_program_may_run_for_24_days() -> None:
     most = simple("PUSH32") + (2**31 - 1).to_bytes(4, "little") + simple("WAIT")
     time = simple("TIME") + simple("SHOW")
     senses = Senses(max_ms=2**31 + 1000, max_steps=100)
-    ending = compare_runs(host(), most + time + simple("WAIT8") + b"\x01" + time, WIDE, senses)
+    ending = compare_runs(host(), most + time + simple("WAIT8") + b"\x01" + time, WIDE_KIT, senses)
     assert ending == "OVERFLOW", ending
     for code in (most * 2 + simple("WAIT8") + b"\x78", most * 5):
-        image = image_for(code + time, WIDE)
-        run = host().run(image, WIDE, senses._replace(max_ms=2**32 - 1))
+        image = image_for(code + time, WIDE_KIT)
+        run = host().run(image, WIDE_KIT, senses._replace(max_ms=2**32 - 1))
         assert run.trace.splitlines()[-1].endswith(" FAULT OVERFLOW"), run.trace
 
 

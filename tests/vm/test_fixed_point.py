@@ -11,17 +11,17 @@ import pytest
 from tiniscript.base import fixed_point as t
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, Fault
 
-EXACT = Context(prec=60, rounding=ROUND_HALF_UP)  # half away from zero
+EXACT_CONTEXT = Context(prec=60, rounding=ROUND_HALF_UP)  # half away from zero
 MILLI = Decimal("0.001")
 
 
 def units(value: int) -> Decimal:
-    return Decimal(value).scaleb(-3, EXACT)
+    return Decimal(value).scaleb(-3, EXACT_CONTEXT)
 
 
 def milli(value: Decimal) -> int:
     """Return a result rounded to thousandths, or the fault if it does not fit."""
-    result = int(value.quantize(MILLI, context=EXACT).scaleb(3, EXACT))
+    result = int(value.quantize(MILLI, context=EXACT_CONTEXT).scaleb(3, EXACT_CONTEXT))
     if not LOWEST <= result <= HIGHEST:
         raise Fault("OVERFLOW")
     return result
@@ -29,15 +29,15 @@ def milli(value: Decimal) -> int:
 
 def remainder(a: Decimal, b: Decimal) -> Decimal:
     """Return a - b * floor(a / b)."""
-    rest = EXACT.remainder(a, b)  # has the sign of a
+    rest = EXACT_CONTEXT.remainder(a, b)  # has the sign of a
     return rest + b if rest and (rest < 0) != (b < 0) else rest
 
 
 def round_decimal(a: Decimal, places: Decimal) -> Decimal:
-    decimals = int(places.quantize(Decimal(1), context=EXACT))
+    decimals = int(places.quantize(Decimal(1), context=EXACT_CONTEXT))
     if decimals >= 3:
         return a
-    return a.quantize(Decimal(1).scaleb(-max(decimals, -20)), context=EXACT)
+    return a.quantize(Decimal(1).scaleb(-max(decimals, -20)), context=EXACT_CONTEXT)
 
 
 def check_divisor(
@@ -52,10 +52,10 @@ def check_divisor(
 
 
 OPERATIONS: dict[str, tuple[Callable[[int, int], int], Callable[[Decimal, Decimal], Decimal]]] = {
-    "+": (t.add, EXACT.add),
-    "-": (t.subtract, EXACT.subtract),
-    "*": (t.multiply, EXACT.multiply),
-    "/": (t.divide, check_divisor(EXACT.divide)),
+    "+": (t.add, EXACT_CONTEXT.add),
+    "-": (t.subtract, EXACT_CONTEXT.subtract),
+    "*": (t.multiply, EXACT_CONTEXT.multiply),
+    "/": (t.divide, check_divisor(EXACT_CONTEXT.divide)),
     "%": (t.modulo, check_divisor(remainder)),
     "ROUND": (t.round_to, round_decimal),
 }
@@ -90,7 +90,7 @@ def test_agrees_with_decimal(name: str) -> None:
 def test_one_operand(value: int) -> None:
     assert outcome(lambda: t.negate(value)) == outcome(lambda: milli(-units(value)))
     assert outcome(lambda: t.absolute(value)) == outcome(lambda: milli(abs(units(value))))
-    assert t.round_to_whole(value) == int(units(value).quantize(Decimal(1), context=EXACT))
+    assert t.round_to_whole(value) == int(units(value).quantize(Decimal(1), context=EXACT_CONTEXT))
 
 
 def test_text_and_literals_agree_with_decimal() -> None:
@@ -106,8 +106,8 @@ def test_text_and_literals_agree_with_decimal() -> None:
             f"{rng.randint(0, 10 ** rng.randint(0, 9))}.{rng.randint(0, 10 ** rng.randint(1, 9))}"
         )
         literal, exact = t.read_literal(text)
-        rounded_text = Decimal(text).quantize(MILLI, context=EXACT)
-        assert literal == int(rounded_text.scaleb(3, EXACT))
+        rounded_text = Decimal(text).quantize(MILLI, context=EXACT_CONTEXT)
+        assert literal == int(rounded_text.scaleb(3, EXACT_CONTEXT))
         assert exact == (rounded_text == Decimal(text))
 
 

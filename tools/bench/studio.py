@@ -321,7 +321,7 @@ def _lighthouse_scores(address: str) -> dict[str, float]:
     command = [*tools.npm, "exec", "--yes", "--ignore-scripts", LIGHTHOUSE, "--", address,
             "--preset=desktop", "--quiet", "--output=json",
             f"--only-categories={','.join(RATED_CATEGORIES)}",
-            f"--chrome-flags=--headless=new {' '.join(studio.WHOLE)}"]  # fmt: skip
+            f"--chrome-flags=--headless=new {' '.join(studio.BROWSER_OPTIONS)}"]  # fmt: skip
     node = str(Path(tools.node[0]).parent)  # npm starts Lighthouse by the first node in PATH
     settings = {**os.environ, "CHROME_PATH": studio.chromium() or "",
                 "PATH": os.pathsep.join((node, os.environ["PATH"]))}  # fmt: skip

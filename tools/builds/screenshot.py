@@ -120,7 +120,7 @@ def take(language: str, scene: str, target: Path) -> None:
     shots: list[Image.Image] = []
 
     def take_shot() -> None:
-        page.evaluate(studio.SETTLED)
+        page.evaluate(studio.SETTLED_SCRIPT)
         words.extend(
             page.eval_on_selector_all(
                 SEEN_SELECTOR,
@@ -336,7 +336,7 @@ def _take_more(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     take_shot()
     page.click("#side_virtual")
     page.set_viewport_size({"width": VIEWPORT["width"], "height": VIEWPORT["height"]})
-    page.evaluate(studio.SETTLED)
+    page.evaluate(studio.SETTLED_SCRIPT)
     page.locator("#redo").focus()
     for key in ("Tab", "Tab", "Tab", "ArrowDown", "ArrowDown", "m", "ArrowDown"):
         page.keyboard.press(key)
